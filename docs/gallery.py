@@ -9,9 +9,9 @@ from pathlib import Path
 
 from kurbel.machine_file import load
 from kurbel.render import Look
-from kurbel.render.pictures.svg import svg_file
+from kurbel.render.svg import svg_file
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures
-from kurbel.report.pictures.source import Wish
 from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parent.parent / "configs"
@@ -86,8 +86,8 @@ def embedded(id: str, machine: str) -> str:
 def svg_of(id: str, machine: str) -> str:
     """Return a picture of a shipped machine, of its first cylinder where it has several, as SVG."""
     case = Case(load(CONFIGS / f"{machine}.yaml"))
-    first = next(pictures(case, (id,), Wish()))
-    return "".join(svg_file([first], Look()))
+    first = next(pictures(case, (id,), PictureOptions()))
+    return svg_file([first], Look())
 
 
 def page() -> str:

@@ -13,8 +13,8 @@ from rich.terminal_theme import MONOKAI
 from rich.text import Text
 
 from kurbel.render import Look
+from kurbel.render.output import coloured
 from kurbel.render.page import page
-from kurbel.render.terminal import coloured
 from kurbel.report.zusammenstellung import zusammenstellung
 
 WIDTH = 120
@@ -25,8 +25,8 @@ def main() -> None:
     console = Console(record=True, width=WIDTH, file=io.StringIO(), force_terminal=True, highlight=False)
     report = zusammenstellung((5.0, 4.5, 4.0), ("b", "c"), tuple(range(0, 181, 10)), "book", False)
     console.print(Text("$ kurbel table", "bold"))
-    for line in coloured(page(report, Look(width=WIDTH))):
-        console.print(line, soft_wrap=True)
+    for line in page(report, Look(width=WIDTH)):
+        console.print(Text.assemble(*coloured(line)), soft_wrap=True)
     svg = console.export_svg(title="kurbel table", theme=MONOKAI, unique_id="kurbel")
     sys.stdout.buffer.write(svg.encode())
 

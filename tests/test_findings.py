@@ -273,7 +273,6 @@ SEVERAL = {
 }
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="'Got unexpected extra argument': check takes one file")
 @pytest.mark.parametrize(
     ("names", "status"),
     [

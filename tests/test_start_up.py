@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from imported import modules_after
@@ -35,12 +34,6 @@ def test_the_end_loses_nothing_that_was_written_before() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
     assert done.stdout.startswith("before kurbel")
-
-
-def test_the_torque_at_given_angles_needs_no_search() -> None:
-    case = Case(load(WATERWORKS))
-    assert case.balance.at(np.array([10.0])).M_roll is not None
-    assert "pieces" not in vars(case.cylinders[0])
 
 
 def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:

@@ -10,7 +10,7 @@ from kurbel.solver.case import Case as Case
 from kurbel.solver.figures import Results, Shown
 
 if TYPE_CHECKING:
-    from kurbel.report.pictures.picture import Picture
+    from kurbel.report.picture import Picture
 
 
 class Drawing(NamedTuple):
@@ -20,16 +20,16 @@ class Drawing(NamedTuple):
 
     def _repr_svg_(self) -> str:
         from kurbel.render import Look
-        from kurbel.render.pictures.svg import svg_file
+        from kurbel.render.svg import svg_file
 
-        return "".join(svg_file(list(self.pictures), Look()))
+        return svg_file(self.pictures, Look())
 
     def save(self, file_name: str) -> None:
         """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
         from kurbel.render import Look
-        from kurbel.render.pictures.drawing import draw_file
+        from kurbel.render.drawing import draw_file
 
-        draw_file(list(self.pictures), Look(), file_name)
+        draw_file(self.pictures, Look(), file_name)
 
 
 def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
@@ -37,10 +37,10 @@ def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ..
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
     """
+    from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import pictures
-    from kurbel.report.pictures.source import FILE, Wish
 
-    return Drawing(tuple(pictures(case, names, Wish(units, FILE, None, angles))))
+    return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
 def as_html(shown: Case | Results) -> str:

@@ -276,6 +276,10 @@ class ForEach(Generic[V]):
         return self if one is None else partial(self.function, one)
 
 
+ITS_OWN = ("those of its class",)
+"""Commands of a quantity that does not say which."""
+
+
 def key_value(
     symbol: str,
     kind: str,
@@ -288,50 +292,13 @@ def key_value(
     residual: bool = False,
     wanted_large: bool = False,
     gauge: bool = False,
-) -> Callable[[Callable[[Any], V]], Computed[V]]:
-    """Return what makes a method a key value of its class; the words are those of `Quantity` and `Row`."""
-
-    def made(function: Callable[[Any], V]) -> Computed[V]:
-        quantity = Quantity(
-            function.__name__,
-            symbol,
-            kind,
-            _sentence(function),
-            plain,
-            after=after,
-            residual=residual,
-            listed=listed,
-            wanted_large=wanted_large,
-            gauge=gauge,
-            group=group,
-        )
-        return Computed(function, quantity, unless)
-
-    return made
-
-
-ITS_OWN = ("those of its class",)
-"""Commands of a column that does not say which."""
-
-
-def column(
-    symbol: str,
-    kind: str,
-    *,
-    plain: str = "",
     commands: tuple[str, ...] = ITS_OWN,
     on_request: tuple[str, ...] = (),
     extremes: tuple[str, ...] = (),
     called: str = "",
     peak: bool = False,
-    after: str = "",
-    unless: Condition | None = None,
-    gauge: bool = False,
 ) -> Callable[[Callable[[Any], V]], Computed[V]]:
-    """Return what makes a method a column of its class; the words are those of `Quantity` and `Row`.
-
-    commands: those that print it, the ones of its class if none are given.
-    """
+    """Return what makes a method a key value or column of its class; the words are those of `Quantity` and `Row`."""
 
     def made(function: Callable[[Any], V]) -> Computed[V]:
         quantity = Quantity(
@@ -344,13 +311,20 @@ def column(
             extremes,
             called,
             after=after,
+            residual=residual,
+            listed=listed,
             peak=peak,
             on_request=on_request,
+            wanted_large=wanted_large,
             gauge=gauge,
+            group=group,
         )
         return Computed(function, quantity, unless)
 
     return made
+
+
+column = key_value
 
 
 Parts = Mapping[str, tuple[str, str]]
@@ -377,7 +351,7 @@ def for_each(
 
         def row(part: str, index: str, called: str) -> Row:
             texts = (id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called))
-            quantity = Quantity(*texts, after=after, group=group(part))
+            quantity = Quantity(*texts, commands=ITS_OWN, after=after, group=group(part))
             return Row(quantity, lambda one: function(one, part), unless)
 
         return ForEach(function, tuple(row(part, *words) for part, words in parts.items()))
@@ -401,8 +375,8 @@ def in_order(rows: Iterable[Row]) -> dict[str, Row]:
 def printed_by(rows: Iterable[Row], *commands: str) -> Iterator[Row]:
     """Yield the rows with these commands, too, among those that print them."""
     for row in rows:
-        every = tuple(dict.fromkeys((*row.quantity.commands, *commands)))
-        yield row._replace(quantity=row.quantity._replace(commands=every))
+        own = () if row.quantity.commands == ITS_OWN else row.quantity.commands
+        yield row._replace(quantity=row.quantity._replace(commands=tuple(dict.fromkeys((*own, *commands)))))
 
 
 _ENDS: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (

@@ -18,9 +18,9 @@ from kurbel.accuracy.inexact import data_errors, model_errors
 from kurbel.accuracy.timing import Patience
 from kurbel.cli import kurbel
 from kurbel.render import Look
-from kurbel.render.pictures.drawing import draw_file
+from kurbel.render.drawing import draw_file
 from kurbel.report import accuracy
-from kurbel.report.pictures.accuracy import accuracy_picture, dots
+from kurbel.report.accuracy_picture import accuracy_picture, dots
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from representative import few
 
@@ -187,13 +187,11 @@ def test_picture_needs_a_name_it_knows() -> None:
     assert "the name of a picture ends in .svg, .png or .pdf" in result.stderr
 
 
-def test_without_matplotlib_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_typst_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     import importlib.util
 
     real = importlib.util.find_spec
-    monkeypatch.setattr(
-        importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
-    )
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *more: None if name == "typst" else real(name, *more))
     result = run("-", "--plot", "picture.png")
     assert result.exit_code == 2
     assert "pip install 'kurbel[plot]'" in result.stderr
@@ -212,7 +210,7 @@ def test_plot_is_imported_only_for_a_picture() -> None:
     code = (
         "import sys\nfrom kurbel.cli import kurbel\n"
         "try:\n    kurbel.main(['accuracy', '-', '--quick'])\nexcept SystemExit as end:\n    assert not end.code\n"
-        "assert 'matplotlib' not in sys.modules"
+        "assert 'typst' not in sys.modules"
     )
     done = subprocess.run([sys.executable, "-c", code], input=MOTION.encode(), capture_output=True, check=False)
     assert done.returncode == 0, done.stderr.decode()

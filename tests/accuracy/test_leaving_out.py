@@ -11,6 +11,7 @@ from imported import modules_after
 from kurbel.accuracy.leaving_out import evaluated, savings
 from kurbel.accuracy.timing import Patience
 from kurbel.machine_file import loads
+from kurbel.quantity import Computed
 from kurbel.report.accuracy import everything
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
@@ -23,7 +24,7 @@ FULL = """
  masses: {piston: 200 kg}, friction: {crosshead: 0.05},
  flywheel: {inertia: 900 kg m2}, load: {slip: 0.1}}
 """
-NOT_OF_A_BARE_MACHINE = ("kurbel.accuracy", "scipy", "matplotlib", "rich")
+NOT_OF_A_BARE_MACHINE = ("kurbel.accuracy", "scipy", "typst", "rich")
 
 
 def test_nothing_is_imported_for_what_is_absent(tmp_path: Path) -> None:
@@ -37,7 +38,7 @@ def stages_of(thing: object) -> set[str]:
     return {
         name
         for name, value in vars(thing).items()
-        if isinstance(getattr(type(thing), name, None), cached_property)
+        if isinstance(getattr(type(thing), name, None), (cached_property, Computed))
         and (isinstance(value, np.ndarray) or value not in (None, (), {}, 0.0, False))
     }
 
@@ -47,7 +48,7 @@ def test_nothing_is_computed_for_what_is_absent() -> None:
     everything(case)
     forces = case.cylinders[0]
     assert stages_of(case) == {"cylinders"}
-    assert stages_of(forces) == set()  # no pieces, no samples, no extremes, no work
+    assert stages_of(forces) == {"motion"}  # no pieces, no samples, no extremes, no work
     assert stages_of(forces.drive) == {"omega"}
 
 
@@ -56,7 +57,7 @@ def test_only_what_the_command_needs_is_computed() -> None:
     everything(case)
     assert "flywheel" not in vars(case)
     assert "strength" not in vars(case)
-    assert {"pieces", "samples", "_extremes", "crosshead_work", "work"} <= stages_of(case.cylinders[0])
+    assert {"_cycle", "_extremes", "crosshead_work", "work"} <= stages_of(case.cylinders[0])
 
 
 def test_nothing_is_printed_for_what_is_absent() -> None:

@@ -21,8 +21,8 @@ from kurbel.cli.report import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
-from kurbel.report.pictures.source import TERMINAL, Wish
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
@@ -46,7 +46,7 @@ def test_the_waterworks_machine_is_whole_and_small() -> None:
     for id in ("input", "motion", "forces", "flywheel", "energy", "left-out"):
         assert f'<section id="{id}">' in page
         assert f'<a href="#{id}">' in page
-    drawn = list(pictures(case_of("punch"), ("all",), Wish(fineness=TERMINAL)))
+    drawn = list(pictures(case_of("punch"), ("all",), PictureOptions()))
     assert page_of("punch").count("<figure>") == len(drawn)
     for words in (
         "T_max",
@@ -212,7 +212,7 @@ def test_differences_are_in_percent(tmp_path: Path) -> None:
     page = run(str(one), str(other)).stdout
     assert f"A (A) is that of {one}; A (B) is that of {other}." in text_in(page)
     # the heading, and what a reader of screens is told
-    assert text_in(page).count("A (A). Kolbenweg") == text_in(page).count("A (B). Kolbenweg") == 2
+    assert text_in(page).count("A (A). Displacement") == text_in(page).count("A (B). Displacement") == 2
 
 
 @pytest.mark.parametrize(

@@ -265,7 +265,7 @@ def test_what_counts_no_degrees(tmp_path: Path, angles: Any, advice: str, keys: 
 def test_figures_beyond_all_numbers(tmp_path: Path) -> None:
     with pytest.raises(MachineFileError, match="line 2: the pressure is inf"):
         machine(tmp_path, "0,1\n100,1e300\n720,1\n", ", scale: 1e15")
-    with pytest.raises(MachineFileError, match="motored: has 0 samples only"):
+    with pytest.raises(MachineFileError, match="motored: has fewer than five samples within 3 deg of its peak"):
         machine(tmp_path, "0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}")
 
 

@@ -10,20 +10,19 @@ import pytest
 from drawn import drawn, named
 
 from kurbel.render import Look
-from kurbel.render.pictures.canvas import Canvas
-from kurbel.render.pictures.letters import letters
-from kurbel.render.pictures.scale import Scale
+from kurbel.render.braille import Canvas, braille
+from kurbel.render.picture import AxisScale
 from kurbel.render.text import plain, width
+from kurbel.report.picture import Picture
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
-from kurbel.report.pictures.picture import Picture
-from kurbel.report.pictures.source import TERMINAL, Wish
 from representative import few
 
 GOLDEN = Path(__file__).parent.parent / "golden"
 
 
 def text_of(picture: Picture, look: Look) -> str:
-    return "".join(plain(letters(picture, look)))
+    return "".join(plain(braille(picture, look)))
 
 
 @pytest.mark.parametrize(
@@ -40,33 +39,31 @@ def text_of(picture: Picture, look: Look) -> str:
 )
 def test_golden(name: str, id: str, look: Look, kept: Callable[[Path, str], str]) -> None:
     ascii_ = "-ascii" if look.encoding == "ascii" else ""
-    text = text_of(drawn(name, id, TERMINAL)[0], look)
+    text = text_of(drawn(name, id)[0], look)
     assert text == kept(GOLDEN / f"plot-{id}-{look.width}{ascii_}.txt", text)
 
 
-WIDTHS = [
-    (columns, encoding)
-    for columns in (20, 24, 31, 40, 60, 80, 120, 160)
-    for encoding in ("utf-8", "ascii", "cp1252", "cp850")
-]
+WIDTHS = [(columns, encoding) for columns in (20, 24, 31, 40, 60, 80, 120, 160) for encoding in ("utf-8", "ascii")]
 
 
-@pytest.mark.parametrize(("columns", "encoding"), few(WIDTHS, WIDTHS[::9]))
+@pytest.mark.parametrize(("columns", "encoding"), few(WIDTHS, WIDTHS[::5]))
 def test_pictures_fit_every_width(columns: int, encoding: str) -> None:
-    for id in ("forces", "effort", "mechanism", "effort-polar"):
-        text = text_of(drawn("waterworks", id, TERMINAL)[0], Look(width=columns, encoding=encoding))
+    for id in ("forces", "effort", "mechanism", "effort-polar", "motion"):
+        text = text_of(
+            drawn("crank-rocker" if id == "motion" else "waterworks", id)[0], Look(width=columns, encoding=encoding)
+        )
         longest = max(width(line) for line in text.splitlines() if " " not in line.strip() or "  " in line)
         assert longest <= max(columns, 24)
         assert "?" not in text.encode(encoding).decode(encoding)
+    assert columns < 40 or "_max" in text  # the figures of θ̈, a letter with a mark on it, take one place
 
 
 def test_a_pipe_has_eighty_columns() -> None:
-    text = text_of(drawn("waterworks", "forces", TERMINAL)[0], Look())
-    assert max(map(width, text.splitlines())) == 80
+    assert max(map(width, text_of(drawn("waterworks", "forces")[0], Look()).splitlines())) == 80
 
 
 def test_a_name_can_do_nothing_to_a_terminal() -> None:
-    (picture,) = pictures(named(), ("motion",), Wish(fineness=TERMINAL))
+    (picture,) = pictures(named(), ("motion",), PictureOptions())
     for encoding in ("utf-8", "ascii"):
         text = text_of(picture, Look(encoding=encoding))
         assert "\x1b" not in text
@@ -74,44 +71,41 @@ def test_a_name_can_do_nothing_to_a_terminal() -> None:
 
 
 def test_the_canvas_sets_the_dots_of_braille() -> None:
-    """Dots 1 2 3 7 down the left, 4 5 6 8 down the right, as Unicode numbers them."""
+    """Dots 1 2 3 7 down the left, 4 5 6 8 down the right, as Unicode numbers them; what is beyond is cut off."""
     canvas = Canvas(1, 1, braille=True)
     canvas.line(np.array([0.0, 0.0]), np.array([0.0, 3.0]), "curve0")
-    assert canvas.line_of(0)[0].text == chr(0x2800 + 0b01000111)
+    assert canvas.lines()[0][0].text == chr(0x2800 + 0b01000111)
     canvas.line(np.array([1.0, 1.0]), np.array([0.0, 3.0]), "curve0")
-    assert canvas.line_of(0)[0].text == "⣿"
-
-
-def test_what_lies_between_two_dots_goes_to_the_same_one_on_every_processor() -> None:
-    """Sines differ in their last digit by processor and library: the polar diagram had other dots on each."""
-    between = [np.nextafter(0.5, 0), 0.5, np.nextafter(0.5, 1)]
-    assert np.rint(Scale(0.0, 1.0, 0.0, 5.0).place(np.array(between))).tolist() == [2.0, 2.0, 2.0]
-
-
-def test_what_lies_beyond_the_canvas_is_cut_off() -> None:
+    assert canvas.lines()[0][0].text == "⣿"
     canvas = Canvas(4, 2, braille=True)
     canvas.line(np.array([-50.0, 50.0]), np.array([-50.0, 50.0]), "curve0")
-    assert [canvas.line_of(row)[0].text for row in range(2)] == ["⠑⢄", "  "]
+    assert list(plain(canvas.lines())) == ["⠑⢄\n", "  ⠑⢄\n"]
 
 
-def test_letters_tell_curves_apart_where_there_is_no_braille() -> None:
-    text = text_of(drawn("waterworks", "forces", TERMINAL)[0], Look(width=80, encoding="ascii"))
+def test_what_is_between_two_dots_goes_to_the_same_one_on_every_processor() -> None:
+    """Sines differ in their last digit by processor and library: the polar diagram had other dots on each."""
+    between = [np.nextafter(0.5, 0), 0.5, np.nextafter(0.5, 1)]
+    assert np.rint(AxisScale(0.0, 1.0, 0.0, 5.0).place(np.array(between))).tolist() == [2.0, 2.0, 2.0]
+
+
+def test_letters_distinguish_curves_where_there_is_no_braille() -> None:
+    text = text_of(drawn("waterworks", "forces")[0], Look(width=80, encoding="ascii"))
     assert all(letter in text for letter in "*+ox")
     assert text.isascii()
 
 
-def test_many_lobes_bear_numbers_within_them_and_few_their_work() -> None:
-    crowded = text_of(drawn("radial-three", "effort", TERMINAL)[0], Look(width=80)).split("E in")[0]
+def test_many_lobes_have_numbers_within_them_and_few_their_work() -> None:
+    crowded = text_of(drawn("radial-three", "effort")[0], Look(width=80)).split("E in")[0]
     assert "A_4" in crowded
     assert "A_4 88.44 J" not in crowded
-    few = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=80))
-    assert "A_2 −18.39 kJ" in few
-    assert all(f"A_{number}" in few for number in (1, 2, 3, 4))
+    few_ = text_of(drawn("waterworks", "effort")[0], Look(width=80))
+    assert "A_2 −18.39 kJ" in few_
+    assert all(f"A_{number}" in few_ for number in (1, 2, 3, 4))
 
 
-def test_axes_tell_what_runs_along_them_in_which_unit() -> None:
-    text = text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72))
-    assert "T in kN" in text
-    assert "φ in °" in text
-    assert "−28.06 kN" in text
-    assert "-28.06 kN" in text_of(drawn("waterworks", "effort", TERMINAL)[0], Look(width=72, encoding="ascii"))
+def test_axes_and_figures_have_units() -> None:
+    picture = drawn("waterworks", "effort")[0]
+    text = text_of(picture, Look(width=72))
+    assert all(words in text for words in ("T in kN", "φ in °", "−28.06 kN"))
+    assert "-28.06 kN" in text_of(picture, Look(width=72, encoding="ascii"))
+    assert "T_max 87,70 kN, 67,3°" in text_of(picture, Look(width=100, comma=True))

@@ -471,9 +471,10 @@ def test_the_work_of_very_many_points_is_the_area_under_them() -> None:
     ("name", "angles"), [("marine-diesel", [0, 60, 120, 180, 240, 660]), ("radial-three", [0, 720])]
 )
 def test_the_inertia_of_equal_cylinders_that_cancels_is_zero(name: str, angles: list[int]) -> None:
-    """Six and three cranks at equal distances: by symmetry nothing is left in the dead centre of any of them."""
+    """Six and three cranks at equal distances: by symmetry only rounding is left in the dead centre of any of them."""
     case = Case(load(CONFIGS / f"{name}.yaml"))
-    assert not np.abs(case.flywheel.at(np.array(angles, float)).T_inertia).any()
+    left = case.flywheel.at(np.array(angles, float)).T_inertia
+    assert np.abs(left).max() < 1e-15 * case.cylinders[0].P_inertia_max.value
 
 
 def test_excess_work_that_comes_back_is_zero_each_time() -> None:

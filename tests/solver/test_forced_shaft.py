@@ -21,7 +21,7 @@ from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.numerics.waves import crests
 from kurbel.solver.case import Case
 from kurbel.solver.chain import Chain, ChainEquation, Modes, passing, response
-from kurbel.solver.effort import Diagram
+from kurbel.solver.effort import corners, torque_on
 from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.torsion import Excitation, ShaftVibration, Vibration
 
@@ -98,7 +98,7 @@ def test_the_coupling_of_the_flywheel_order_by_order(load: Load | None, order: f
     """Linear loads, an effort that jumps: what `flywheel` finds over the angle has the orders of `torsion`."""
     case = Case(machine_of(load, order=order))
     orders = case.torsion.orders
-    pieces = case.torsion.steady.pieces
+    pieces, _ = case.torsion.steady
     passed = case.flywheel.at(pieces.degrees.ravel()).M_coupling.reshape(1, *pieces.degrees.shape)
     (over_the_angle,) = orders_over_the_angle(pieces, passed, orders)
     in_orders = case.torsion.vibration.torques[0, 0]
@@ -192,13 +192,13 @@ def test_longer_chains_over_the_angle_have_the_same_orders(ground: str) -> None:
     """Collocation in 2n − 1 or 2n unknowns, driven at two masses by torques that jump."""
     chain, omega = damped(3, ground, 11, loss=0.0), 30.0
     efforts = [
-        Diagram(Effort(*(tuple(map(float, one)) for one in zip(*points))), 360.0, 1)
+        Effort(*(tuple(map(float, one)) for one in zip(*points)))
         for points in (POINTS, [(0, 50), (100, 50), (100, 300), (360, 300)])
     ]
-    breaks = Angles(*(np.concatenate(one) for one in zip(*(effort.breaks for effort in efforts))))
-    pieces = Pieces.between(breaks, 1, 360.0)
+    breaks = np.concatenate([corners(one, 360.0) for one in efforts])
+    pieces = Pieces.between(Angles(np.zeros(len(breaks), dtype=int), breaks), 1, 360.0)
     torques = np.zeros((3, *pieces.degrees.shape))
-    torques[0], torques[2] = (one.at(pieces.degrees, pieces.middle, pieces.machine) for one in efforts)
+    torques[0], torques[2] = (torque_on(one, pieces) for one in efforts)
     torques -= pieces.mean(torques)[:, None]
 
     orders = np.arange(1.0, 13.0)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from kurbel import Case, loads
-from kurbel.solver import pins
-from kurbel.solver.rod import ExactRod
-from kurbel.solver.state import State
+from kurbel.solver import newton
+from kurbel.solver.drive import ExactRod
+from kurbel.solver.state import State, reduced_inertia
 from random_cylinders import cylinders
 
 ENGINE = """
@@ -37,33 +36,44 @@ def test_sound_forces_of_random_cylinders_leave_nothing_open() -> None:
         assert forces.residual is None or forces.residual <= 1e-12
 
 
-def scaled(of: Callable[..., Any], by: float) -> Callable[..., Any]:
-    return lambda *given: of(*given) * by
-
-
 def wrong_side(state: State) -> Any:
     sin_psi, cos_psi = state.rod_angle
     return cos_psi - sin_psi * (state.guide_side * state.direction * state.drive.crosshead_friction)
 
 
-def wrong_weight(rod: ExactRod, rod_angle: Any, angle: Any) -> Any:
-    assert rod.weight is not None
-    return -rod.side_force(rod_angle, angle) * angle.cos - (angle.sin * rod.weight[0] - angle.cos * rod.weight[1])
+def wrong_weight(state: State) -> Any:
+    along, across = state.drive.weight_of(exact(state).pin_mass) or (0.0, 0.0)
+    couple = -state.rod_couple / (state.rod_angle[1] * state.mechanism.rod_length) * state.angle.cos
+    return couple - (state.angle.sin * along - state.angle.cos * across)
 
 
-def more_pull(rod: ExactRod, rod_angle: Any, angle: Any, tangential: Any, radial: Any) -> Any:
-    sin_psi, cos_psi = rod_angle
+def more_pull(state: State) -> Any:
+    (sin_psi, cos_psi), angle = state.rod_angle, state.angle
     sin, cos = angle.sin * cos_psi + angle.cos * sin_psi, angle.cos * cos_psi - angle.sin * sin_psi
-    return tangential * sin + (radial - 1e-3 * rod.pull) * cos
+    return state.T * sin + (state.D - 1e-3 * state.drive.centrifugal(exact(state).pin_mass)) * cos
 
 
+def less_inertia(state: State) -> Any:
+    return reduced_inertia(state) - 1e-3 * state.rod_slope**2 * exact(state).excess_inertia
+
+
+def exact(state: State) -> ExactRod:
+    assert state.drive.rod is not None
+    return state.drive.rod
+
+
+COUPLE = State.rod_couple.func  # type: ignore[attr-defined]
 FAULTS: dict[str, tuple[Any, str, Any]] = {
     "side of the guide friction in N": (State, "below", property(wrong_side)),
-    "weight of the rod's part at the pin in T": (ExactRod, "tangential", wrong_weight),
-    "turning of the rod on the pin": (pins.Rubbing, "crank_pin", property(lambda one: one.at_crank * (1 - one.slope))),
-    "couple of the rod": (ExactRod, "couple", scaled(ExactRod.couple, 1 + 1e-6)),
-    "radial pull in S at the crank pin": (ExactRod, "at_crank", more_pull),
-    "reduced inertia of the rod": (ExactRod, "reduced_inertia", scaled(ExactRod.reduced_inertia, 0.999)),
+    "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),
+    "turning of the rod on the pin": (
+        State,
+        "crank_pin_loss",
+        property(lambda state: state.rubbing.at_crank * (1 - state.rod_slope)),
+    ),
+    "couple of the rod": (State, "rod_couple", property(lambda state: COUPLE(state) * (1 + 1e-6))),
+    "radial pull in S at the crank pin": (State, "S_crank", property(more_pull)),
+    "reduced inertia of the rod": (newton, "reduced_inertia", less_inertia),
 }
 
 

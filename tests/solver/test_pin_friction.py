@@ -14,7 +14,7 @@ from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.pins import on_crosshead_pin, on_pin
+from kurbel.solver.state import on_crosshead_pin, on_pin
 from representative import few
 
 ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")

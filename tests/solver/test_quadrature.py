@@ -58,7 +58,11 @@ def precise_integral(function: Function, breaks: np.ndarray) -> float:
 
 
 def friction_power(forces: CylinderForces) -> Function:
-    return lambda degrees: np.asarray(forces.at(degrees).crosshead_power)
+    def power(degrees: np.ndarray) -> np.ndarray:
+        state = forces.at(degrees)
+        return np.asarray(state.crosshead_drag * (state.slope * state.direction))
+
+    return power
 
 
 def edges_of(forces: CylinderForces) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from kurbel.accuracy.timing import Patience, timed
 from kurbel.machine import Machine
+from kurbel.quantity import Computed
 from kurbel.solver.case import Case
 
 
@@ -65,5 +66,5 @@ def evaluated(thing: Any, seen: set[int] | None = None) -> int:
         return sum(evaluated(one, seen) for one in thing)
     if not type(thing).__module__.startswith("kurbel.solver") or not hasattr(thing, "__dict__"):
         return 0
-    cached = [name for name in vars(thing) if isinstance(getattr(type(thing), name, None), cached_property)]
+    cached = [name for name in vars(thing) if isinstance(getattr(type(thing), name, None), (cached_property, Computed))]
     return len(cached) + sum(evaluated(value, seen) for value in vars(thing).values())

@@ -139,10 +139,8 @@ class _Kurbel(click.Group):
             status = INTERRUPTED
         except SystemExit:  # click's answer to a reader of its help that leaves early
             status = DONE
-        except MachineFileError as error:
-            status = _failed(_pretty(error), error.exit_status)
         except KurbelError as error:
-            status = _failed(f"Error: {error}", error.exit_status)
+            status = _failed(message_of(error), error.exit_status)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
             beyond = f"these numbers lead beyond what can be computed with ({error})"
             status = _failed(f"Error: {beyond}; check the sizes of what the file gives", KurbelError.exit_status)
@@ -187,8 +185,10 @@ def _shown(error: click.ClickException) -> str:
     return text.getvalue()
 
 
-def _pretty(error: MachineFileError) -> str:
-    """Return the faults of a machine file, their source lines cut to what fits a terminal."""
+def message_of(error: KurbelError) -> str:
+    """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
+    if not isinstance(error, MachineFileError):
+        return f"Error: {error}"
     from shutil import get_terminal_size
 
     from kurbel.render.text import width

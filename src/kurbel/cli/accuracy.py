@@ -32,7 +32,7 @@ def accuracy(
         raise click.UsageError("--set sets a value over that of FILE; give the FILE.")
     if extremes:
         return _extremes(file, picture, output)
-    from kurbel.render.pictures.drawing import check_file, draw_file
+    from kurbel.render.drawing import check_file, draw_file
 
     if picture is not None:
         check_file(picture, "--plot")
@@ -43,7 +43,7 @@ def accuracy(
     report = accuracy_report(machine, quick, loads, _uncertain(machine))
     output.write(report)
     if picture is not None:
-        from kurbel.report.pictures.accuracy import accuracy_picture
+        from kurbel.report.accuracy_picture import accuracy_picture
 
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0

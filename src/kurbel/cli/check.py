@@ -1,21 +1,42 @@
-"""`kurbel check`: reads a machine, says what will be computed, and holds it against its limits."""
+"""`kurbel check`: reads machines, says what will be computed, and holds each against its limits."""
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from kurbel.cli import BROKEN, DONE
-from kurbel.cli.output_options import format_of, loaded, machine_file, output_option, width_option
+from kurbel.cli import BROKEN, DONE, message_of, to_stderr
+from kurbel.cli.output_options import format_of, loaded, output_option, set_option, width_option
 from kurbel.errors import KurbelError
 from kurbel.render import Look
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
+    from kurbel.report.check import Checked
+
+_GRAVEST = 2, 3, BROKEN, DONE
+"""Exit statuses, of which the first is the answer to several files."""
+
+
+class _Outcome(NamedTuple):
+    """What is found of a file: a machine with its checks, or why it cannot be read."""
+
+    file: str
+    machine: "Machine | None" = None
+    checked: "Checked | None" = None
+    error: KurbelError | None = None
+
+    @property
+    def status(self) -> int:
+        """The exit status that a run of this file alone ends with."""
+        errors = [self.error] if self.error else self.checked.errors if self.checked else []
+        broken = self.checked and self.checked.broken
+        return min((error.exit_status for error in errors), default=BROKEN if broken else DONE)
 
 
 @click.command()
-@machine_file
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@set_option
 @click.option(
     "--format",
     "-f",
@@ -25,62 +46,84 @@ if TYPE_CHECKING:
 )
 @output_option
 @width_option
-def check(file: str, overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None) -> int:
-    """Read the machine in FILE and say what will be computed, what is left out and why.
+def check(
+    files: tuple[str, ...], overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None
+) -> int:
+    """Read the machine in each FILE and say what will be computed, what is left out and why.
 
     Where the file gives 'limits', hold the key values to them; where it gives 'expect', compare them with the figures
-    there. As json every fault, limit, figure and warning has file, line, column, key, message and severity.
+    there. As json every fault, limit, figure and warning has file, line, column, key, message and severity. Of several
+    files all are checked; the exit status is the gravest one.
     """
+    from kurbel.render.output import refuse_overwriting, stdout_look, write_out
+
+    written = format_of(format, file_name)
+    if written not in ("table", "json"):
+        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
+    refuse_overwriting(file_name, files)
+    outcomes = [_outcome(file, overrides, file_name) for file in files]
+    look = Look(width=width) if file_name else stdout_look(Look(width=width))
+    if written == "json":
+        write_out(_as_json(outcomes, look), file_name)
+    else:
+        write_out(_as_text(outcomes, look), file_name)
+        for error in filter(None, map(_error, outcomes)):
+            if len(files) == 1:
+                raise error
+            to_stderr(message_of(error))
+    return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
+
+
+def _outcome(file: str, overrides: tuple[str, ...], file_name: str | None) -> _Outcome:
+    """Read and check one machine; raises UsageError where the output would overwrite a trace that it names."""
+    from kurbel.designs.uncertainty import given_uncertainty
+    from kurbel.render.output import refuse_overwriting
     from kurbel.report.check import checked
     from kurbel.solver.case import Case
 
-    written = format_of(format, file_name)
-    if written == "json":
-        return _as_json(file, overrides, file_name)
-    if written != "table":
-        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
-    from kurbel.render.output import stdout_look, write_out
+    try:
+        machine = loaded(file, overrides)
+        if machine.uncertainty:  # is judged by what is in the file
+            given_uncertainty(machine)
+    except KurbelError as error:
+        return _Outcome(file, error=error)
+    refuse_overwriting(file_name, machine.trace_files)
+    return _Outcome(file, machine, checked(Case(machine)))
+
+
+def _error(outcome: _Outcome) -> KurbelError | None:
+    """Return why a file cannot be read, or all errors of its machine as one of the gravest kind."""
+    if not outcome.checked or not outcome.checked.errors:
+        return outcome.error
+    gravest = min(outcome.checked.errors, key=lambda error: error.exit_status)
+    return type(gravest)("\n".join(map(str, outcome.checked.errors)))
+
+
+def _as_text(outcomes: list[_Outcome], look: Look) -> Iterator[str]:
+    """Yield the listing of every machine that could be read; of several each after the name of its file."""
     from kurbel.render.page import listing
 
-    result = checked(Case(_loaded(file, overrides, file_name)))
-    look = Look() if file_name else stdout_look()
-    look = replace(look, width=width or look.width)
-    sections = [(one.title, [(entry.what, entry.text) for entry in one.entries]) for one in result.told_once]
-    write_out((listing(result.title, sections, look),), file_name)
-    if result.errors:  # all of them, as one of the gravest kind
-        gravest = min(result.errors, key=lambda error: error.exit_status)
-        raise type(gravest)("\n".join(map(str, result.errors)))
-    return BROKEN if result.broken else DONE
+    for number, outcome in enumerate(outcomes):
+        if outcome.checked:
+            sections = [
+                (one.title, [(entry.what, entry.text) for entry in one.entries]) for one in outcome.checked.told_once
+            ]
+            several = f"{outcome.file}: " if len(outcomes) > 1 else ""
+            yield "\n" * (number > 0) + listing(several + outcome.checked.title, sections, look)
 
 
-def _loaded(file: str, overrides: tuple[str, ...], file_name: str | None = None) -> "Machine":
-    """Read the machine, whose uncertainties are told of what stands in the file."""
-    machine = loaded(file, overrides, file_name)
-    if machine.uncertainty:
-        from kurbel.designs.uncertainty import given_uncertainty
-
-        given_uncertainty(machine)
-    return machine
-
-
-def _as_json(file: str, overrides: tuple[str, ...], file_name: str | None) -> int:
-    """Write all findings, those of a file that cannot be read, too, and return the status."""
+def _as_json(outcomes: list[_Outcome], look: Look) -> Iterator[str]:
+    """Return all findings, those of files that cannot be read, too."""
     from kurbel.machine_file.positions import located
     from kurbel.render.data import findings_json
-    from kurbel.render.output import refuse_overwriting, stdout_look, write_out
-    from kurbel.report.check import checked, faults_found, findings
-    from kurbel.solver.case import Case
+    from kurbel.report.check import faults_found, findings
 
-    refuse_overwriting(file_name, (file,))
-    try:
-        machine = _loaded(file, overrides)
-    except KurbelError as error:
-        found, status = faults_found(file, error), error.exit_status
-    else:
-        refuse_overwriting(file_name, machine.trace_files)
-        result = checked(Case(machine))
-        found = findings(machine, result, located)
-        status = min((error.exit_status for error in result.errors), default=BROKEN if result.broken else DONE)
-    listed = [one._asdict() for one in found.findings]
-    write_out(findings_json(found.machine, found.provenance, listed, Look() if file_name else stdout_look()), file_name)
-    return status
+    found = [
+        findings(one.machine, one.checked, located)
+        if one.machine and one.checked
+        else faults_found(one.file, one.error or KurbelError())
+        for one in outcomes
+    ]
+    listed = [finding._asdict() for one in found for finding in one.findings]
+    name, made_from = (found[0].machine, found[0].provenance) if len(found) == 1 else (None, None)
+    return findings_json(name, made_from, listed, look)

@@ -278,12 +278,12 @@ class Asked:
             raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
         if not self.over and self.where is None:
             return None
-        from kurbel.report.rows import Place, over_stroke
+        from kurbel.report.rows import over_stroke, rows_where
 
         if self.where is None:
             return over_stroke(self.step, end)
         # where a force has a value there is a motion to tell, too
-        return Place.parsed(self.where, "forces" if command == "motion" else command, end).angles
+        return rows_where(self.where, "forces" if command == "motion" else command, end)
 
     def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
         """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""

@@ -10,7 +10,7 @@ from kurbel.cli.readings import numbers
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.report.pictures import Declared
+    from kurbel.report.pictures import PictureKind
 
 
 @click.command()
@@ -45,11 +45,11 @@ def plot(
 
     Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
-    and pdf need matplotlib. FILE may be - for standard input.
+    and pdf need typst. FILE may be - for standard input.
     """
-    from kurbel.render.pictures.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
-    from kurbel.report.pictures.source import FILE, TERMINAL, Wish
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
@@ -63,19 +63,19 @@ def plot(
     if to_file:
         check_file(file_name or "")
     case = Case(loaded(file, overrides, file_name))
-    wish = Wish(units or "metric", FILE if to_file else TERMINAL, cylinder, angles)
+    options = PictureOptions(units or "metric", cylinder, angles)
     if listed:
-        _write_list(pictures_of(case, wish))
+        _write_list(pictures_of(case, options))
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, wish)
+    drawn = pictures(case, names, options)
     if to_file:
         draw_file(list(drawn), look, file_name or "")
     else:
         draw_stdout(drawn, look)
 
 
-def _write_list(declared: "tuple[Declared, ...]") -> None:
+def _write_list(declared: "tuple[PictureKind, ...]") -> None:
     from kurbel.render.page import write_entries
 
     write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])

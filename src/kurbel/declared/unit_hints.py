@@ -3,7 +3,7 @@
 import re
 
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.units import kind_name, kinds, unit_names
+from kurbel.declared.units import ZEROED_UNITS, kind_name, kinds, unit_names
 
 _SPOKEN = (
     (r"''|[\"″”]", "in"),
@@ -23,7 +23,7 @@ def unit_hint(name: str, kind: str) -> str:
         return "; it is height over pressure: a spring of 60 lb per inch is '1/60 in/psi'"
     if number := NUMBER.match(name):
         return f"; write the unit alone, without {number.group()}"
-    if name in ("barg", "bara", "atu", "atü", "ata", "psig", "psia"):
+    if name in (*ZEROED_UNITS, "atu"):
         return "; whether a pressure is gauge or absolute is said by the key 'pressures'"
     if name in ("ton", "tons", "tonf"):
         f = name.removeprefix("ton").removeprefix("s")

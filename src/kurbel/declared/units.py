@@ -167,6 +167,13 @@ _BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
 """Kind -> its units. `gd2` counts in kg m2 of GD2 = 4J: a weight of 1 kgf is that of 1 kg."""
 
 
+ZEROED_UNITS = {
+    **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
+    **{"ata": ("absolute", "at"), "atü": ("gauge", "at")},
+}
+"""Pressure units that name what they count from, and the unit without; machine files have them (`zeroed_units`)."""
+
+
 @cache
 def _units_of(kind: str) -> dict[str, Factor]:
     return _BUILDERS[kind]()
@@ -333,4 +340,4 @@ def kinds() -> tuple[str, ...]:
 
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
-    return tuple(_units_of(kind))
+    return (*_units_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))

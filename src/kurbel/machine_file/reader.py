@@ -12,6 +12,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import parse
+from kurbel.machine_file.zeroed_units import without_zeros
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 
@@ -80,7 +81,7 @@ def set_over(tree: Any, origin: Origin) -> "list[Override]":
 def _machine(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            return ROOT.read(reading, {"name": stem, **tree}, ())
+            return ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
         if isinstance(tree, Plain) and not tree:
             return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")

@@ -105,10 +105,11 @@ _ROUNDING = 16 * 2.0**-52
 """Relative to the sum of the sizes of terms: a smaller sum of them is rounding."""
 
 
-def unless_cancelled(whole: Any, sizes: Any) -> Any:
+def unless_cancelled(whole: Any, sizes: Any, rounding: float = _ROUNDING) -> Any:
     """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
 
-    sizes: the sum of the sizes of the terms; of complex terms either part may cancel by itself.
+    sizes: the sum of the sizes of the terms; of complex terms either part may cancel by itself. rounding: relative to
+    that, what may be left.
 
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
@@ -116,5 +117,5 @@ def unless_cancelled(whole: Any, sizes: Any) -> Any:
     import numpy as np
 
     if np.iscomplexobj(whole):
-        return unless_cancelled(whole.real, sizes) + 1j * unless_cancelled(whole.imag, sizes)
-    return np.where(np.abs(whole) > _ROUNDING * sizes, whole, 0.0)
+        return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
+    return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from kurbel.arrays import Array, Flags
-from kurbel.numerics.lobatto import chebyshev, integral_of_series, rule, series_at
+from kurbel.numerics.lobatto import chebyshev, integral_of_series, rule
 from kurbel.numerics.pieces import TAIL, Pieces, joined
 
 _NARROWEST = 1e-10
@@ -79,7 +79,8 @@ class Radau:
     """Radau nodes in (−1, 1], as many as the pieces have Lobatto nodes, and the matrices of a start and these nodes.
 
     area (k, k): values into integrals from −1 to every node; series (k + 1, k + 1): start and values into Chebyshev
-    coefficients; from_lobatto (k, k): samples into values at the nodes; to_lobatto (k, k + 1): start and values back.
+    coefficients; halving (2k + 2, k + 1): start and values into those of both halves; from_lobatto (k, k): samples into
+    values at the nodes; to_lobatto (k, k + 1): start and values back.
     """
 
     def __init__(self, count: int) -> None:
@@ -90,8 +91,9 @@ class Radau:
         self.nodes = np.append(np.linalg.eigvalsh(np.diag(last) + np.diag(off, 1) + np.diag(off, -1))[:-1], 1.0)
         at_nodes = chebyshev(self.nodes, count + 1)
         self.area = at_nodes @ integral_of_series(count) @ np.linalg.inv(at_nodes[:, :count])
-        self.places = np.append(-1.0, self.nodes)
-        self.series = np.linalg.inv(chebyshev(self.places, count + 1))
+        places = np.append(-1.0, self.nodes)
+        self.series = np.linalg.inv(chebyshev(places, count + 1))
+        self.halving = chebyshev(np.concatenate((places - 1, places + 1)) / 2, count + 1) @ self.series
         self.from_lobatto = at_nodes[:, :count] @ rule(count).series
         self.to_lobatto = chebyshev(rule(count).nodes, count + 1) @ self.series
 
@@ -233,9 +235,8 @@ def _rough(system: _System, y: Array) -> Flags:
 
 def _halved(system: _System, found: _Solution, rough: Flags) -> _Solution:
     """Halve the rough pieces; y on the halves comes from the polynomials, and stays above its bound."""
-    halves, series = found.pieces.halved(rough), np.moveaxis(system.rule.series @ found.y[..., rough], 1, 0)
-    places = np.tile((-0.5, 0.5), int(rough.sum())) + system.rule.places[:, None] / 2
-    y = series_at(np.repeat(series, 2, axis=-1)[:, :, None], np.broadcast_to(places, (len(found.y), *places.shape)))
+    halves, (m, nodes, _) = found.pieces.halved(rough), found.y.shape
+    y = (system.rule.halving @ found.y[..., rough]).reshape(m, 2, nodes, -1).transpose(0, 2, 3, 1).reshape(m, nodes, -1)
     bounded = y[system.equation.bounded, 1:]
     np.maximum(bounded, -0.99 * _System(system.equation, halves, system.eased).height, out=bounded)
     return _joined([_Solution(found.pieces.taken(~rough), found.y[..., ~rough]), _Solution(halves, y)])

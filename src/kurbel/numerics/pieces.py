@@ -244,7 +244,8 @@ class Pieces:
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        row = self.holding(machine, degrees if within is None else within)
+        side = 0.0 if within is None else np.clip(within - degrees, -_SAME, _SAME)
+        row = self.holding(machine, degrees + side)
         from_low = degrees - self.right_angle[row] - self.offset[row]
         from_low = from_low - self.cycle * np.rint((from_low - self.half[row]) / self.cycle)
         return series_at((self.rule.series @ values)[:, row], np.clip(from_low / self.half[row] - 1, -1, 1))

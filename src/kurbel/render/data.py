@@ -2,11 +2,11 @@
 
 import csv
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from io import StringIO
 from itertools import chain, repeat
-from typing import Any, NamedTuple
+from typing import Any
 
 from kurbel import __version__
 from kurbel.errors import UsageError
@@ -50,16 +50,9 @@ def csv_cell(value: Any, look: Look) -> Any:
         return f"'{text}" if text.startswith(_FORMULA) else text
     if isinstance(value, tuple):
         return " ".join(str(csv_cell(one, look)) for one in value)
-    if value is None:
-        return ""
-    return decimal(repr(rounded(value, look.digits)), True) if look.comma else rounded(value, look.digits)
-
-
-class _Block(NamedTuple):
-    """Rows of one part: head -> cells; a head that it lacks is empty there."""
-
-    part: Part
-    columns: Mapping[str, Iterable[Any]]
+    if value is None or not look.comma:
+        return rounded(value, look.digits)
+    return decimal(repr(rounded(value, look.digits)), True)
 
 
 def csv_text(report: Report, look: Look) -> Iterator[str]:
@@ -71,78 +64,42 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     """
     parts = report.all_parts
     if any(part.columns for part in parts):
-        heads, blocks = _angle_rows(report, look)
-        named = report.group == "ratios" or len(blocks) + sum(bool(part.nowhere) for part in report.parts) > 1
-    elif any(part.place_tables for part in parts):
-        heads, blocks = _place_rows(report, look)
-        named = report.group == "scenes" or any(one.part is not blocks[0].part for one in blocks)
+        blocks = [(part, {_head(one): _cells(one, look) for one in part.columns}) for part in parts if part.columns]
+        heads = _merged(list(columns) for _, columns in blocks)
+        named = len(blocks) + sum(bool(part.nowhere) for part in report.parts)
+    elif tables := [(part, table) for part in parts for table in part.place_tables]:
+        blocks = [(part, _place_cells(table, look)) for part, table in tables]
+        names = dict.fromkeys(name for _, table in tables for name in table.heads)
+        heads = ["table", *names, *dict.fromkeys(_head(one) for _, table in tables for one in table.columns)]
+        named = len({id(part) for part, _ in tables})
     else:
-        heads = ["key_value", "unit", "value", "at_deg"]
-        blocks = [_Block(part, _key_value_rows(part, look)) for part in parts]
-        named = len(parts) > 1
-
-    def rows() -> Iterator[tuple[Any, ...]]:
-        yield (_FIRST.get(report.group, "cylinder"), *heads) if named else tuple(heads)
-        for part, columns in blocks:
-            name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
-            first = (csv_cell(name, replace(look, digits=None)),) if named else ()
-            for row in zip(*(columns.get(head, repeat("")) for head in heads)):
-                yield (*first, *row)
-
-    return csv_lines(rows(), look)
+        blocks = [(part, _key_value_cells(part, look)) for part in parts]
+        heads, named = ["key_value", "unit", "value", "at_deg"], len(parts)
+    first = [_FIRST.get(report.group, "cylinder")] if named > 1 or report.group in ("ratios", "scenes") else []
+    rows = (
+        row
+        for part, columns in blocks
+        for row in zip(*(repeat(_name(part, look)) for _ in first), *(columns.get(head, repeat("")) for head in heads))
+    )
+    return csv_lines(chain([[*first, *heads]], rows), look)
 
 
-def _angle_rows(report: Report, look: Look) -> tuple[list[str], list[_Block]]:
-    """Return the heads of all parts, each new one before the known one that follows it in its part, and the blocks."""
-    blocks = []
-    heads: list[str] = []
-    for part in report.all_parts:
-        if part.columns:
-            columns = {_head(column): _cells(column, look) for column in part.columns}
-            blocks.append(_Block(part, columns))
-            place = len(heads)
-            for head in reversed(columns):
-                if head in heads:
-                    place = heads.index(head)
-                else:
-                    heads.insert(place, head)
-    return heads, blocks
+def _merged(orders: Iterable[list[str]]) -> list[str]:
+    """Return all names once, each new one before the known one that follows it in its own list."""
+    merged: list[str] = []
+    for order in orders:
+        place = len(merged)
+        for name in reversed(order):
+            if name in merged:
+                place = merged.index(name)
+            else:
+                merged.insert(place, name)
+    return merged
 
 
-def _place_rows(report: Report, look: Look) -> tuple[list[str], list[_Block]]:
-    blocks = []
-    names: dict[str, None] = {}
-    quantities: dict[str, None] = {}
-    for part in report.all_parts:
-        for table in part.place_tables:
-            columns: dict[str, Iterable[Any]] = {_head(column): _cells(column, look) for column in table.columns}
-            quantities |= dict.fromkeys(columns)
-            names |= dict.fromkeys(table.heads)
-            columns |= {
-                head: [csv_cell(one, look) for one in found] for head, found in zip(table.heads, zip(*table.names))
-            }
-            blocks.append(_Block(part, columns | {"table": repeat(table.id, len(table.names))}))
-    return ["table", *names, *quantities], blocks
-
-
-def _key_value_rows(part: Part, look: Look) -> dict[str, list[Any]]:
-    pairs = [
-        (one, value)
-        for one in part.key_values
-        for value in (one.value if isinstance(one.value, tuple) else (one.value,))
-    ]
-    return {
-        "key_value": [one.id for one, _ in pairs],
-        "unit": [one.unit for one, _ in pairs],
-        "value": [csv_cell(value, look) for _, value in pairs],
-        "at_deg": [csv_cell(one.at_deg, replace(look, digits=None)) for one, _ in pairs],
-    }
-
-
-def _head(column: Column) -> str:
-    """Return id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
-    unit = column.unit.replace(" abs", "_abs").replace(" ", "")
-    return f"{column.id}_{unit}" if unit else column.id
+def _name(part: Part, look: Look) -> Any:
+    name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
+    return csv_cell(name, replace(look, digits=None))
 
 
 def _cells(column: Column, look: Look) -> Iterator[Any]:
@@ -150,7 +107,35 @@ def _cells(column: Column, look: Look) -> Iterator[Any]:
     if column.id != "phi":
         return (csv_cell(value, look) for value in column.values)
     in_full = replace(look, digits=None)
-    return (csv_cell(value if value is None else whole_if_integral(value), in_full) for value in column.values)
+    return (csv_cell(whole_if_integral(value), in_full) for value in column.values)
+
+
+def _place_cells(table: PlaceTable, look: Look) -> dict[str, Iterator[Any]]:
+    cells = {_head(column): _cells(column, look) for column in table.columns}
+    for head, names in zip(table.heads, zip(*table.names)):
+        cells[head] = (csv_cell(name, look) for name in names)
+    return cells | {"table": repeat(table.id, len(table.names))}
+
+
+def _key_value_cells(part: Part, look: Look) -> dict[str, Iterator[Any]]:
+    pairs = [(one, value) for one in part.key_values for value in _values(one)]
+    in_full = replace(look, digits=None)
+    return {
+        "key_value": (one.id for one, _ in pairs),
+        "unit": (one.unit for one, _ in pairs),
+        "value": (csv_cell(value, look) for _, value in pairs),
+        "at_deg": (csv_cell(one.at_deg, in_full) for one, _ in pairs),
+    }
+
+
+def _values(one: KeyValue) -> tuple[Value, ...]:
+    return one.value if isinstance(one.value, tuple) else (one.value,)
+
+
+def _head(column: Column) -> str:
+    """Return id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
+    unit = column.unit.replace(" abs", "_abs").replace(" ", "")
+    return f"{column.id}_{unit}" if unit else column.id
 
 
 # JSON
@@ -214,13 +199,10 @@ def _place_table(table: PlaceTable) -> dict[str, Any]:
 
 
 def _key_value(one: KeyValue, look: Look) -> dict[str, Any]:
-    value = [_value(each, look) for each in one.value] if isinstance(one.value, tuple) else _value(one.value, look)
+    values = [rounded(value, look.digits) for value in _values(one)]
+    value = values if isinstance(one.value, tuple) else values[0]
     content = {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value}
     return content if one.at_deg is None else content | {"at_deg": rounded(one.at_deg, None)}
-
-
-def _value(value: Value, look: Look) -> Value:
-    return None if value is None else rounded(value, look.digits)
 
 
 def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
@@ -251,10 +233,7 @@ def _column_pieces(column: Column, look: Look) -> Iterator[str]:
     yield head[:-1] + ', "values": ['
     for start in range(0, len(column.values), _AT_ONCE):
         values = column.values[start : start + _AT_ONCE]
-        if column.id == "phi":
-            shown = [value if value is None else whole_if_integral(value) for value in values]
-        else:
-            shown = [_value(value, look) for value in values]
+        shown = [whole_if_integral(one) if column.id == "phi" else rounded(one, look.digits) for one in values]
         yield (", " if start else "") + json.dumps(shown, allow_nan=False)[1:-1]
     yield f'], "marked": {list(column.marked)}}}' if column.marked else "]}"
 
@@ -269,7 +248,7 @@ def _written(node: Any, look: Look) -> str:
 _TEXT = {"type": "string"}
 _TEXTS = {"type": "array", "items": _TEXT}
 _NUMBER = {"type": ["number", "null"]}
-_ANGLE = {"type": "number", "description": "crank angle in degrees at which it stands"}
+_ANGLE = {"type": "number", "description": "crank angle of the extreme in degrees"}
 
 
 def _ref(name: str) -> dict[str, str]:
@@ -321,7 +300,7 @@ _DEFINITIONS = {
         rows={
             "type": "array",
             "items": {"type": "object", "additionalProperties": _TEXT},
-            "description": "names of the rows, absent where the first column tells them",
+            "description": "names of the rows, absent if the first column names them",
         },
     ),
     "part": _object({"name": _TEXT, **_RESULTS}, **_TABLES),

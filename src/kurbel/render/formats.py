@@ -1,4 +1,4 @@
-"""The text of a report in each format, and its way to a file or standard output."""
+"""The text of a report in each format, and where it is written."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -7,7 +7,7 @@ from kurbel.render import Look
 from kurbel.render.data import csv_text, json_text
 from kurbel.render.html import html
 from kurbel.render.markup import Latex, Markdown, document
-from kurbel.render.output import stdout_charset, stdout_width, write_coloured, write_out
+from kurbel.render.output import stdout_look, write_coloured, write_out
 from kurbel.render.page import page
 from kurbel.render.text import plain
 from kurbel.report.tables import Report
@@ -31,7 +31,7 @@ def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable
 
 
 def pieces(report: Report, look: Look) -> Iterable[str]:
-    """Return the text of the report piece by piece, each made when it is asked for: a long table is never held."""
+    """Return the text of the report piece by piece, each made when it is read: a long table is never held."""
     return _WRITERS[look.format](report, look)
 
 
@@ -39,12 +39,14 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     """Write the report to a file (as UTF-8), or to standard output in the encoding of that.
 
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
-    text, of a width only where it is asked for. Raises UsageError where it cannot be written.
+    text, of a width only if one is given. Raises UsageError where it cannot be written.
     """
-    look = replace(look, encoding="utf-8")
-    if file_name is None or file_name == "-":
-        encoding = "utf-8" if look.format in _ALWAYS_UTF_8 else stdout_charset().encoding
-        look = replace(look, encoding=encoding, width=look.width or stdout_width())
+    if file_name is not None and file_name != "-":
+        look = replace(look, encoding="utf-8")
+    else:
+        look = stdout_look(look)
+        if look.format in _ALWAYS_UTF_8:
+            look = replace(look, encoding="utf-8")
         if look.format == "table" and write_coloured(page(report, look), look):
             return
     write_out(pieces(report, look), file_name, look.encoding)

@@ -24,7 +24,7 @@ def html(report: Report, look: Look) -> Iterator[str]:
 
 
 def page(title: str, main: Iterable[str], more_style: str = "") -> Iterator[str]:
-    """Yield a self-contained page: no script, nothing from elsewhere, and the browser is told so."""
+    """Yield a self-contained page: no script, nothing from elsewhere, which the browser enforces."""
     yield (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'

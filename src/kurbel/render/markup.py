@@ -7,7 +7,6 @@ others take what has been escaped. LaTeX is to be \input into a document that ha
 import re
 from collections.abc import Collection, Iterator, Sequence
 from html import escape
-from typing import Protocol
 
 from kurbel.render import Look
 from kurbel.render.text import measures
@@ -27,74 +26,7 @@ _ON_PAPER = 9
 """Columns of numbers next to that of the angle on a page of A4; more make a table of their own."""
 
 
-class Writer(Protocol):
-    """Elements of a format, as templates for escaped text; across: the most columns of numbers in a table, if any."""
-
-    across: int | None
-    title: str
-    paragraph: str
-    strong: str
-    list_head: str
-    item: str
-    list_end: str
-    table_end: str
-
-    def text(self, plain: str) -> str: ...
-    def sentence(self, plain: str) -> str: ...
-    def symbol(self, plain: str) -> str: ...
-    def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str: ...
-    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str: ...
-
-
-def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
-    """Yield the report piece by piece; equal cylinders appear once."""
-    report = told_once(report)
-    yield out.title.format(out.text(look.charset.text(report.title)))
-    yield from (out.paragraph.format(out.sentence(look.charset.text(text))) for text in report.head)
-    for table in _tables(report, look, out.across):
-        yield from written(table, out)
-    notes = [note for note in (report.mirrored, *report.notes) if note]
-    yield from (out.paragraph.format(out.sentence(sentence_text(note, look))) for note in notes)
-    for part in report.all_parts:
-        name = part_name(report, part, look)
-        of = f": {name}" if name else ""
-        if part.key_values:
-            yield from written(key_value_table(f"Key values{of}", part.key_values, look), out)
-        left_out = [f"{one.what}: {one.why}" for one in part.left_out]
-        yield from listed(f"Left out{of}", left_out, look, out)
-        yield from listed(f"Warnings{of}", part.warnings, look, out)
-
-
-def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> Iterator[str]:
-    """Yield sentences under a title, nothing where there are none."""
-    if sentences:
-        yield out.list_head.format(out.text(title))
-        yield from (out.item.format(out.sentence(sentence_text(one, look))) for one in sentences)
-        yield out.list_end
-
-
-def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
-    found = [(name, sheet.heads, columns, True) for sheet in sheets(report, look) for name, columns in sheet.bands]
-    for one in report.printed_tables:
-        found.append((look.charset.text(one.title), *place_table(one, look), False))
-    for caption, names, columns, headed in found:
-        most = across or max(len(columns), 1)
-        for start in range(0, max(len(columns), 1), most):
-            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if headed else 0)
-
-
-def written(table: TextTable, out: Writer) -> Iterator[str]:
-    """Yield a table row by row."""
-    heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
-    yield out.table_head(table, out.text(table.caption), heads)
-    doors = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
-    kinds = [doors[one.kind] for one in table.columns]
-    for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
-        texts = zip(kinds, map(str.strip, row))
-        cells = [out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts]
-        yield out.row(table, number, cells)
-    yield out.table_end
+# writers: elements as templates for escaped text; across: the most columns of numbers in a table, if any
 
 
 class Markdown:
@@ -255,3 +187,59 @@ def _formula(one: str) -> str:
     found = _MATH.get(one[0]) or {"_": "\\_"}.get(one[0], one[0])
     base = f"\\{found}" if one[0] in _MATH and found[0] not in "-^_" else found
     return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
+
+
+# the walk
+
+Writer = Markdown | Html | Latex
+
+
+def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
+    """Yield the report piece by piece; equal cylinders appear once."""
+    report = told_once(report)
+    yield out.title.format(out.text(look.charset.text(report.title)))
+    yield from (out.paragraph.format(out.sentence(look.charset.text(text))) for text in report.head)
+    for table in _tables(report, look, out.across):
+        yield from written(table, out)
+    notes = [note for note in (report.mirrored, *report.notes) if note]
+    yield from (out.paragraph.format(out.sentence(sentence_text(note, look))) for note in notes)
+    for part in report.all_parts:
+        name = part_name(report, part, look)
+        of = f": {name}" if name else ""
+        if part.key_values:
+            yield from written(key_value_table(f"Key values{of}", part.key_values, look), out)
+        left_out = [f"{one.what}: {one.why}" for one in part.left_out]
+        yield from listed(f"Left out{of}", left_out, look, out)
+        yield from listed(f"Warnings{of}", part.warnings, look, out)
+
+
+def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> Iterator[str]:
+    """Yield sentences under a title, nothing where there are none."""
+    if sentences:
+        yield out.list_head.format(out.text(title))
+        yield from (out.item.format(out.sentence(sentence_text(one, look))) for one in sentences)
+        yield out.list_end
+
+
+def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
+    """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
+    found = [(name, sheet.heads, columns, True) for sheet in sheets(report, look) for name, columns in sheet.bands]
+    for one in report.printed_tables:
+        found.append((look.charset.text(one.title), *place_table(one, look), False))
+    for caption, names, columns, headed in found:
+        most = across or max(len(columns), 1)
+        for start in range(0, max(len(columns), 1), most):
+            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if headed else 0)
+
+
+def written(table: TextTable, out: Writer) -> Iterator[str]:
+    """Yield a table row by row."""
+    heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
+    yield out.table_head(table, out.text(table.caption), heads)
+    doors = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    kinds = [doors[one.kind] for one in table.columns]
+    for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
+        texts = zip(kinds, map(str.strip, row))
+        cells = [out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts]
+        yield out.row(table, number, cells)
+    yield out.table_end

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kurbel.report.tables import Value
 
 DIGITS = 4
-"""Significant digits of the largest value of a row where nothing else is asked for."""
+"""Significant digits of the largest value of a row by default."""
 
 _LARGE = 7  # from 1e7 on, and below 1e-4, a row gets its power of ten into the head
 _SMALL = -4
@@ -23,7 +23,7 @@ class Scale(NamedTuple):
 def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
     """Return the scale that shows so many significant digits of the largest value.
 
-    Where no digits are asked for there are four, and whole numbers keep all of theirs; else they are rounded too.
+    By default there are four, and whole numbers keep all of theirs; with `digits` they are rounded, too.
 
     >>> scale_of([1.2, -0.014]), scale_of([81134.0]), scale_of([81134.0], 2)
     (Scale(decimals=3, exponent=0), Scale(decimals=0, exponent=0), Scale(decimals=-3, exponent=0))
@@ -46,13 +46,13 @@ def _power(value: float, digits: int) -> int:
 
 
 def angle_scale(values: Iterable[Value]) -> Scale:
-    """Return the fewest decimals that tell all these angles, at most six."""
+    """Return the fewest decimals that distinguish all these angles, at most six."""
     texts = (_shortest(value, 6) for value in values if value is not None)
     return Scale(max((len(text.partition(".")[2]) for text in texts), default=0))
 
 
 def cell(value: Value, scale: Scale, comma: bool = False) -> str:
-    """Return the value as it stands in a table; an exact zero is `0` as in the book, no value is empty.
+    """Return the value as a table shows it; an exact zero is `0` as in the book, no value is empty.
 
     >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(0.5, Scale(3), comma=True)
     ('-0.014', '0.000', '0', '0,500')
@@ -87,7 +87,7 @@ def _shortest(value: float, decimals: int) -> str:
 
 
 def single(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
-    """Return a value that stands alone, and the power of ten that belongs behind it.
+    """Return a single value, and its power of ten.
 
     >>> single(0.8), single(2.4e7), single(-1.1e-16)
     (('0.8000', 0), ('2.400', 7), ('-1.100', -16))
@@ -123,22 +123,17 @@ def angle(value: float, comma: bool = False) -> str:
     return decimal(_shortest(value, 2), comma)
 
 
-def exact(value: float, digits: int | None = None) -> str:
-    """Return all digits of a value (or as many as asked for), the way Python and every spreadsheet read them back.
+def rounded(value: Value, digits: int | None) -> Value:
+    """Return the value to this many significant digits; counts and None, or without `digits` all, as they are.
 
-    >>> exact(0.1), exact(5), exact(-0.0), exact(0.12345, 2)
-    ('0.1', '5', '0.0', '0.12')
+    >>> rounded(0.1, None), rounded(5, 2), rounded(-0.0, None), rounded(0.12345, 2)
+    (0.1, 5, 0.0, 0.12)
     """
-    return repr(rounded(value, digits))
-
-
-def rounded(value: float, digits: int | None) -> float:
-    """Return the value to this many significant digits, whole counts and values without `digits` as they are."""
-    if isinstance(value, int):
+    if value is None or isinstance(value, int):
         return value
     return float(value if digits is None else f"{value:.{digits}g}") + 0.0
 
 
-def whole_if_integral(value: float) -> float:
+def whole_if_integral(value: Value) -> Value:
     """Return 10 for 10.0, so that angles and ratios are written as people write them."""
-    return int(value) if math.isfinite(value) and abs(value) < 1e15 and value == int(value) else value
+    return int(value) if value is not None and abs(value) < 1e15 and value == int(value) else value

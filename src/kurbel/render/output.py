@@ -7,54 +7,73 @@ import stat
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from shutil import get_terminal_size
+from typing import TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Charset
-
-if TYPE_CHECKING:
-    from kurbel.render.text import Line
+from kurbel.render.text import Line, width
 
 _MOST_COLOURED_LINES = 400
+_STYLES = {
+    "title": "bold",
+    "head": "bold cyan",
+    "rule": "dim",
+    "name": "bold",
+    "symbol": "cyan",
+    "unit": "dim",
+    "mark": "bold red",
+    "cell": "",
+    "text": "",
+    **{f"curve{number}": style for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))},
+}
+"""Role of a piece of a line -> its colour."""
 
 
-def write_coloured(page: "Iterable[Line]", look: Look) -> bool:
-    """Write lines in colour and return True, unless there is no terminal, or it or its user would rather not."""
-    if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
-        return False
-    lines = list(islice(page, _MOST_COLOURED_LINES + 1))
-    if len(lines) > _MOST_COLOURED_LINES:
-        return False
-    from kurbel.render.terminal import write_lines
-
-    return write_lines(lines, look)
+# standard output
 
 
-def stdout_width() -> int | None:
-    """Return the columns of the terminal; of a pipe what COLUMNS says, or None: it has no width."""
-    if not _stdout().isatty() and not os.environ.get("COLUMNS", "").isdecimal():
-        return None
-    from shutil import get_terminal_size
+def stdout_look(look: Look) -> Look:
+    """Return the look with encoding and width of standard output.
 
-    return get_terminal_size().columns
+    The width of a terminal is its own, that of a pipe what COLUMNS says, or None.
+    """
+    stdout = _stdout()
+    measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
+    wide = look.width or (get_terminal_size().columns if measured else None)
+    return replace(look, encoding=stdout.encoding or "utf-8", width=wide)
 
 
-def _stdout() -> Any:
+def _stdout() -> TextIO:
     if sys.stdout is None or sys.stdout.closed:
         raise UsageError("cannot write to standard output: it is closed")
     return sys.stdout
 
 
-def stdout_charset() -> Charset:
-    """Return what standard output can show."""
-    return Charset(getattr(_stdout(), "encoding", None) or "utf-8")
+def write_coloured(page: Iterable[Line], look: Look) -> bool:
+    """Write lines in colour and return True; False without a terminal, or where it or its user would rather not."""
+    if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    lines = list(islice(page, _MOST_COLOURED_LINES + 1))
+    tables = (one for one in lines if any(piece.role in ("rule", "head") for piece in one))
+    too_wide = look.width is not None and any(sum(width(piece.text) for piece in one) > look.width for one in tables)
+    if len(lines) > _MOST_COLOURED_LINES or too_wide:
+        return False
+    from rich.console import Console  # takes longer to load than most tables to print
+    from rich.text import Text
+
+    # a width, and a height with it, or rich believes a COLUMNS=0 of the environment and prints nothing
+    console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
+    for one in lines:  # as Text objects: a string would lose its brackets as markup
+        console.print(Text.assemble(*coloured(one)))
+    return True
 
 
-def stdout_look() -> Look:
-    """Return how text looks that standard output can show."""
-    return Look(encoding=stdout_charset().encoding, width=stdout_width())
+def coloured(line: Line) -> list[tuple[str, str]]:
+    """Return the pieces of a line with their colours."""
+    return [(piece.text, _STYLES[piece.role]) for piece in line]
 
 
 def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None = None) -> None:
@@ -90,10 +109,13 @@ def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
         raise UsageError(f"cannot write to standard output: {error.strerror}") from None
 
 
-def silence(stream: Any) -> None:
+def silence(stream: TextIO) -> None:
     """Let what is still buffered go nowhere: Python would complain about it at its end, and change the exit status."""
     with suppress(OSError, ValueError, AttributeError):  # there may be no real file behind it
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+# files
 
 
 def write_file(file_name: str, texts: Iterable[str]) -> None:
@@ -102,28 +124,28 @@ def write_file(file_name: str, texts: Iterable[str]) -> None:
         with replaced(file_name) as path, open(path, "w", encoding="utf-8", newline="\n") as file:
             file.writelines(texts)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(f"cannot write {file_name or 'to an empty file name'}: {reason}") from None
+        reason = error.strerror if isinstance(error, OSError) else ""
+        raise UsageError(f"cannot write {file_name or 'to an empty file name'}: {reason or error}") from None
 
 
 @contextmanager
 def replaced(file_name: str) -> Iterator[str]:
-    """Yield the path to write to: a new file beside the wanted one, which takes its place once it is whole.
+    """Yield the path to write to: a new file next to the wanted one, which replaces it once it is whole.
 
     What is no file, such as a pipe or /dev/stdout, is written to as it is.
     """
     if not (target := whole_file(file_name)):
         yield file_name
         return
-    beside = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
+    new = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
     try:
-        os.close(os.open(beside, os.O_CREAT | os.O_EXCL, 0o666))
-        take_mode(beside, target)
-        yield beside
-        os.replace(beside, target)
+        os.close(os.open(new, os.O_CREAT | os.O_EXCL, 0o666))
+        take_mode(new, target)
+        yield new
+        os.replace(new, target)
     except BaseException:  # an interrupt, too, leaves nothing behind
         with suppress(OSError):
-            os.unlink(beside)
+            os.unlink(new)
         raise
 
 
@@ -132,28 +154,16 @@ def whole_file(file_name: str) -> str:
 
     Raises OSError where it may not be written.
     """
-    old = _status(file_name)
-    if old and (not stat.S_ISREG(old.st_mode) or _is_open(old)):
-        return ""
-    if old and not os.access(file_name, os.W_OK):  # a rename would not ask
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
-    return os.path.realpath(file_name)  # a link stays one
-
-
-def take_mode(new: str, target: str) -> None:
-    """Give a file the mode of the one that it is to replace, if there is one."""
-    with suppress(FileNotFoundError):
-        os.chmod(new, stat.S_IMODE(os.stat(target).st_mode))
-
-
-def _status(file_name: str) -> os.stat_result | None:
     if not os.path.basename(file_name):
         missing = errno.EISDIR if file_name else errno.ENOENT
         raise OSError(missing, os.strerror(missing))
-    try:
-        return os.stat(file_name)
-    except FileNotFoundError:
-        return None
+    with suppress(FileNotFoundError):
+        old = os.stat(file_name)
+        if not stat.S_ISREG(old.st_mode) or _is_open(old):
+            return ""
+        if not os.access(file_name, os.W_OK):  # a rename would not ask
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
+    return os.path.realpath(file_name)  # a link stays one
 
 
 def _is_open(status: os.stat_result) -> bool:
@@ -163,6 +173,12 @@ def _is_open(status: os.stat_result) -> bool:
             if os.path.samestat(status, os.fstat(descriptor)):
                 return True
     return False
+
+
+def take_mode(new: str, target: str) -> None:
+    """Give a file the mode of the one that it is to replace, if there is one."""
+    with suppress(FileNotFoundError):
+        os.chmod(new, stat.S_IMODE(os.stat(target).st_mode))
 
 
 def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:

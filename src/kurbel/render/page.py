@@ -1,6 +1,5 @@
 """The printed page: title, tables, key values, reasons and warnings; crank angles across, or a line for each row."""
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from kurbel.render import Look
@@ -57,7 +56,7 @@ def _rows(sheet: Sheet, look: Look) -> Iterator[Line]:
 
 
 def _places(table: PlaceTable, look: Look) -> Iterator[Line]:
-    """Yield a line for each named place, under the title; without names the first column says which row it is."""
+    """Yield a line for each named place, under the title; without names the first column names the rows."""
     yield from (line(one, "name") for one in folded(look.charset.text(table.title), look.width))
     names, columns = place_table(table, look)
     side = names if table.headed else [one._replace(symbol="") for one in names]
@@ -71,31 +70,27 @@ def _blocks(
     side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int, between: Iterable[Line] = ()
 ) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    every = [*side, *columns]
-    widths = [max(width(one.symbol), width(one.unit), one.width) for one in every]
-    beside = list(range(len(side)))
-    across = beside
-    for k in range(len(side), len(every)):
-        wide = sum(widths[c] + gap for c in across) + widths[k]
-        if look.width is not None and wide > look.width and across != beside:
-            yield from _block([every[c] for c in across], [widths[c] for c in across], look, gap)
+    block = list(side)
+    for one in columns:
+        wide = sum(column.whole_width + gap for column in block) + one.whole_width
+        if look.width is not None and wide > look.width and len(block) > len(side):
+            yield from _block(block, look, gap)
             yield from between
-            across = beside
-        across = [*across, k]
-    yield from _block([every[c] for c in across], [widths[c] for c in across], look, gap)
+            block = list(side)
+        block.append(one)
+    yield from _block(block, look, gap)
 
 
-def _block(columns: Sequence[TextColumn], widths: Sequence[int], look: Look, gap: int) -> Iterator[Line]:
-    ruled = line(look.charset.text("─") * (sum(widths) + gap * (len(widths) - 1)), "rule")
-    layout = [
-        (" " * gap * (k > 0), left if one.words else right, cells, one.words)
-        for k, (one, cells) in enumerate(zip(columns, widths))
-    ]
+def _block(columns: Sequence[TextColumn], look: Look, gap: int) -> Iterator[Line]:
+    ruled = line(look.charset.text("─") * (sum(one.whole_width + gap for one in columns) - gap), "rule")
+    layout = [(" " * gap * (k > 0), one.whole_width, one.words) for k, one in enumerate(columns)]
 
     def row(texts: Iterable[str], role: str) -> Line:
         return tuple(
-            Piece(before + fill(text, cells), "name" if words else "mark" if text.endswith(MARK) else role)
-            for text, (before, fill, cells, words) in zip(texts, layout)
+            Piece(before + left(text, wide), "name")
+            if words
+            else Piece(before + right(text, wide), "mark" if text.endswith(MARK) else role)
+            for text, (before, wide, words) in zip(texts, layout)
         )
 
     yield row((one.symbol for one in columns), "head")
@@ -114,26 +109,33 @@ def _book(sheet: Sheet, look: Look) -> Iterator[Line]:
     """Yield the sheet in blocks of crank angles, nine each or as many as fit the width."""
     rows = [*sheet.heads, *(row for _, band in sheet.bands for row in band)]
     cell = max(row.width for row in rows) + _GAP
-    side = [max(width(row.symbol) for row in rows), max(width(row.unit) for row in rows)]
+    symbol, unit = max(width(row.symbol) for row in rows), max(width(row.unit) for row in rows)
     name = max(width(name) for name, _ in sheet.bands) if sheet.named_beside else 0
-    beside = sum(cells + _GAP for cells in (name, *side) if cells)
-    if look.width is not None and name and look.width < beside + 2 * cell:
-        name, beside = 0, beside - name - _GAP
-    count = len(sheet.heads[0].values)
-    start = 0
-    for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - beside) // cell):
+    if look.width is not None and look.width < sum(wide + _GAP for wide in (name, symbol, unit) if wide) + 2 * cell:
+        name = 0
+    side = sum(wide + _GAP for wide in (name, symbol, unit) if wide)
+    gap = " " * _GAP
+
+    def book_line(band: str, row: TextColumn, across: range, role: str) -> Line:
+        pieces = [Piece(left(band, name) + gap, "name")] if name else []
+        pieces.append(Piece((right if role == "head" else left)(row.symbol, symbol) + gap, role))
+        if unit:
+            pieces.append(Piece(left(row.unit, unit) + gap, "unit"))
+        cells = row.cells(across.start, across.stop)
+        number = "head" if role == "head" else "cell"
+        return (*pieces, *(Piece(right(text, cell), "mark" if text.endswith(MARK) else number) for text in cells))
+
+    start, count = 0, len(sheet.heads[0].values)
+    for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
         if start:
             yield BLANK
-        ruled = line(look.charset.text("─") * (beside + size * cell), "rule")
-        across = slice(start, start + size)
-        for head in sheet.heads:
-            yield _book_line("", head, (name, *side, cell), across, "head")
+        across, ruled = range(start, start + size), line(look.charset.text("─") * (side + size * cell), "rule")
+        yield from (book_line("", head, across, "head") for head in sheet.heads)
         for band, columns in sheet.bands:
             yield ruled
             if band and not name:
                 yield line(band, "name")
-            for index, row in enumerate(columns):
-                yield _book_line("" if index else band, row, (name, *side, cell), across, "cell")
+            yield from (book_line("" if k else band, row, across, "symbol") for k, row in enumerate(columns))
         yield ruled
         start += size
 
@@ -148,21 +150,6 @@ def fitting_sizes(count: int, most: int) -> list[int]:
     """Return blocks as even as can be of at most `most` angles, the longer ones last."""
     blocks = -(-count // max(most, 1))
     return [count // blocks + (index >= blocks - count % blocks) for index in range(blocks)] if count else []
-
-
-def _book_line(name: str, row: TextColumn, widths: Sequence[int], across: slice, role: str) -> Line:
-    named, symbol, unit, cell = widths
-    gap = " " * _GAP
-    pieces = [Piece(left(name, named) + gap, "name")] if named else []
-    pieces.append(
-        Piece(right(row.symbol, symbol) + gap, "head")
-        if role == "head"
-        else Piece(left(row.symbol, symbol) + gap, "symbol")
-    )
-    if unit:
-        pieces.append(Piece(left(row.unit, unit) + gap, "unit"))
-    cells = row.cells(across.start, across.stop)
-    return (*pieces, *(Piece(right(text, cell), "mark" if text.endswith(MARK) else role) for text in cells))
 
 
 # sentences and key values
@@ -185,46 +172,39 @@ def _prose(report: Report, look: Look) -> Iterator[list[Line]]:
 
 
 def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
-    """Yield a line for each key value: symbol, value, unit, crank angle, meaning; decimal points below one another."""
+    """Yield a line for each key value: symbol, value, unit, crank angle, meaning."""
     shown = [key_value_text(one, look) for one in key_values]
-    whole = max((_before_point(one) for one in shown if one.single), default=0)
-    numbers = [_at_point(one, whole) for one in shown]
+    numbers = _aligned(shown)
     symbol, unit = max(width(one.symbol) for one in shown), max(width(one.unit) for one in shown)
     number = max((wide for one in numbers if (wide := width(one)) <= _LONGEST), default=0)
-    places = [f"at {one.at}" if one.at else "" for one in shown]
-    place = max(map(width, places))
-    if look.width is not None and 2 + symbol + 2 + number + 2 + unit + 2 + place > look.width:
-        shown = [
-            one._replace(sentence=f"{at}  {one.sentence}" if at else one.sentence) for one, at in zip(shown, places)
-        ]
-        place = 0
-    for one, value, at in zip(shown, numbers, places):
-        head = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  "
-        head += f"{left(at, place)}  " if place else ""
+    angles = [f"at {one.at}" if one.at else "" for one in shown]
+    angle = max(map(width, angles))
+    if look.width is not None and 2 + symbol + 2 + number + 2 + unit + 2 + angle > look.width:
+        angle = 0
+    for one, value, at in zip(shown, numbers, angles):
+        head, text = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  ", one.sentence
+        if angle:
+            head += f"{left(at, angle)}  "
+        elif at:
+            text = f"{at}  {text}"
         if width(value) > number:  # a long list has lines of its own
-            yield from _long_list(f"  {left(one.symbol, symbol)}  ", f"{value}  {one.unit}".rstrip(), look)
-            head = " " * (4 + symbol + number + 2 + unit + 2 + (place + 2 if place else 0))
-        yield from sentence(head, one.sentence, look)
+            before = f"  {left(one.symbol, symbol)}  "
+            rest = None if look.width is None else max(look.width - width(before), _NARROWEST)
+            for row in folded(f"{value}  {one.unit}".rstrip(), rest):
+                yield line(before + row, "cell")
+                before = " " * width(before)
+            head = " " * (4 + symbol + number + 2 + unit + 2 + (angle + 2 if angle else 0))
+        yield from sentence(head, text, look)
 
 
-def _before_point(one: KeyValueText) -> int:
-    """Return how many characters a number has before its decimal point."""
-    found = re.match("-?[0-9]*", one.number)
-    return found.end() if found else 0
-
-
-def _at_point(one: KeyValueText, whole: int) -> str:
-    """Return a number whose decimal point follows so many characters; whole numbers end there, too."""
-    if not one.single:
-        return one.number
-    end = _before_point(one)
-    return right(one.number[:end], whole) + (one.number[end:] or " ")
-
-
-def _long_list(head: str, value: str, look: Look) -> Iterator[Line]:
-    rest = None if look.width is None else max(look.width - width(head), _NARROWEST)
-    for index, text in enumerate(folded(value, rest)):
-        yield line((" " * width(head) if index else head) + text, "cell")
+def _aligned(shown: Sequence[KeyValueText]) -> list[str]:
+    """Return the numbers with their decimal points below one another; whole numbers end there, too."""
+    ends = [one.number.lstrip("-0123456789") if one.single else one.number for one in shown]
+    whole = max(len(one.number) - len(end) for one, end in zip(shown, ends))
+    return [
+        one.number.removesuffix(end).rjust(whole) + (end or " ") if one.single else one.number
+        for one, end in zip(shown, ends)
+    ]
 
 
 def in_two_columns(found: Iterable[tuple[str, str]], look: Look) -> Iterator[Line]:
@@ -264,7 +244,7 @@ def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]
 
 def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
     """Write heads in a column, each with its text, to a file or to standard output."""
-    look = Look() if file_name else stdout_look()
+    look = Look() if file_name else stdout_look(Look())
     longest = max((len(head) for head, _ in found), default=0)
     lines = (one for head, text in found for one in sentence(f"{head:<{longest}}  ", text, look))
     write_out(plain(lines), file_name)

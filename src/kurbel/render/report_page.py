@@ -8,12 +8,10 @@ from kurbel import __version__
 from kurbel.render import Look
 from kurbel.render.html import page
 from kurbel.render.markup import Html, document, listed, written
-from kurbel.render.pictures.layout import scene
-from kurbel.render.pictures.style import css
-from kurbel.render.pictures.svg import svg
+from kurbel.render.svg import css, svg
 from kurbel.render.text_tables import TextTable, texts
 from kurbel.report.document import Document, Grid, Item, Pair
-from kurbel.report.pictures.picture import Picture
+from kurbel.report.picture import Picture
 from kurbel.report.tables import Provenance, Report
 
 _STYLE = (
@@ -70,7 +68,7 @@ def _item(item: Item, look: Look) -> str:
 
 def _figure(picture: Picture, look: Look) -> str:
     label = _text(picture.heading, look)
-    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(scene(picture, look))}</div>'
+    drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(picture, look)}</div>'
     return f"<figure>\n{drawn}\n<figcaption>{_text(picture.text, look)}</figcaption>\n</figure>\n"
 
 

@@ -153,7 +153,7 @@ class SweepOutput:
         self.rows, self._kept = kept
         """Rows that are written, and bytes of those that were there before."""
         self._file_name = None if file_name == "-" else file_name
-        self._look = look if self._file_name else replace(look, encoding=stdout_look().encoding)
+        self._look = look if self._file_name else replace(look, encoding=stdout_look(look).encoding)
 
     def write(self, rows: Iterable[Row]) -> None:
         """Write the rows; a reader that leaves early is no fault. Raises UsageError."""
@@ -243,21 +243,22 @@ class SweepOutput:
             from pyarrow import parquet
         except ImportError:
             raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
-        names, types = self.titles.whole, ("number", *self.titles.types, *("text" for _ in self.titles.last))
         stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
-        fields = {name: stored[one] for name, one in zip(names, types)} | {names[0]: pyarrow.int64()}
-        schema = pyarrow.schema(list(fields.items()))
+        types = [pyarrow.int64(), *(stored[one] for one in (*self.titles.types, *("text" for _ in self.titles.last)))]
+        schema = pyarrow.schema(zip(self.titles.whole, types))
 
         def write(rows: Iterable[Row], file: BinaryIO) -> None:
             following = iter(rows)
             with parquet.ParquetWriter(file, schema) as writer:
                 while group := list(islice(following, _IN_A_GROUP)):
-                    columns = zip(*(self.titles.values(row) for row in group))
-                    found = {
-                        name: [str(one) if type == "text" and one is not None else one for one in column]
-                        for name, type, column in zip(names, types, columns)
-                    }
-                    writer.write_table(pyarrow.table(found, schema=schema))
+                    columns = zip(types, zip(*(self.titles.values(row) for row in group)))
+                    arrays = [  # of words some may be read as numbers
+                        pyarrow.array(
+                            [None if one is None else str(one) for one in column] if type == "string" else column, type
+                        )
+                        for type, column in columns
+                    ]
+                    writer.write_table(pyarrow.table(arrays, schema=schema))
                     self.rows += len(group)
 
         return write

@@ -32,6 +32,11 @@ class TextColumn(NamedTuple):
     pad: str = ""
 
     @property
+    def whole_width(self) -> int:
+        """Width of the widest of its cells, symbol and unit."""
+        return max(width(self.symbol), width(self.unit), self.width)
+
+    @property
     def words(self) -> bool:
         """Whether it holds words, which are flush left."""
         return self.kind != "number"
@@ -178,34 +183,32 @@ class KeyValueText(NamedTuple):
 
 
 def key_value_text(one: KeyValue, look: Look) -> KeyValueText:
-    """Return a key value as text."""
+    """Return a key value as text: a number with its power of ten, or the numbers of a list, of a long one its ends."""
+
+    def text(value: float) -> str:
+        if one.unit == "deg" and (look.digits is None or isinstance(one.value, tuple)):
+            return angle(value, look.comma)
+        return charset.counted(*single(value, look.digits, look.comma))
+
     charset = look.charset
-    symbol, unit = charset.symbol(one.symbol, one.ascii_symbol), charset.unit(one.unit)
-    at = "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.text("°")
-    listed = isinstance(one.value, tuple) or one.value is None or one.noise
-    return KeyValueText(symbol, number_text(one, look), unit, at, sentence_text(one.text, look), not listed)
-
-
-def number_text(one: KeyValue, look: Look) -> str:
-    """Return the number of a key value, or its numbers in one line; of a long list how many there are."""
     if one.value is None or one.value == ():
-        return look.charset.text("–")
-    if one.noise:
-        return look.charset.below(NOISE_POWER)
-    if not isinstance(one.value, tuple):
-        return _number(one.value, one.unit == "deg" and look.digits is None, look)
-    values = one.value if len(one.value) <= _MOST_LISTED else (min(one.value), max(one.value))
-    numbers = [_number(value, one.unit == "deg", look) for value in values]
-    if len(one.value) > _MOST_LISTED:
-        return f"{len(one.value)} from {' to '.join(numbers)}"
-    return ("; " if look.comma else ", ").join(numbers)
-
-
-def _number(value: float, degrees: bool, look: Look) -> str:
-    """Return a value with its power of ten; degrees have two decimals."""
-    if degrees:
-        return angle(value, look.comma)
-    return look.charset.counted(*single(value, look.digits, look.comma))
+        number = charset.text("–")
+    elif one.noise:
+        number = charset.below(NOISE_POWER)
+    elif not isinstance(one.value, tuple):
+        number = text(one.value)
+    elif len(one.value) > _MOST_LISTED:
+        number = f"{len(one.value)} from {text(min(one.value))} to {text(max(one.value))}"
+    else:
+        number = ("; " if look.comma else ", ").join(map(text, one.value))
+    return KeyValueText(
+        charset.symbol(one.symbol, one.ascii_symbol),
+        number,
+        charset.unit(one.unit),
+        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.text("°"),
+        sentence_text(one.text, look),
+        not isinstance(one.value, tuple) and one.value is not None and not one.noise,
+    )
 
 
 def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> TextTable:

@@ -5,10 +5,9 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
-from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value
+from kurbel.report.tables import Column, KeyValue, Part, Report, Value
 
 _NUMBERED = re.compile(r"(.*\D)(\d{1,9})")
-_NINE_DIGITS = 1e-9
 Item = TypeVar("Item")
 
 
@@ -55,21 +54,19 @@ def told_once(report: Report) -> Report:
 
     Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.
     """
-    equal = _EQUAL.get(report.group)
-    if equal is None or len(report.parts) < 2:
+    if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
         return report
-    groups: list[list[Part]] = []
-    for part in report.parts:
-        found = next((group for group in groups if equal(group[0], part)), None)
-        groups.append([part]) if found is None else found.append(part)
+    bearings = report.group == "bearings"
+    groups = grouped(report.parts, _bearing if bearings else _cylinder)
     if len(groups) == len(report.parts):
         return report
-    parts = tuple(_as_one(group) for group in groups)
-    alone = len(parts) == 1 and report.whole is None
+    parts = []
+    for group in groups:
+        warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
+        parts.append(group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings))
+    title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
     return report._replace(
-        parts=parts,
-        title=f"{report.title}: {parts[0].name}" if alone else report.title,
-        notes=(*report.notes, _SHIFTED) if report.group == "bearings" else report.notes,
+        parts=tuple(parts), title=title, notes=(*report.notes, _SHIFTED) if bearings else report.notes
     )
 
 
@@ -78,67 +75,36 @@ _SHIFTED = (
 )
 
 
-def _equal_cylinders(one: Part, other: Part) -> bool:
-    return (
-        _equal_figures(one, other)
-        and _equal_curves(one.columns, other.columns)
-        and len(one.place_tables) == len(other.place_tables)
-        and all(map(_equal_tables, one.place_tables, other.place_tables))
-        and one.nowhere == other.nowhere
-    )
+def _bearing(part: Part) -> Hashable:
+    """Return what equal bearings of one kind have in common, such as those of main bearings."""
+    kind = str(part.name).removesuffix(part.of).rstrip("0123456789")
+    return kind, _figures(part.key_values), tuple(part.left_out)
 
 
-def _equal_bearings(one: Part, other: Part) -> bool:
-    """Whether both are of one kind, such as main bearings, and carry equal loads."""
-    return _kind(one) == _kind(other) and _equal_figures(one, other)
+def _cylinder(part: Part) -> Hashable:
+    """Return what equal cylinders have in common, their tables over their own crank angle, too."""
+    tables = [(one.title, one.names, *map(_curve, one.columns)) for one in part.place_tables]
+    return *map(_curve, part.columns), _figures(part.key_values), tuple(part.left_out), *tables, part.nowhere
 
 
-_EQUAL = {"cylinders": _equal_cylinders, "bearings": _equal_bearings}
-"""Group of a report -> whether two parts of it are equal."""
+def _curve(column: Column) -> Hashable:
+    return column.id, column.unit, _nine_digits(column.values)
 
 
-def _kind(part: Part) -> str:
-    return str(part.name).removesuffix(part.of).rstrip("0123456789")
-
-
-def _equal_figures(one: Part, other: Part) -> bool:
-    """Whether the key values, without the angles at which they are, and what is left out are equal."""
-    if [value.id for value in one.key_values] != [value.id for value in other.key_values]:
-        return False
-    some, others = _by_unit(one.key_values), _by_unit(other.key_values)
-    near = some.keys() == others.keys() and all(_near(values, others[unit]) for unit, values in some.items())
-    return near and tuple(one.left_out) == tuple(other.left_out)
-
-
-def _by_unit(key_values: Iterable[KeyValue]) -> dict[str, list[Value]]:
-    found: dict[str, list[Value]] = {}
+def _figures(key_values: Iterable[KeyValue]) -> Hashable:
+    """Return the key values without the angles at which they are, those of one unit relative to the largest."""
+    by_unit: dict[str, list[Value]] = {}
     for one in key_values:
         if not one.noise:
-            found.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
-    return found
-
-
-def _equal_tables(one: PlaceTable, other: PlaceTable) -> bool:
-    same = (one.id, one.title, one.names, one.said) == (other.id, other.title, other.names, other.said)
-    return same and _equal_curves(one.columns, other.columns)
-
-
-def _equal_curves(some: Sequence[Column], others: Sequence[Column]) -> bool:
-    return [(one.id, one.unit) for one in some] == [(one.id, one.unit) for one in others] and all(
-        _near(one.values, other.values) for one, other in zip(some, others)
+            by_unit.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
+    return (
+        tuple(one.id for one in key_values),
+        tuple((unit, _nine_digits(values)) for unit, values in by_unit.items()),
     )
 
 
-def _near(some: Sequence[Value], others: Sequence[Value]) -> bool:
-    """Whether values are equal to nine digits of the largest of them."""
-    if some == others:
-        return True
-    slack = _NINE_DIGITS * max((abs(value) for value in some if value is not None), default=0.0)
-    return len(some) == len(others) and all(
-        a == b or (a is not None and b is not None and abs(a - b) <= slack) for a, b in zip(some, others)
-    )
-
-
-def _as_one(parts: Sequence[Part]) -> Part:
-    warnings = tuple(dict.fromkeys(warning for part in parts for warning in part.warnings))
-    return parts[0]._replace(name=together([str(part.name) for part in parts]), warnings=warnings)
+def _nine_digits(values: Sequence[Value]) -> Hashable:
+    """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
+    largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
+    relative = tuple(None if value is None else round(value / largest, 9) for value in values)
+    return f"{largest:.9g}", hash(relative)  # of a long table the values themselves would take much memory

@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.declared.forces import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Subject, place_table, refuse_without_cylinder, report_on
+from kurbel.report.frame import Frame, Row, Subject, place_table, refuse_without_cylinder, report_on
 from kurbel.report.left_out import forces_left_out, motion_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import by_cylinder, guide_notes
@@ -78,10 +78,10 @@ def cycles_report(case: Case, system: str) -> Report:
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if cycles:
-        names = ((str(number),) for number in range(1, len(cycles.p_max) + 1))
-        declared = [one.absolute() if gas and gas.absolute else one for one in CYCLE_VALUES]
-        found = ((one, getattr(cycles, one.id).tolist()) for one in declared)
-        yield place_table("cycles", "Measured cycles", ("cycle",), names, found, system, headed=True)
+        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in CYCLE_VALUES}
+        columns = zip(*(getattr(cycles, id).tolist() for id in declared))
+        rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
+        yield place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)
 
 
 def _mechanism_notes(machine: Machine) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Union
 
-from kurbel.report.pictures.picture import Picture
+from kurbel.report.picture import Picture
 from kurbel.report.tables import Provenance, Report
 
 
@@ -28,7 +28,7 @@ Item = Union[str, Grid, Report, Picture, Pair]
 
 
 class Section(NamedTuple):
-    """A section: its word in links, its title, and what stands in it."""
+    """A section: its word in links, its title, and its items."""
 
     id: str
     title: str
@@ -36,7 +36,7 @@ class Section(NamedTuple):
 
 
 class Document(NamedTuple):
-    """A report on one machine, or on several beside one another."""
+    """A report on one machine, or on several next to one another."""
 
     title: str
     provenance: tuple[Provenance, ...]

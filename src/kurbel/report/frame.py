@@ -3,7 +3,7 @@
 import math
 import sys
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -277,7 +277,11 @@ def shown_column(
 
     beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
     """
-    given = np.frombuffer(values) if isinstance(values, array) else np.array([v for v in values if v is not None])
+    given = (
+        np.frombuffer(values)
+        if isinstance(values, array)
+        else np.array([v for v in values if v is not None], dtype=float)
+    )
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
     largest = max(given.max(initial=0.0), -given.min(initial=0.0))
@@ -292,26 +296,39 @@ def shown_column(
     return Column(quantity.id, *symbols, quantity.marked(unit), texts, quantity.text, size=size)
 
 
+Row = tuple[tuple[str, ...], Mapping[str, float | None]]
+"""The names of a row in a table of places, and its values in SI by the ids of their quantities."""
+
+
 def place_table(
     id: str,
     title: str,
     heads: tuple[str, ...],
-    names: Iterable[tuple[str, ...]],
-    found: Iterable[tuple[Quantity, Sequence[float | None]]],
+    declared: Mapping[str, Quantity],
+    rows: Sequence[Row],
     system: str,
     headed: bool = False,
+    alone: int = 0,
 ) -> PlaceTable:
-    """Return a table of places; found: its quantities with their values in SI.
+    """Return a table of places; declared: its quantities by id, of which one is left out if no row has it.
 
-    Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths.
+    Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths. alone: the digits of
+    values of which each has a scale of its own, with one unit for each kind of quantity.
     """
+    values = {quantity: [of.get(id) for _, of in rows] for id, quantity in declared.items()}
     columns = []
-    for quantity, values in found:
-        decimals = 3 if quantity.id == "distance" else None
-        if quantity.id in ("order", "mode"):
-            decimals = int(any(value and value % 1 for value in values))
-        columns.append(shown_column(quantity, values, system)._replace(decimals=decimals))
-    return PlaceTable(id, title, heads, tuple(names), tuple(columns), headed)
+    for quantity, each in values.items():
+        if any(quantity.id in of for _, of in rows):
+            alike = [
+                abs(v) for other, some in values.items() if other.kind == quantity.kind for v in some if v is not None
+            ]
+            column = shown_column(quantity, each, system, beside=max(alike, default=0.0) if alone else 0.0)
+            decimals = 3 if quantity.id == "distance" else None
+            if quantity.id in ("order", "mode"):
+                decimals = int(any(value and value % 1 for value in each))
+            columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else alone))
+    names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
+    return PlaceTable(id, title, heads, names, tuple(columns), headed)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:

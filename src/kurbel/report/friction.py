@@ -2,9 +2,9 @@
 
 import math
 
-from kurbel.declared.quantity import Quantity
+from kurbel.declared.quantity import Quantity, by_id
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.report.frame import place_table, shown_key_values
+from kurbel.report.frame import Row, place_table, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.friction import holding_force
 
@@ -20,23 +20,19 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
     angles and coefficients that make no inclined plane, and for a force that lifts the body off it.
     """
     _check(incline, coefficient, direction)
-    asked = {f"{direction:g}_deg_above_plane" if direction else "along_plane": direction, "horizontal": -incline}
+    requested = {f"{direction:g}_deg_above_plane" if direction else "along_plane": direction, "horizontal": -incline}
     left: list[LeftOut] = []
-
-    def force(friction: float, name: str) -> float | None:
-        try:
-            return holding_force(incline, friction, asked[name])
-        except NoSolutionError:
-            what = f"{(_UP if friction > 0 else _HELD).symbol} {name.replace('_', ' ')}"
-            left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
-            return None
-
-    found = {
-        quantity: [force(friction, name) for name in asked]
-        for quantity, friction in ((_UP, coefficient), (_HELD, -coefficient))
-    }
-    names = ((name,) for name in asked)
-    table = place_table("plane", "Force P over the weight Q", ("direction",), names, found.items(), "si")
+    rows: list[Row] = []
+    for name, angle in requested.items():
+        forces: dict[str, float | None] = {}
+        for quantity, friction in ((_UP, coefficient), (_HELD, -coefficient)):
+            try:
+                forces[quantity.id] = holding_force(incline, friction, angle)
+            except NoSolutionError:
+                what = f"{quantity.symbol} {name.replace('_', ' ')}"
+                left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
+        rows.append(((name,), forces))
+    table = place_table("plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows, "si")
     (rho,) = shown_key_values([(_RHO, math.degrees(math.atan(coefficient)))], "si")
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (

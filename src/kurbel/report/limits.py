@@ -1,7 +1,7 @@
 """How key values compare with the limits and the expectations of a machine file."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple, Union
 
 import numpy as np
@@ -127,28 +127,18 @@ def _in_size(quantity: Quantity) -> bool:
 def _entry(one: Verdict | Unjudged) -> Entry | Unjudged:
     if isinstance(one, Unjudged):
         return one
-    text = _expected_text(one, one.bound) if isinstance(one.bound, Expected) else _limit_text(one, one.bound)
+    figure, quantity, unit = one.bound, one.quantity, getattr(one.bound, "unit", "")
+    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(one.value) else _shown(one.value, quantity.kind, unit)
+    if isinstance(figure, Expected):
+        low, high = figure.low - one.value, one.value - figure.high
+        off = f"OFF, {_shown(max(low, high), quantity.kind, unit)} too {'small' if low > high else 'large'}"
+        wanted = figure.text or f"{_shown(figure.low, quantity.kind, '')} to {_shown(figure.high, quantity.kind, '')}"
+        text = f"{size}, expected {wanted}  {'met' if one.ok else off}"
+    else:
+        size = f"|{size}|" if _in_size(quantity) and not quantity.is_noise(one.value) else size
+        sign = ("≥" if one.ok else "<") if quantity.bounded_below else ("≤" if one.ok else ">")
+        text = f"{size} {sign} {_shown(figure, quantity.kind, unit)}  {'kept' if one.ok else 'BROKEN'}"
     return Entry(str(one.path[-1]), f"{text}  ({one.where})", "info" if one.ok else "error", one.path)
-
-
-def _limit_text(one: Verdict, bound: float) -> str:
-    unit, bars = getattr(bound, "unit", ""), "|" if _in_size(one.quantity) else ""
-    relation = {(False, True): "≤", (False, False): ">", (True, True): "≥", (True, False): "<"}
-    size = _sized(one.quantity, one.value, unit, bars)
-    sign = relation[one.quantity.bounded_below, one.ok]
-    return f"{size} {sign} {_shown(bound, one.quantity.kind, unit)}  {'kept' if one.ok else 'BROKEN'}"
-
-
-def _expected_text(one: Verdict, figure: Expected) -> str:
-    kind, low, high = one.quantity.kind, figure.low - one.value, one.value - figure.high
-    off = f"OFF, {_shown(max(low, high), kind, figure.unit)} too {'small' if low > high else 'large'}"
-    wanted = figure.text or f"{_shown(figure.low, kind, '')} to {_shown(figure.high, kind, '')}"
-    return f"{_sized(one.quantity, one.value, figure.unit)}, expected {wanted}  {'met' if one.ok else off}"
-
-
-def _sized(quantity: Quantity, value: float, unit: str, bars: str = "") -> str:
-    """Return a value with its unit; of rounding alone only that it is small."""
-    return f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else f"{bars}{_shown(value, quantity.kind, unit)}{bars}"
 
 
 def _shown(value: float, kind: str, unit: str) -> str:
@@ -185,17 +175,9 @@ class Holder(NamedTuple):
     quantity: Quantity
     command: str
 
-    @property
-    def has_it(self) -> bool:
-        """Whether there is a value, or what keeps it from being computed."""
-        try:
-            return self.subject.answer(self.quantity) is not None
-        except KurbelError:
-            return True
-
 
 def _values(case: Case, name: str) -> Found:
-    """Return the values of a key value that a limit of this name applies to, or what keeps them from being computed."""
+    """Return the values of a key value that a limit of this name is for, or what keeps them from being computed."""
     try:
         values = [(one.subject.name, one.subject.answer(one.quantity)) for one in holders(case, name)]
     except KurbelError as error:
@@ -210,21 +192,31 @@ def holders(case: Case, name: str) -> list[Holder]:
     """
     scope, id = scoped(name)
     cylinders = [one.name for one in case.machine.cylinders]
-    of_machine: list[Holder] = []
     first, *others = every_quantity().commands_of(id)
     # what the only cylinder does not have, the machine does not have
     whole = [one for one in others if one == "flywheel"] if scope or len(cylinders) != 1 else []
+    of_machine: list[Holder] = []
     for command in (first, *whole):
         listed = ((one, one.lists.key_values(command).get(id)) for one in subjects_of(case, command))
         found = [Holder(subject, quantity, command) for subject, quantity in listed if quantity]
-        of_cylinders = [one for one in found if one.subject.name in cylinders]
-        others_of = [one for one in found if one.subject.name not in cylinders]
         if scope:
-            own = [*(one for one in of_cylinders if one.subject.name == scope)]
-            own += [one for one in others_of if (one.subject.of or MACHINE) == scope]
+            own = [one for one in found if _owner(one.subject, cylinders) == scope]
         else:
-            own = [one for one in of_cylinders if one.has_it]
+            own = [one for one in found if one.subject.name in cylinders and _has_it(one)]
         if own:
             return own
-        of_machine += others_of
+        of_machine += [one for one in found if one.subject.name not in cylinders]
     return [] if scope else of_machine
+
+
+def _owner(subject: Subject, cylinders: Sequence[str]) -> str:
+    """Return what a subject belongs to: a cylinder, as its pins do, or the machine."""
+    return subject.name if subject.name in cylinders else subject.of or MACHINE
+
+
+def _has_it(one: Holder) -> bool:
+    """Whether there is a value, or what keeps it from being computed."""
+    try:
+        return one.subject.answer(one.quantity) is not None
+    except KurbelError:
+        return True

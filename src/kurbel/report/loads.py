@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
-from kurbel.report.frame import Frame, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
 from kurbel.report.left_out import bearing_left_out, bearings_left_out, left_out, strength_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import as_far_as_solved, bearing_warnings, of_machine, shell_verdict
@@ -105,10 +105,11 @@ def stress_subjects(case: Case) -> list[Subject]:
 def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceTable]:
     found = (strength.at_dead_centre, strength.at_largest_torque, strength.at_worst)
     for (id, title), places in zip(_TITLES.items(), found):
-        names = ((one.part, one.name.replace(" ", "_")) for one in places)
-        values = {quantity: [getattr(one, name) for one in places] for name, quantity in STRESSES.items()}
-        columns = {PHI: [one.degrees for one in places], **values}
-        yield place_table(id, title, ("part", "place"), names, columns.items(), system)
+        rows: list[Row] = []
+        for one in places:
+            values = {id: getattr(one, id) for id in STRESSES}
+            rows.append(((one.part, one.name), {"phi": one.degrees, **values}))
+        yield place_table(id, title, ("part", "place"), {"phi": PHI, **STRESSES}, rows, system)
 
 
 def _stress_notes(strength: CrankshaftStrength) -> Iterator[str]:

@@ -1,45 +1,23 @@
 """What a report is made of, whatever it will be rendered as."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple, TypeVar, Union
+from typing import NamedTuple, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 
 Value = Union[float, int, None]
-Item = TypeVar("Item")
-
-
-class Later(Collection[Item]):
-    """Lines of a report that are computed when they are first read: csv shows none of them."""
-
-    def __init__(self, make: Callable[[], Iterable[Item]]) -> None:
-        self._make = make
-
-    @cached_property
-    def _items(self) -> tuple[Item, ...]:
-        return tuple(self._make())
-
-    def __iter__(self) -> Iterator[Item]:
-        return iter(self._items)
-
-    def __contains__(self, item: object) -> bool:
-        return item in self._items
-
-    def __len__(self) -> int:
-        return len(self._items)
 
 
 class Column(NamedTuple):
-    """One quantity over the crank angle, already in the unit in which it is shown; None where it has no value.
+    """One quantity over the crank angle, in the unit that is shown; None where it has no value.
 
-    values: a tuple, or an array of doubles, which takes a quarter of the memory;
-    decimals: fixed number of decimals in printed tables, where the digits of a source are to be kept;
-    marked: indices of the values that the printed table marks with an asterisk; alone: the digits of values of which
-    each has a scale of its own, since they run over many powers of ten, as errors do, 0 where they share one; size: of
-    the largest value of the whole curve, where the values here are but rounding beside it, and 0 where they are not.
+    values: a tuple, or an array of doubles, which takes a quarter of the memory.
+    decimals: a fixed number of them in print, to keep the digits of a source.
+    marked: indices of the values that have an asterisk in print.
+    alone: digits of values that each have their own scale, as errors over many powers of ten; 0 for a common one.
+    size: the largest value of the whole curve, if those here are but rounding relative to it; else 0.
     """
 
     id: str
@@ -55,7 +33,7 @@ class Column(NamedTuple):
 
 
 class KeyValue(NamedTuple):
-    """One key value, already in its unit; a tuple for a list of angles; `at_deg` is where an extreme stands.
+    """One key value, already in its unit; a tuple for a list of angles; `at_deg`: crank angle of an extreme.
 
     noise: the value is a residual of rounding alone, which has digits in json only.
     """
@@ -80,9 +58,10 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place), or none; names: those of each row, one to a head, with _ for a
-    blank; columns: as over the crank angle, one value to a row; headed: the heads are printed too, and the names are
-    texts as they stand; said: a note says all of it, so that it is not printed.
+    heads: what the names are, such as (part, place), or none.
+    names: those of each row, one to a head, with _ for a blank.
+    headed: the heads are printed, too, and the names are printed with their _.
+    said: a note has all of it, so that it is not printed.
     """
 
     id: str
@@ -103,9 +82,9 @@ class Part(NamedTuple):
 
     name: str | float
     columns: tuple[Column, ...]
-    key_values: Collection[KeyValue] = ()
-    left_out: Collection[LeftOut] = ()
-    warnings: Collection[str] = ()
+    key_values: tuple[KeyValue, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    warnings: tuple[str, ...] = ()
     place_tables: tuple[PlaceTable, ...] = ()
     nowhere: str = ""
     of: str = ""
@@ -123,7 +102,7 @@ class Input:
 class Provenance:
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
-    inputs: Collection[Input]
+    inputs: tuple[Input, ...]
     overrides: tuple[str, ...]
     versions: dict[str, str]
 
@@ -145,7 +124,7 @@ class Report(NamedTuple):
     parts: tuple[Part, ...]
     whole: Part | None = None
     mirrored: str = ""
-    notes: Collection[str] = ()
+    notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
     provenance: Provenance | None = None
     cylinders: tuple[str, ...] = ()

@@ -3,30 +3,28 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from itertools import repeat
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
-from kurbel.declared.quantity import Quantity
+from kurbel.arrays import Array
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme
-from kurbel.report.frame import Frame, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.harmonics import MachineOrders, Orders, Spectrum
+from kurbel.solver.harmonics import MachineOrders, Orders
 from kurbel.solver.motion import every_dead_centre
-from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, Vibration, stress
-
-_Values = Mapping[Quantity, Sequence[Any]]
-"""Quantities with their values in SI, None for no value."""
+from kurbel.solver.state import State
+from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, stress
 
 # turning effort, excess work, flywheel and speed line
 
@@ -80,7 +78,7 @@ def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
     angles = np.repeat(centres, 2, axis=1)
     sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
     machine = np.repeat(np.arange(count), angles.shape[1])
-    values = drive.at(angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+    values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
     largest = np.arange(count), np.abs(values).argmax(axis=1)
     found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
     return Extreme(*map(forces.told, found))
@@ -127,13 +125,12 @@ def harmonics_report(
     for one in found.cylinders:
         cylinder = one.forces.drive.cylinder
         title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-        table = _orders_table(title, one.own, one.area, (), frame.system)
+        table = _orders_table(title, one.own, frame.system, one.area)
         cylinders.append(Subject(cylinder.name, left_out=tuple(left_out(machine, cylinder)), tables=(table,)))
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    tables = [_orders_table(title, found.machine, None, found.major_orders or (), frame.system)]
+    tables = [_orders_table(title, found.machine, frame.system, major=found.major_orders or ())]
     if speeds is not None:
         tables.append(_speeds_of_orders(machine, found, speeds, frame.system))
-    said = _uniform(found.machine)
     no_masses = "no masses, or no speed given" if found.cylinders else "the effort is given as a torque"
     apart = {"gas and inertia apart": "" if found.machine.inertia else no_masses}
     whole = Subject(
@@ -141,7 +138,7 @@ def harmonics_report(
         (found,),
         left_out=(*flywheel_left_out(machine), *missing(apart)),
         warnings=of_machine(case) if frame.prose else (),
-        tables=tuple(table._replace(said=said) for table in tables),
+        tables=tuple(tables),
     )
     return report_on(frame, machine, "Drehkraft nach Ordnungen", cylinders, whole, _orders_notes(found))
 
@@ -170,53 +167,47 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
     return None if requested is None else np.array(sorted(set(requested)), dtype=float)
 
 
-def _orders_table(title: str, orders: Orders, area: float | None, major: Sequence[float], system: str) -> PlaceTable:
+def _orders_table(
+    title: str, orders: Orders, system: str, area: float | None = None, major: Sequence[float] = ()
+) -> PlaceTable:
     """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
-    whole = orders.whole
-    values = _of_spectrum(whole)
-    if orders.inertia is not None:
-        values[TORQUE_ORDERS["M_gas"]] = np.abs(orders.gas.amplitudes).tolist()
-        values[TORQUE_ORDERS["M_inertia"]] = np.abs(orders.inertia.amplitudes).tolist()
-    if area:
-        values[TORQUE_ORDERS["t_order"]] = (np.abs(whole.amplitudes) / area).tolist()
-    names = [("major" if order in major else "",) for order in whole.orders.tolist()]
-    table = place_table("orders", title, ("kind",), names, values.items(), system)
+    rows: list[Row] = []
+    inertia = repeat(None) if orders.inertia is None else orders.inertia.amplitudes.tolist()
+    whole, gas = orders.whole.amplitudes.tolist(), orders.gas.amplitudes.tolist()
+    for order, amplitude, of_gas, of_inertia in zip(orders.whole.orders.tolist(), whole, gas, inertia):
+        values = _of_order(order, amplitude)
+        if of_inertia is not None:
+            values |= {"M_gas": abs(of_gas), "M_inertia": abs(of_inertia)}
+        if area:
+            values["t_order"] = abs(amplitude) / area
+        rows.append((("major" if order in major else "",), values))
+    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
     return table._replace(said=_uniform(orders))
 
 
-def _of_spectrum(found: Spectrum) -> dict[Quantity, list[Any]]:
-    amplitudes = found.amplitudes
-    values = {
-        "order": found.orders.tolist(),
-        "M_cos": amplitudes.real.tolist(),
-        "M_sin": (-amplitudes.imag).tolist(),
-        "M_amplitude": np.abs(amplitudes).tolist(),
-        "M_phase": _phase_degrees(amplitudes),
-    }
-    return {TORQUE_ORDERS[id]: each for id, each in values.items()}
-
-
-def _phase_degrees(amplitudes: ComplexArray) -> list[float | None]:
-    """Return ε in degrees, above −180 up to 180, with Re(M e^{iνφ}) = |M| cos(νφ − ε); None if M is zero."""
-    phases = np.degrees(np.arctan2(-amplitudes.imag, amplitudes.real)) + 0.0
-    return [phase if amplitude else None for phase, amplitude in zip(phases.tolist(), amplitudes.tolist())]
+def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
+    """Return one order: Re(M e^{iνφ}) = a cos νφ + b sin νφ = |M| cos(νφ − ε), ε above −180° up to 180°."""
+    a, b = amplitude.real, -amplitude.imag
+    phase = math.degrees(math.atan2(b, a)) + 0.0 if amplitude else None
+    return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}
 
 
 def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[float], system: str) -> PlaceTable:
     if not machine.speed:
         raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
-    columns: dict[Quantity, list[Any]] = {TORQUE_ORDERS["speed"]: [speed for speed in speeds for _ in found.orders]}
+    rows: list[Row] = []
     for speed in speeds:
-        for quantity, values in _of_spectrum(found.machine.at_speed(speed / machine.speed)).items():
-            columns.setdefault(quantity, []).extend(values)
-    names = [("",)] * len(speeds) * len(found.orders)
+        at_speed = found.machine.at_speed(speed / machine.speed)
+        for order, amplitude in zip(at_speed.orders.tolist(), at_speed.amplitudes.tolist()):
+            rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
     title = "Orders of the turning effort at other speeds"
-    return place_table("orders_by_speed", title, ("kind",), names, columns.items(), system)
+    table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
+    return table._replace(said=_uniform(found.machine))
 
 
 def _uniform(found: Orders) -> bool:
     """Whether every order is zero, at every speed."""
-    return not any(one.amplitudes.any() for one in found if one)
+    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
 
 
 def _orders_notes(found: MachineOrders) -> Iterator[str]:
@@ -295,22 +286,14 @@ def _refuse_endless(found: ShaftVibration) -> None:
         )
 
 
-def _table(id: str, title: str, head: str, names: Iterable[str], values: _Values, system: str) -> PlaceTable:
-    """Return a table of the quantities that any of its rows has."""
-    found = ((quantity, each) for quantity, each in values.items() if any(one is not None for one in each))
-    return place_table(id, title, (head,), ((name.replace(" ", "_"),) for name in names), found, system)
-
-
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return the natural frequencies, with the nodes of each mode."""
-    omegas = found.modes.omegas.tolist()
-    values: _Values = {
-        MODES["mode"]: [float(found.first + index) for index in range(len(omegas))],
-        MODES["frequency"]: [omega / (2 * np.pi) for omega in omegas],
-        MODES["omega_natural"]: omegas,
-    }
-    names = [_nodes(found, index) for index in range(len(omegas))]
-    return _table("modes", "Natural frequencies", "nodes", names, values, system)
+    rows: list[Row] = []
+    for index, omega in enumerate(found.modes.omegas.tolist()):
+        mode = float(found.first + index)
+        values = {"mode": mode, "frequency": omega / (2 * math.pi), "omega_natural": omega}
+        rows.append(((_nodes(found, index),), values))
+    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
 
 
 def _nodes(found: ShaftVibration, index: int) -> str:
@@ -326,88 +309,85 @@ def _nodes(found: ShaftVibration, index: int) -> str:
 
 
 def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
-    """Return Holzer's table of a mode, from the first mass to the last."""
+    """Return Holzer's table of a mode, from the first mass to the last, each with the piece behind it."""
     table, chain = found.holzer(mode), found.chain
     omega = float(found.modes.omegas[mode - found.first])
-    before, after = (["ground"] if chain.ground == end else [] for end in ("before", "after"))
+    masses: list[Row] = [
+        ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
+        for mass, inertia, theta in zip(found.line.masses, chain.inertias.tolist(), table.angles.tolist())
+    ]
+    if chain.ground:
+        masses.insert(0 if chain.ground == "before" else len(masses), (("ground",), {"theta": 0.0}))
+    pieces: list[dict[str, float]] = [
+        {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
+        for torque, stiffness in zip(table.torques.tolist(), chain.stiffnesses.tolist())
+    ]
+    rows = [(names, {**mass, **piece}) for (names, mass), piece in zip(masses, [*pieces, {}])]
+    title = f"Holzer's table of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
+    return place_table("holzer", title, ("mass",), HOLZER, rows, system)
 
-    def rows(of_masses: Array) -> list[float | None]:
-        """Return the values of masses, with none at a fixed end."""
-        return [*(None for _ in before), *of_masses.tolist(), *(None for _ in after)]
 
-    values: _Values = {
-        HOLZER["inertia"]: rows(chain.inertias),
-        HOLZER["theta"]: [0.0 if angle is None else angle for angle in rows(table.angles)],
-        HOLZER["inertia_torque"]: rows(omega**2 * chain.inertias * table.angles),
-        HOLZER["torque_sum"]: [*table.torques.tolist(), None],
-        HOLZER["stiffness"]: [*chain.stiffnesses.tolist(), None],
-        HOLZER["twist"]: [*(table.torques / chain.stiffnesses).tolist(), None],
-    }
-    names = [*before, *(mass.name for mass in found.line.masses), *after]
-    title = f"Holzer's table of mode {mode}, f = {omega / (2 * np.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
-    return _table("holzer", title, "mass", names, values, system)
+def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[_Amplitude]]:
+    """Yield for each speed torque and stress of every piece, nothing at an undamped resonance."""
+    vibration = found.forced(speeds)
+    factors = [stress(found.line, piece) for piece in range(len(found.line.pieces))]
+    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
+        yield [
+            (None, None) if endless else (torque, None if factor is None else factor * torque)
+            for torque, factor in zip(torques, factors)
+        ]
 
 
 def _at_critical(found: ShaftVibration, critical: Sequence[Critical]) -> list[_Amplitude]:
-    """Return torque and stress at critical speeds: none at those the machine does not reach, and undamped ones."""
-    amplitudes: list[_Amplitude] = [(None, None)] * len(critical)
-    met = [index for index, one in enumerate(critical) if found.met(one)]
-    if met:
-        vibration = found.forced([critical[index].speed for index in met])
-        there = zip(met, vibration.vibratory.max(axis=0).tolist(), _stresses(vibration), vibration.endless)
-        for index, torque, tension, endless in there:
-            if not endless:
-                amplitudes[index] = torque, tension
+    """Return the largest torque and stress of any piece at critical speeds, nothing at those that are not reached."""
+    reached = _at_speeds(found, [one.speed for one in critical if found.met(one)])
+    amplitudes: list[_Amplitude] = []
+    for one in critical:
+        torques, stresses = zip(*next(reached)) if found.met(one) else ((), ())
+        amplitudes.append((_largest(torques), _largest(stresses)))
     return amplitudes
 
 
-def _stresses(vibration: Vibration) -> list[float | None]:
-    """Return the largest vibratory stress of any piece in Pa, (s,); None if no section is known."""
-    factors = [stress(vibration.line, piece) for piece in range(len(vibration.line.pieces))]
-    if not any(factors):
-        return [None] * len(vibration.omegas)
-    each = np.array([factor or 0.0 for factor in factors])[:, None] * vibration.vibratory
-    return list(each.max(axis=0).tolist())
+def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {id: value for id, value in values.items() if value is not None}
+
+
+def _largest(values: Iterable[float | None]) -> float | None:
+    return max((value for value in values if value is not None), default=None)
 
 
 def _critical_table(critical: Sequence[Critical], amplitudes: Sequence[_Amplitude], system: str) -> PlaceTable:
-    values: _Values = {
-        CRITICAL_SPEEDS["order"]: [one.order for one in critical],
-        CRITICAL_SPEEDS["mode"]: [float(one.mode) for one in critical],
-        CRITICAL_SPEEDS["speed"]: [one.speed for one in critical],
-        CRITICAL_SPEEDS["phase_sum"]: [one.phase_sum for one in critical],
-        CRITICAL_SPEEDS["distance"]: [one.distance for one in critical],
-        CRITICAL_SPEEDS["M_vibratory"]: [torque for torque, _ in amplitudes],
-        CRITICAL_SPEEDS["tau_vibratory"]: [tension for _, tension in amplitudes],
-    }
-    names = ["near" if one.near else "" for one in critical]
-    return _table("critical_speeds", "Critical speeds", "note", names, values, system)
+    rows: list[Row] = []
+    for one, (torque, tension) in zip(critical, amplitudes):
+        values = {
+            "order": one.order,
+            "mode": float(one.mode),
+            "speed": one.speed,
+            "phase_sum": one.phase_sum,
+            "distance": one.distance,
+            "M_vibratory": torque,
+            "tau_vibratory": tension,
+        }
+        rows.append((("near" if one.near else "",), _known(values)))
+    return place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system)
 
 
 def _pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return torques and stresses in the pieces at the working speed."""
-    values: _Values = {quantity: [getattr(piece, id) for piece in found.pieces] for id, quantity in PIECES.items()}
+    rows: list[Row] = [((piece.name,), _known({id: getattr(piece, id) for id in PIECES})) for piece in found.pieces]
     title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-    return _table("pieces", title, "piece", [piece.name for piece in found.pieces], values, system)
+    return place_table("pieces", title, ("piece",), PIECES, rows, system)
 
 
 def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -> PlaceTable:
     """Return the vibratory torque in every piece over the speed."""
-    vibration = found.forced(speeds)
-    names, torques, stresses = [], [], []
-    for piece, of_piece in enumerate(vibration.vibratory):
-        factor = stress(found.line, piece)
-        names += [found.piece_name(piece)] * len(speeds)
-        own = [None if endless else torque for torque, endless in zip(of_piece.tolist(), vibration.endless)]
-        torques += own
-        stresses += [None if factor is None or torque is None else factor * torque for torque in own]
-    values: _Values = {
-        SPEEDS["speed"]: list(speeds) * len(found.line.pieces),
-        SPEEDS["M_vibratory"]: torques,
-        SPEEDS["tau_vibratory"]: stresses,
-    }
+    rows: list[Row] = []
+    for piece, amplitudes in enumerate(zip(*_at_speeds(found, speeds))):
+        for speed, (torque, tension) in zip(speeds, amplitudes):
+            values = {"speed": speed, "M_vibratory": torque, "tau_vibratory": tension}
+            rows.append(((found.piece_name(piece),), _known(values)))
     title = "Vibratory torque over the speed, all these orders together"
-    return _table("speeds", title, "piece", names, values, system)
+    return place_table("speeds", title, ("piece",), SPEEDS, rows, system)
 
 
 def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:

@@ -1,7 +1,6 @@
 """The report of `kurbel report`: all that a machine has, section by section; or two machines side by side."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import zip_longest
 from operator import itemgetter
@@ -20,8 +19,8 @@ from kurbel.report.commands import COMMANDS, Command
 from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.frame import Frame, Subject, provenance
 from kurbel.report.keys import every_place, meaning
+from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
-from kurbel.report.pictures.source import Wish
 from kurbel.report.tables import LeftOut
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -82,7 +81,7 @@ def _items(case: Case, command: Command, system: str, step: float) -> list[Item]
     for one in PICTURES:
         if one.command == command.word:
             try:
-                found += pictures_if_any(case, one, Wish(system))
+                found += pictures_if_any(case, one, PictureOptions(system))
             except NoSolutionError as error:
                 found.append(f"{one.title}: {error}")
     return [*found, table]
@@ -188,9 +187,9 @@ def _key_values(cases: Sequence[Case], names: Sequence[str], command: Command, s
 def _pairs(cases: Sequence[Case], names: Sequence[str], command: Command, system: str) -> Iterator[Pair]:
     for declared in PICTURES:
         if declared.command == command.word:
-            drawn = [_if_any(partial(pictures_if_any, case, declared, Wish(system))) for case in cases]
+            drawn = [_if_any(partial(pictures_if_any, case, declared, PictureOptions(system))) for case in cases]
             # each picture is named as its machine is here
-            drawn = [[replace(one, machine=name) for one in some] for some, name in zip(drawn, names)]
+            drawn = [[one._replace(machine=name) for one in some] for some, name in zip(drawn, names)]
             yield from (Pair(left, right) for left, right in zip_longest(*drawn))
 
 

@@ -5,7 +5,7 @@ The printed figures are those of F. Rötscher, Die Maschinenelemente (1927), p. 
 
 import math
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
@@ -29,31 +29,6 @@ ROWS = {
 
 _ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
 
-
-Factor = Callable[[float, float, float, float, float], float]
-"""Of sine and cosine of the crank angle, cos ψ, R/L, and ρ = 1 − (R/L)² without its cancellation."""
-
-
-def _guide(sin: float, cos: float, kappa: float, lam: float, rho: float) -> float:
-    """Return N/P = tan ψ, R 301."""
-    return lam * sin / kappa
-
-
-_EXACT: dict[str, Factor] = {
-    "acceleration_factor": formulas.acceleration_factor,
-    "velocity_factor": formulas.velocity_factor,
-    "displacement_factor": formulas.displacement_factor,
-    "psi": lambda *known: math.degrees(math.atan(_guide(*known))),
-    "rod_force_factor": lambda sin, cos, kappa, *_: 1 / kappa,
-    "guide_force_factor": _guide,
-    "radial_force_factor": formulas.radial_factor,
-}
-_BOOK = _EXACT | {"acceleration_factor": lambda sin, cos, _, lam, __: formulas.first_order_acceleration(sin, cos, lam)}
-_FIRST_ORDER = _BOOK | {
-    "velocity_factor": lambda sin, cos, _, lam, __: formulas.first_order_velocity(sin, cos, lam),
-    "displacement_factor": lambda sin, cos, _, lam, __: formulas.first_order_displacement(sin, cos, lam),
-}
-_FACTORS = {"book": _BOOK, "exact": _EXACT, "first-order": _FIRST_ORDER}
 
 _OTHER_SYMBOLS = {
     ("exact", "acceleration_factor"): ("b R/v²", "b R/v^2"),
@@ -97,15 +72,38 @@ def _row_id(row: str) -> str:
 def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: str) -> Part:
     if not ratio > 1:
         raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
-    lam, rho = 1 / ratio, 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio)
-    factors = [_FACTORS[formula][id] for id in ids]
-    values = [array("d") for _ in ids]
-    for angle in map(CrankAngle.of, angles):
-        known = angle.sin, angle.cos, formulas.cos_rod_angle(angle.sin, angle.cos, rho), lam, rho
-        for column, factor in zip(values, factors):
-            column.append(factor(*known))
-    columns = (_column(FACTORS[id], column, formula) for id, column in zip(ids, values))
-    return Part(ratio, (_column(PHI, angles, formula), *columns))
+    columns = {id: array("d") for id in ids}
+    for degrees in angles:
+        found = _factors(CrankAngle.of(degrees), ratio, formula)
+        for id, values in columns.items():
+            values.append(found[id])
+    rows = (_column(FACTORS[id], values, formula) for id, values in columns.items())
+    return Part(ratio, (_column(PHI, angles, formula), *rows))
+
+
+def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
+    """Return all factors at a crank angle by their ids; ψ and the forces have no form of first order."""
+    sin, cos, lam = angle.sin, angle.cos, 1 / ratio
+    # ρ = 1 − (R/L)² without its cancellation
+    rho = 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio)
+    kappa = formulas.cos_rod_angle(sin, cos, rho)
+    known = sin, cos, kappa, lam, rho
+    guide = lam * sin / kappa  # N/P = tan ψ, R 301
+    factors = {
+        "acceleration_factor": formulas.acceleration_factor(*known),
+        "velocity_factor": formulas.velocity_factor(*known),
+        "displacement_factor": formulas.displacement_factor(*known),
+        "psi": math.degrees(math.atan(guide)),
+        "rod_force_factor": 1 / kappa,
+        "guide_force_factor": guide,
+        "radial_force_factor": formulas.radial_factor(*known),
+    }
+    if formula != "exact":
+        factors["acceleration_factor"] = formulas.first_order_acceleration(sin, cos, lam)
+    if formula == "first-order":
+        factors["velocity_factor"] = formulas.first_order_velocity(sin, cos, lam)
+        factors["displacement_factor"] = formulas.first_order_displacement(sin, cos, lam)
+    return factors
 
 
 def _column(quantity: Quantity, values: Sequence[Value], formula: str) -> Column:

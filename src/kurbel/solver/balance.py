@@ -8,7 +8,7 @@ effort M and the moment of momentum H of the masses about the shaft.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any
 
@@ -17,7 +17,6 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
-from kurbel.machine import Machine
 from kurbel.machine.balance import Locomotive
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.enclosing import ClosedCurve
@@ -115,11 +114,8 @@ class BalanceColumns(AtAngles):
     @column("M_roll", "torque")
     def M_roll(self) -> Any:
         """Rolling moment on the frame about the shaft, in the sense of rotation."""
-        effort, swirls = self._balance.effort, self._balance.swirls
-        if effort is None:
-            return None
-        turned = -effort.M_at(self.phi, self._within)
-        return turned + effort.sum_at(swirls, self.phi, self._within) if swirls else turned
+        effort, roll = self._balance.effort, self._balance.roll
+        return None if effort is None or roll is None else effort.at(effort.pieces, roll, self.phi, self._within)
 
 
 def _part(component: Callable[[Any], Any], vector: Any) -> Any:
@@ -220,14 +216,9 @@ class MachineBalance(Results):
     command = "balance"
     state = BalanceColumns
 
-    def __init__(
-        self,
-        machine: Machine,
-        cylinders: Sequence[CylinderForces],
-        count: int | None = None,
-        compare: bool = False,
-    ) -> None:
-        self.machine, self.count, self._cylinders, self._compare = machine, count, cylinders, compare
+    def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
+        machine = self.machine = effort.machine
+        self.count, self._cylinders, self._turning, self._compare = effort.count, effort.cylinders, effort, compare
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
         self.throws = tuple(own)
@@ -329,17 +320,10 @@ class MachineBalance(Results):
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
 
-    @cached_property
+    @property
     def effort(self) -> TurningEffort | None:
-        """The turning effort of the machine; None without a speed. Raises UsageError where no force acts."""
-        if self.omega is None or not some(self.omega != 0):
-            return None
-        return TurningEffort(self.machine, self._cylinders, self.count)
-
-    @cached_property
-    def swirls(self) -> list[Term]:
-        """−dH/dt in N m of the masses whose moment of momentum changes."""
-        return [Term(-1.0, group, swirl) for group in self.effort.groups if swirls(group[0])] if self.effort else []
+        """The turning effort of the machine, with its losses; None without a speed."""
+        return self._turning if self.omega is not None and some(self.omega != 0) else None
 
     @property
     def rolls_as_it_turns(self) -> bool:
@@ -347,21 +331,28 @@ class MachineBalance(Results):
         return not any(map(swirls, self._cylinders))
 
     @cached_property
-    def _roll(self) -> Extremes | None:
+    def roll(self) -> Array | None:
+        """Samples of the rolling moment in N m on the pieces of the effort. Raises UsageError where no force acts."""
         if self.effort is None:
             return None
-        roll = sum((self.effort.sampled([one]) for one in self.swirls), -self.effort.M)
-        return self.effort.pieces.extremes(roll[None]).each(self.effort.result)[0]
+        swirling = [Term(-1.0, one, swirl) for one in self.effort.groups if swirls(one[0])]
+        return self.effort.sampled(swirling) - self.effort.M
+
+    @cached_property
+    def _roll_extremes(self) -> Extremes | None:
+        if self.roll is None:
+            return None
+        return self._turning.pieces.extremes(self.roll[None]).each(self._turning.result)[0]
 
     @key_value("M_roll,max", "torque", unless=lambda balance: balance.rolls_as_it_turns)
     def M_roll_max(self) -> Extreme | None:
         """Largest rolling moment on the frame."""
-        return self._roll and self._roll.largest
+        return self._roll_extremes and self._roll_extremes.largest
 
     @key_value("M_roll,min", "torque", unless=lambda balance: balance.rolls_as_it_turns)
     def M_roll_min(self) -> Extreme | None:
         """Smallest rolling moment on the frame."""
-        return self._roll and self._roll.smallest
+        return self._roll_extremes and self._roll_extremes.smallest
 
     @property
     def cycle(self) -> float:
@@ -498,4 +489,4 @@ def swirl(state: State) -> Any:
     """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
     drive = state.drive
     moment = state.b * (drive.mass * drive.mechanism.offset)
-    return moment - drive.rod.couple(state.rod_angle, state.angle) if drive.rod else moment
+    return moment - state.rod_couple if drive.rod else moment

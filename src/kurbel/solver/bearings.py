@@ -33,9 +33,8 @@ from kurbel.numerics.pieces import Pieces, common, resolved
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.pins import on_crosshead_pin, on_pin
 from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
-from kurbel.solver.state import State
+from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 FRAMES = ("throw", "engine", "rod")
 HALF_CONTACT = 60.0
@@ -70,7 +69,7 @@ class Follower(NamedTuple):
 
     def at(self, degrees: Array, within: Array) -> State:
         """Return the state at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
-        return self.drive.at(degrees - self.position, within - self.position)
+        return State.at(self.drive, degrees - self.position, within - self.position)
 
 
 class Size(NamedTuple):

@@ -74,25 +74,24 @@ class Case(Shown):
     @cached_property
     def balance(self) -> MachineBalance:
         """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
-        return MachineBalance(self.machine, self.cylinders, self.count)
+        return MachineBalance(self.effort)
 
     @cached_property
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
-        return MachineTurning(self.machine, self.cylinders, self.count)
+        return MachineTurning(self.effort)
 
     @cached_property
     def effort(self) -> TurningEffort:
-        """Turning effort and load of the whole machine. Raises UsageError where nothing turns it.
-
-        Raises NoSolutionError where the losses leave too little of what drives the machine.
-        """
-        found = TurningEffort(self.machine, self.cylinders, self.count)
-        _ = found.excess  # refuses a machine that cannot run
-        return found
+        """Turning effort and load of the whole machine, which raise errors only when they are computed."""
+        return TurningEffort(self.machine, self.cylinders, self.count)
 
     def harmonics(self, orders: Array | None = None) -> MachineOrders:
-        """Return the orders (n,) of the turning effort, or the usual ones. Raises UsageError where nothing turns it."""
+        """Return the orders (n,) of the turning effort, or the usual ones.
+
+        Raises UsageError where nothing turns the machine, NoSolutionError where losses leave too little.
+        """
+        _ = self.effort.excess  # refuses a machine that cannot run
         return MachineOrders(self.effort, orders)
 
     @cached_property
@@ -102,4 +101,4 @@ class Case(Shown):
 
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
-        return ShaftVibration(self.machine, self.cylinders, orders)
+        return ShaftVibration(self.effort, orders)

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.speed import SpeedLaw
@@ -275,10 +275,10 @@ _MOST_PARTS = 8000
 class ChainEquation:
     """y′ = A y + driving − rise: vibrations of chains without loss factors about uniform rotation at ω_n.
 
-    Numbers of the chain are (n,), or (n, machines); omega: ω_n in rad/s, a number or (machines,); driving: torques on
-    the masses less their means in N m, (n, nodes, pieces). law: how the load on the mass `loaded` rises with the speed.
-    The unknowns are, in N m and of one size: for each segment the torque of its spring less its mean, over the largest
-    natural order, and for each mass J ω_n (ω − ω_n).
+    Numbers of the chain are (n,), or (n, machines); order: the largest natural one, omega: ω_n in rad/s, numbers or
+    (machines,); driving: torques on the masses less their means in N m, (n, nodes, pieces). law: how the load on the
+    mass `loaded` rises with the speed. The unknowns are, in N m and of one size: for each segment the torque of its
+    spring less its mean, over `order`, and for each mass J ω_n (ω − ω_n).
     """
 
     def __init__(
@@ -292,24 +292,33 @@ class ChainEquation:
         loaded: int = 0,
     ) -> None:
         self._source, self._driving, self._law, self.noise = pieces, driving, law, np.zeros(pieces.count)
-        order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
-        self.pieces = pieces.parted(
-            np.ceil(2 * pieces.half * pieces.of(order) / _SWING).clip(1, _MOST_PARTS).astype(int)
+        self._order, omega = (np.broadcast_to(one, pieces.count) for one in (order, omega))
+        parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
+        self.pieces = pieces.parted(parts.astype(int))
+
+        def by_machine(numbers: Array) -> Array:
+            return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
+
+        self._twists, self._damping, self._against = (
+            chain.twists,
+            by_machine(chain.segment_damping),
+            by_machine(chain.mass_damping),
         )
-        inertias, stiffnesses, damping, against = (
-            np.reshape(one, (len(one), -1)).T
-            for one in (chain.inertias, chain.stiffnesses, chain.segment_damping, chain.mass_damping)
-        )
-        speeds = 1 / (inertias * omega[:, None])
-        twists, segments = chain.twists * speeds[:, None], np.tile(np.eye(stiffnesses.shape[1]), (pieces.count, 1, 1))
-        # y → torques in the segments, (machines, segments, m), and A
-        self._passing = np.concatenate((segments * order[:, None, None], damping[..., None] * twists), axis=2)
-        springs = (stiffnesses / (omega * order)[:, None])[..., None] * twists
-        masses = -chain.twists.T @ self._passing
-        masses[..., segments.shape[1] :] -= (against * speeds)[..., None] * np.eye(len(chain.inertias))
-        self._matrix = np.concatenate((np.concatenate((0 * segments, springs), axis=2), masses), axis=1)
-        self.unknowns, self.bounded = self._matrix.shape[1], segments.shape[1] + loaded
-        self._energy = inertias[:, loaded] * omega**2 if law else np.full(pieces.count, np.inf)
+        self._speeds = 1 / (by_machine(chain.inertias) * omega)
+        self._springs = by_machine(chain.stiffnesses) / (omega * self._order)
+        self.unknowns, self.bounded = sum(chain.twists.shape), len(chain.stiffnesses) + loaded
+        self._energy = omega / self._speeds[loaded] if law else np.full(pieces.count, np.inf)
+        unit = np.broadcast_to(np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count))
+        self._matrix = self._flow(unit, np.arange(pieces.count))[1]
+
+    def _flow(self, y: Array, machine: Indices) -> tuple[Array, Array]:
+        """Return the torques in the segments (segments, k, n), and A y, at y (m, k, n) of these machines (n,)."""
+        segments = len(self._springs)
+        speeds = y[segments:] * self._speeds[:, None, machine]
+        apart = np.tensordot(self._twists, speeds, 1)
+        torques = self._order[machine] * y[:segments] + self._damping[:, None, machine] * apart
+        masses = -np.tensordot(self._twists.T, torques, 1) - self._against[:, None, machine] * speeds
+        return torques, np.concatenate((self._springs[:, None, machine] * apart, masses))
 
     def known(self, pieces: Pieces) -> Array:
         """Return the torques on the masses."""
@@ -317,10 +326,11 @@ class ChainEquation:
 
     def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
         """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
-        matrix = self._matrix[pieces.machine]
-        rate = np.einsum("pij,jkp->ikp", matrix, y)
+        rate, slope = (
+            self._flow(y, pieces.machine)[1],
+            self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2),
+        )
         rate[-len(known) :] += known
-        slope = np.tile(matrix.transpose(1, 2, 0)[:, :, None], (1, 1, y.shape[1], 1))
         if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
             height = self.height(known, pieces, eased)
@@ -336,4 +346,4 @@ class ChainEquation:
 
     def torques(self, y: Array, pieces: Pieces) -> Array:
         """Return the torques in the segments less their means in N m, (segments, nodes, pieces)."""
-        return np.asarray(np.einsum("psj,jkp->skp", self._passing[pieces.machine], y))
+        return self._flow(y, pieces.machine)[0]

@@ -19,9 +19,7 @@ from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import column_rows
-from kurbel.solver.pins import on_crosshead_pin, on_pin
-from kurbel.solver.state import State
+from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 _SURE = 4.0
 """Standard deviations: the noise of thousands of samples stays below."""
@@ -38,100 +36,57 @@ class SampledCylinder:
     """A cylinder with its cycle in pieces, and the extremes and zeros of its columns."""
 
     drive: Drive
-    _last: tuple[Pieces, State]
-    """Where columns were sampled last, so that `samples` need not compute them again."""
 
     def told(self, values: Array) -> Any:
         """Return values (machines,) as they are for many machines, and as a float for one."""
         return float(values[0]) if self.drive.count is None else values
 
-    @cached_property
+    # the pieces
+
+    @property
     def pieces(self) -> Pieces:
         """The cycle in pieces on which every column is a polynomial."""
-        self._refuse_locking_on(self._unhalved)
-        return refined(self._unhalved, self._smooth)[0]
+        return self._cycle[0]
+
+    @property
+    def samples(self) -> State:
+        """The state at the nodes of the pieces."""
+        return self._cycle[1]
 
     @cached_property
-    def _unhalved(self) -> Pieces:
+    def _cycle(self) -> tuple[Pieces, State]:
+        drive, cut = self.drive, self._cut
+        _refuse_locking(drive, cut)
+        whole = State.on(drive, cut)
+        pieces, _ = refined(cut, lambda some: _smooth(whole if some is cut else State.on(drive, some), some))
+        return pieces, whole if pieces is cut else State.on(drive, pieces)
+
+    @cached_property
+    def _cut(self) -> Pieces:
         """The cycle cut only where something bends or jumps, and at multiples of 45°."""
         drive, pieces = self.drive, self.drive.pieces
-        return self._cut_at_sides(pieces) if drive.has_force and (drive.rubs or drive.pin_friction) else pieces
+        return _cut_at_sides(drive, pieces) if drive.has_force and (drive.rubs or drive.pin_friction) else pieces
 
-    def _cut_at_sides(self, pieces: Pieces) -> Pieces:
-        """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
-        drive = self.drive
-
-        def before(some: Pieces) -> Array:
-            state = self.drive.on(some).unrubbed
-            return _stacked(some, _sense(state), state.curvature, state.P_gas, state.P)
-
-        def rubbed(some: Pieces) -> Array:
-            state = self.drive.on(some)
-            return _stacked(some, _sense(state), *_moments(state))
-
-        pieces, (sense, *_) = refined(pieces, before)
-        if drive.rubs:
-            pieces = pieces.split(pieces.zeros(sense))
-        if drive.pin_friction is None:
-            return pieces
-        self._refuse_locking_on(pieces)
-        # where the load of a pin passes through zero, its magnitude has a kink
-        unrubbed = drive.on(pieces).unrubbed
-        passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
-        pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
-        pieces, (sense, *_) = refined(pieces, rubbed)
-        return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
-
-    def _smooth(self, pieces: Pieces) -> Array:
-        """Return what is to be a polynomial on every piece."""
-        state = self.drive.on(pieces)
-        self._last = pieces, state
-        offered = [one.of(state) for one in self.drive.mechanism.OFFERS if one.quantity.extremes]
-        if not self.drive.has_force:
-            return _stacked(pieces, state.curvature, *offered)
-        forces = (state.P_gas, state.P, state.N, state.T, state.D)
-        return _stacked(pieces, state.curvature, *forces, *_moments(state), *offered)
-
-    def _refuse_locking_on(self, pieces: Pieces) -> None:
-        """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
-        if self.drive.count is None and self.drive.has_force and may_lock(self.drive.cylinder):
-            below = self.drive.on(pieces).unrubbed.below
-            if (below <= 0).any():
-                at = pieces.zeros(below).degrees
-                first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
-                raise NoSolutionError(self.drive.locks(first))
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees of the only machine between which every quantity is smooth."""
+        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._cut
+        return np.append(cut.low, self.drive.cycle)
 
     @property
     def tail(self) -> float:
         """Largest tail of the Chebyshev series on a piece that could be halved, relative to the largest value."""
-        values = self._smooth(self.pieces)
+        values = _smooth(self.samples, self.pieces)
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
         tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
 
-    @cached_property
-    def samples(self) -> State:
-        """The state at the nodes of the pieces."""
-        pieces = self.pieces
-        last, state = self._last  # known already if no piece was halved
-        return state if last is pieces else self.drive.on(pieces)
+    # extremes and zeros
 
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
         found = self.samples[column]
         return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
-
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._unhalved
-        return np.append(cut.low, self.drive.cycle)
-
-    @cached_property
-    def _extremes(self) -> dict[str, Extremes]:
-        """Those of every column that is declared to have extremes, as far as there is one."""
-        declared = column_rows(State, self.drive.mechanism.OFFERS)
-        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
 
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
         """Return the extremes in SI of these columns, as far as there are any."""
@@ -145,42 +100,67 @@ class SampledCylinder:
         values = self.sampled(column)
         return None if values is None else where_is(self.pieces, values, value)
 
-    # reversals
-
     def reversals_of(self, column: str) -> tuple[Any, ...] | None:
-        """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace."""
+        """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace.
+
+        For many machines one tuple each.
+        """
         values = self.sampled(column)
         if values is None:
             return None
         changes = self.pieces.zeros(values)
         if self.drive.count is not None:
             return tuple(tuple(one.tolist()) for one in changes.of_each(self.drive.count))
-        return tuple(lasting(self.pieces, values, changes.degrees, _SURE * self._noise).tolist())
+        return tuple(lasting(self.pieces, values, changes.degrees, _SURE * self.noise).tolist())
 
     @property
-    def _noise(self) -> float:
+    def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into P."""
         return math.hypot(*(gas.noise for gas in self.drive.gas))
 
-    @cached_property
-    def lifted(self) -> tuple[tuple[float, float], ...]:
-        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
 
-        Empty, too, where there is no guide, no N, or no inclination, so that no guide is the lower one.
-        """
-        down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
-        if side is None or not down or not (self.drive.mechanism.guided and self.drive.mechanism.has_rod):
-            return ()
-        turns = self.pieces.zeros(side).degrees.tolist() or [0.0]
-        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
-        middles = np.array([(start + end) / 2 for start, end in stretches])
-        pressing = self.pieces.at(side, np.zeros(len(middles), dtype=np.intp), middles) * down
-        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
+def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
+    """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
+
+    def before(some: Pieces) -> Array:
+        state = State.on(drive, some).unrubbed
+        return _stacked(some, _sense(state), state.curvature, state.P_gas, state.P)
+
+    def rubbed(some: Pieces) -> Array:
+        state = State.on(drive, some)
+        return _stacked(some, _sense(state), *(state.rubbing or ()))
+
+    pieces, (sense, *_) = refined(pieces, before)
+    if drive.rubs:
+        pieces = pieces.split(pieces.zeros(sense))
+    if drive.pin_friction is None:
+        return pieces
+    _refuse_locking(drive, pieces)
+    # where the load of a pin passes through zero, its magnitude has a kink
+    unrubbed = State.on(drive, pieces).unrubbed
+    passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
+    pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
+    pieces, (sense, *_) = refined(pieces, rubbed)
+    return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
 
 
-def _stacked(pieces: Pieces, *values: Any) -> Array:
-    """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
-    return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
+def _refuse_locking(drive: Drive, pieces: Pieces) -> None:
+    """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
+    if drive.count is None and drive.has_force and may_lock(drive.cylinder):
+        below = State.on(drive, pieces).unrubbed.below
+        if (below <= 0).any():
+            at = pieces.zeros(below).degrees
+            first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
+            raise NoSolutionError(drive.locks(first))
+
+
+def _smooth(state: State, pieces: Pieces) -> Array:
+    """Return what is to be a polynomial on every piece."""
+    offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
+    if not state.drive.has_force:
+        return _stacked(pieces, state.curvature, *offered)
+    forces = (state.P_gas, state.P, state.N, state.T, state.D, *(state.rubbing or ()))
+    return _stacked(pieces, state.curvature, *forces, *offered)
 
 
 def _sense(state: State) -> Any:
@@ -188,10 +168,9 @@ def _sense(state: State) -> Any:
     return None if state.rod_angle is None else state.guide_sense
 
 
-def _moments(state: State) -> tuple[Any, ...]:
-    """Return the moments of friction in pins and journals."""
-    rubbing = state.rubbing
-    return () if rubbing is None else (rubbing.at_crank, rubbing.at_crosshead, rubbing.journals)
+def _stacked(pieces: Pieces, *values: Any) -> Array:
+    """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
+    return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
 
 
 def where_is(pieces: Pieces, values: Array, value: float) -> Where:

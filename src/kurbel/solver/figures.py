@@ -84,8 +84,7 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     rows = [Row(PHI, lambda one: one.phi)]
     for item in _definitions(state):
         for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-            own = row.quantity.commands == ITS_OWN or isinstance(item, ForEach)
-            rows.append(row._replace(quantity=row.quantity._replace(commands=state.commands)) if own else row)
+            rows += printed_by([row], *state.commands) if row.quantity.commands == ITS_OWN else [row]
     rows += [Row(one.quantity, one.of, one.unless) for one in offers]
     return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
 

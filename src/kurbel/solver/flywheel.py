@@ -9,31 +9,29 @@ The books take J as constant and the load as independent of the speed; the speed
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cached_property
-from typing import Any, TypeVar
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine import Machine
-from kurbel.numerics.arithmetic import every, some
+from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Standstill, Unsettled
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.numerics.roots import rising_root
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Columns, Results, passed_on
-from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.forces import Brake
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine
 
-_Line = TypeVar("_Line")
 RIGID_ABOVE = 100.0
 """Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
+_COLUMNS = ("M", "M_load", "T", "T_inertia", "E", "omega", "alpha", "M_coupling")
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -46,22 +44,21 @@ class MachineTurning(Results):
     """The key values of the whole machine over its common cycle; `at(degrees)` gives the columns.
 
     Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Forces T are
-    referred to the radius of crank 1. count: of how many machines the numbers are, (machines,); then so are all key
-    values, nan for a machine that has no answer.
+    referred to the radius of crank 1. The key values of many machines are (machines,), nan for a machine that has none.
+    Raises UsageError where nothing turns the machine, NoSolutionError where it cannot run.
     """
 
     command = "flywheel"
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
-        self.machine = machine
-        self.effort = TurningEffort(machine, cylinders, count)
-        self.excess = self.effort.excess
-        self.omega: Any = self.effort.omega
-        self.crank = machine.cylinders[0].mechanism.crank if machine.cylinders else None
-        self.brake = Brake(machine, cylinders)
-        wheel = machine.flywheel
+    def __init__(self, effort: TurningEffort) -> None:
+        self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
+        self.omega = effort.omega
+        self.crank = self.machine.cylinders[0].mechanism.crank if self.machine.cylinders else None
+        self.brake = Brake(self.machine, effort.cylinders)
+        wheel = self.machine.flywheel
         self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
-        if count is not None:
+        self._turns = self.omega is not None and some(self.omega != 0)
+        if effort.count is not None:
             _ = self.natural_order  # refuses machines of a batch before any result is read
 
     @property
@@ -72,36 +69,25 @@ class MachineTurning(Results):
     # over the crank angle
 
     def _columns(self, phi: Array, within: Array) -> Columns:
-        effort = self.effort
+        return Columns(phi, {column: partial(self._column, column, phi, within) for column in _COLUMNS})
 
-        def torque() -> Array:
-            return effort.M_at(phi, within)
+    def _column(self, column: str, phi: Array, within: Array) -> Array | None:
+        """Return a column of the only machine at crank angles (k,); None for one that is left out."""
+        found = self._samples_of(column)
+        return None if found is None else self.effort.at(*found, phi, within)
 
-        def inertia() -> Array | None:
-            return effort.sum_at(effort.inertia_terms, phi, within) if effort.inertia_terms else None
-
-        def force(of: Callable[[], Array | None]) -> Callable[[], Array | None]:
-            return lambda: None if self.crank is None or (found := of()) is None else found / self.crank
-
-        def of_speed(column: str) -> Callable[[], Array | None]:
-            return lambda: self._speed_at(column, phi, within)
-
-        return Columns(
-            phi,
-            {
-                "M": torque,
-                "M_load": lambda: effort.load_at(phi, within),
-                "T": force(torque),
-                "T_inertia": force(inertia),
-                "E": lambda: self.excess.at(phi),
-                **{column: of_speed(column) for column in ("omega", "alpha", "M_coupling")},
-            },
-        )
-
-    def _speed_at(self, column: str, phi: Array, within: Array) -> Array | None:
-        """Return a column of the speed line at crank angles (k,) of the only machine; None without it."""
-        found = self.speed.samples_of(column) if self.speed else None
-        return None if found is None else found[0].at(found[1], np.zeros(len(phi), dtype=np.intp), phi, within)
+    def _samples_of(self, column: str) -> tuple[Pieces, Array] | None:
+        """Return a column at the nodes of pieces; None for one that is left out."""
+        effort, arm = self.effort, self.crank if column.startswith("T") else 1.0
+        if column in ("omega", "alpha", "M_coupling"):
+            return self.speed.samples_of(column) if self.speed else None
+        if arm is None or (column == "T_inertia" and not effort.inertia_terms):
+            return None
+        if column == "T_inertia":
+            values = effort.sampled(effort.inertia_terms)
+        else:
+            values = self.excess.E if column == "E" else effort.load if column == "M_load" else effort.M
+        return effort.pieces, values / effort.pieces.of(arm)
 
     @property
     def breaks(self) -> Array:
@@ -113,20 +99,11 @@ class MachineTurning(Results):
         found = self._samples_of(column)
         return None if found is None else where_is(*found, value)
 
-    def _samples_of(self, column: str) -> tuple[Pieces, Array] | None:
-        """Return a column of the only machine at the nodes of pieces; None for one that is left out."""
-        effort, arm = self.effort, self.crank if column.startswith("T") else 1.0
-        if column in ("omega", "alpha", "M_coupling"):
-            return self.speed.samples_of(column) if self.speed else None
-        if arm is None or (column == "T_inertia" and not effort.inertia_terms):
-            return None
-        if column == "E":
-            values = self.excess.E
-        elif column == "M_load":
-            values = effort.load
-        else:
-            values = effort.sampled(effort.inertia_terms) if column == "T_inertia" else effort.M
-        return effort.pieces, values / arm
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
+        found = self._samples_of(column)
+        result = self.speed.result if column == "alpha" and self.speed else self.effort.result
+        return None if found is None else found[0].extremes(found[1][None]).each(result)[0]
 
     # turning effort
 
@@ -151,30 +128,36 @@ class MachineTurning(Results):
         return self.M_mean * self.omega if self._turns else None
 
     @property
-    def _turns(self) -> bool:
-        """Whether there is a speed."""
-        return self.omega is not None and some(self.omega != 0)
-
-    @property
     def deficit(self) -> Any:
         """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
         found = self.effort.deficit
         return self.effort.result(np.where(found == 0, np.nan, found)) if found.any() else None
 
-    def extremes_of(self, column: str) -> Extremes | None:
-        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
-        if column == "alpha":
-            return None if self.speed is None else self.speed.alpha_extremes
-        arm, found = self.crank if column == "T" else 1.0, self.effort.extremes
-        return None if arm is None else Extremes(*(Extreme(one.value / arm, one.degrees) for one in found))
-
     # excess work
 
-    phi_crossing = passed_on("excess", "phi_crossing", "Crank angles in degrees at which T crosses W.")
-    lobes = passed_on("excess", "lobes", "Work in J of the lobes between the crossings.")
-    _heights = passed_on("excess", "extremes", "Largest and smallest excess work in J; None where there is none.")
-    E_max = passed_on("_heights", "largest", "Largest excess work in J since angle 0; None where there is none.")
-    E_min = passed_on("_heights", "smallest", "Smallest excess work in J since angle 0.")
+    def _of_each(self, values: Array) -> Any:
+        """Return numbers of the crossings as a tuple, of many machines one each."""
+        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
+        tuples = tuple(tuple(one.tolist()) for one in each)
+        return tuples[0] if self.effort.count is None else tuples
+
+    @property
+    def phi_crossing(self) -> Any:
+        """Crank angles in degrees at which T crosses W."""
+        return self._of_each(self.excess.crossings.degrees)
+
+    @property
+    def lobes(self) -> Any:
+        """Work in J of the lobes between the crossings."""
+        return self._of_each(self.excess.lobes)
+
+    @cached_property
+    def _summits(self) -> Extremes | None:
+        """Largest and smallest E with their angles; None where the only machine has no excess."""
+        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
+
+    E_max = passed_on("_summits", "largest", "Largest excess work in J since angle 0; None where there is none.")
+    E_min = passed_on("_summits", "smallest", "Smallest excess work in J since angle 0; None where there is none.")
 
     @property
     def dE(self) -> Any:
@@ -185,24 +168,32 @@ class MachineTurning(Results):
     def energy_fluctuation(self) -> Any:
         """ΔE over the work of a cycle; None where none is done, nan for such a machine of many."""
         work = self.work_shaft
-        if not some(work > 0):
-            return None
-        return self.dE / np.where(work > 0, work, np.nan) if isinstance(work, np.ndarray) else self.dE / work
+        return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
 
     # flywheel
 
     @cached_property
-    def _needed_in_all(self) -> Any:
-        """ΔE/(δ ω²) in kg m² for the wanted δ."""
-        return self.dE / (self._wanted * self.omega**2) if self._wanted is not None and self._turns else None
-
-    @property
     def J_needed(self) -> Any:
         """Flywheel in kg m² for the wanted δ, J = ΔE/(δ ω²); what a rigid coupling adds comes off."""
-        if self._needed_in_all is None:
+        if self._wanted is None or not self._turns:
             return None
-        left = self._needed_in_all - self._driven_rigidly
-        return np.maximum(left, 0.0) if isinstance(left, np.ndarray) else max(left, 0.0)
+        left = self.dE / (self._wanted * self.omega**2) - self._driven_rigidly
+        return where(left > 0, left, 0.0)
+
+    @property
+    def J(self) -> Any:
+        """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
+        return self.J_needed if self._given is None else self._given
+
+    @property
+    def is_the_needed(self) -> bool:
+        """Whether the flywheel is the one for the wanted δ."""
+        return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
+
+    @property
+    def GD2(self) -> Any:
+        """GD² = 4 J in kg m²."""
+        return None if self.J is None else 4 * self.J
 
     @property
     def GD2_needed(self) -> Any:
@@ -226,27 +217,12 @@ class MachineTurning(Results):
         return self._rim.stress(self.omega) if self._rim and self._turns else None
 
     @property
-    def is_the_needed(self) -> bool:
-        """Whether the flywheel is the one for the wanted δ."""
-        return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
-
-    @property
-    def J(self) -> Any:
-        """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
-        return self.J_needed if self._given is None else self._given
-
-    @property
-    def GD2(self) -> Any:
-        """GD² = 4 J in kg m²."""
-        return None if self.J is None else 4 * self.J
-
-    @property
     def delta_book(self) -> Any:
         """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not depend on the speed."""
         inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
         if not self._turns or not some(inertia != 0):
             return None
-        return self.dE / (np.where(inertia == 0, np.nan, inertia)[()] * self.omega**2)
+        return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
 
     # coupling
 
@@ -256,14 +232,17 @@ class MachineTurning(Results):
         if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
             return None
         flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
-        own = self.effort.J_moving_mean + flywheel
+        own = self._before_coupling(flywheel)
         if not every(own != 0):
             return None
         found = natural_order(self.machine.coupling, own, self.omega)
-        stiff = found > RIGID_ABOVE
-        if not stiff.all():  # of a batch the others have a motion of their own
-            self.effort.refused |= stiff & (self.effort.count is not None)
+        if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
+            self.effort.refused |= found > RIGID_ABOVE
         return self.effort.result(found)
+
+    def _before_coupling(self, flywheel: Any) -> Array:
+        """Return J₁ in kg m² (n,): the flywheel and the mean of what the moving masses add."""
+        return np.asarray(flywheel + self.effort.pieces.mean(self.effort.J_moving))
 
     @property
     def rigid(self) -> bool:
@@ -274,15 +253,15 @@ class MachineTurning(Results):
     def _driven_rigidly(self) -> Any:
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
-    @cached_property
+    @property
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
 
         Raises NoSolutionError where no motion of it repeats.
         """
-        if self.J is None or not self._turns or self._needs_no_inertia:
+        if self.machine.coupling is None or self.rigid:
             return None
-        return self._told_of_stalls(lambda: self._coupled(self.J))
+        return self.speed if isinstance(self.speed, ElasticCoupling) else None
 
     # speed line
 
@@ -304,47 +283,30 @@ class MachineTurning(Results):
             return False
         return not some(self.J != 0) and not some(self.J_needed != 0) and not self.excess.dE.any()
 
+    def _line(self, flywheel: Any) -> SpeedLine:
+        """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
+        coupling, count = self.machine.coupling, self.effort.count
+        if coupling and not self._needs_no_inertia:
+            own = self._before_coupling(flywheel)
+            if count is None and not own[0]:
+                raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
+            if some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
+                return ElasticCoupling(self.effort, own, self.law)
+        whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
+        return RigidLine(self.effort, self.law, np.broadcast_to(whole, self.effort.mean.shape))
+
     @cached_property
-    def speed(self) -> SpeedLine | ElasticCoupling | None:
+    def speed(self) -> SpeedLine | None:
         """The speed of the crank shaft over the turn; None without a flywheel or a speed.
 
         Raises NoSolutionError where the machine stalls.
         """
         if self.J is None or not self._turns:
             return None
-        flywheel = 1.0 if self._needs_no_inertia else self.J
-        return self._told_of_stalls(lambda: self.elastic or self._rigid(flywheel))
-
-    def _told_of_stalls(self, solved: Callable[[], _Line]) -> _Line:
-        """Return a solution with the flywheel; where there is none raise NoSolutionError with one that turns."""
         try:
-            return solved()
+            return self._line(1.0 if self._needs_no_inertia else self.J)
         except Unsettled as stop:
-            raise NoSolutionError(self._refusal(self.J, stop)) from None
-
-    def _coupled(self, flywheel: Any) -> ElasticCoupling | None:
-        """Return the motion on an elastic coupling with a flywheel in kg m²; None without one, or on a rigid one.
-
-        Raises Standstill, Unsettled, NoSolutionError, UsageError.
-        """
-        if self.machine.coupling is None:
-            return None
-        own = np.asarray(flywheel + self.effort.J_moving_mean)
-        if self.effort.count is None and not own[0]:
-            raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
-        if not some(natural_order(self.machine.coupling, own, self.omega) <= RIGID_ABOVE):
-            return None
-        return ElasticCoupling(self.effort, own, self.law)
-
-    def _rigid(self, flywheel: Any) -> SpeedLine:
-        """Return the speed line without a coupling, or with a rigid one; raises Standstill, Unsettled, UsageError."""
-        driven = self.machine.coupling.inertia if self.machine.coupling else 0.0
-        whole = np.broadcast_to(np.asarray(flywheel + driven, dtype=float), self.effort.mean.shape)
-        return RigidLine(self.effort, self.law, whole)
-
-    def _line(self, flywheel: Any) -> SpeedLine | ElasticCoupling:
-        """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
-        return self._coupled(flywheel) or self._rigid(flywheel)
+            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
@@ -353,7 +315,7 @@ class MachineTurning(Results):
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
-    def _refusal(self, flywheel: float, stop: Unsettled) -> str:
+    def _why_it_stalls(self, flywheel: float, stop: Unsettled) -> str:
         """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
@@ -371,14 +333,24 @@ class MachineTurning(Results):
         )
 
     def _enough(self, flywheel: float, more: float | None) -> float | None:
-        """Return the smallest flywheel, within a fiftieth, with which a machine turns that stalls; None without any.
+        """Return the least flywheel of three digits, within a fiftieth, with which a machine turns; None without any.
 
-        more: kinetic energy in J that is known to be just enough.
+        flywheel: one with which it does not; more: kinetic energy in J that is known to be just enough besides.
         """
-        square: Any = self.omega and self.omega**2
-        least = max(flywheel, 1e-6 * float(self.effort.J_moving_mean[0]), 1e-300)
-        start = flywheel + 2 * more / square if more else least + self.dE / square
-        return _smallest(lambda inertia: math.isfinite(self._delta_with(inertia)), least, start, exact=bool(more))
+        moving = float(self.effort.pieces.mean(self.effort.J_moving)[0])
+        least = max(flywheel, 1e-6 * moving, 1e-300)
+        enough = flywheel + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
+        for _ in range(_DOUBLINGS):
+            if math.isfinite(self._delta_with(_rounded_up(enough))):
+                break
+            least, enough = enough, 2 * enough
+        else:
+            return None
+        while not more and enough > 1.02 * max(least, enough / 1000):
+            middle = math.sqrt(max(least, enough / 4) * enough)
+            turns = math.isfinite(self._delta_with(_rounded_up(middle)))
+            least, enough = (least, middle) if turns else (middle, enough)
+        return _rounded_up(enough)
 
     delta = passed_on("speed", "delta", "δ = (ω_max − ω_min)/ω_mean of the speed line.")
     omega_max = passed_on("speed", "omega_max", "Largest angular velocity in rad/s.")
@@ -434,21 +406,6 @@ class MachineTurning(Results):
             return wanted / delta - 1 if delta else math.inf
 
         return rising_root(surplus, self.J_needed)
-
-
-def _smallest(turns: Callable[[float], bool], least: float, start: float, exact: bool) -> float | None:
-    """Return the least number of three digits that turns; `least` does not; exact: `start` is all but it."""
-    enough = start
-    for _ in range(_DOUBLINGS):
-        if turns(_rounded_up(enough)):
-            break
-        least, enough = enough, 2 * enough
-    else:
-        return None
-    while not exact and enough > 1.02 * max(least, enough / 1000):
-        middle = math.sqrt(max(least, enough / 4) * enough)
-        least, enough = (least, middle) if turns(_rounded_up(middle)) else (middle, enough)
-    return _rounded_up(enough)
 
 
 def _rounded_up(value: float) -> float:

@@ -23,7 +23,7 @@ from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.quantity import Quantity, for_each, key_value
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import Results, Rows, Searched, crank_angles, part, rows_of
+from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
 from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
@@ -109,9 +109,7 @@ class CylinderForces(SampledCylinder, Results):
     numbers of machine and cylinder, and all key values, are then arrays (machines,).
     """
 
-    command = "forces"
-
-    state = State
+    command, state = "forces", State
 
     def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
         self.drive = Drive(machine, cylinder, count)
@@ -142,7 +140,7 @@ class CylinderForces(SampledCylinder, Results):
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
         """
-        return self.drive.at(crank_angles(degrees), within)
+        return State.at(self.drive, crank_angles(degrees), within)
 
     @part(Motion)
     def motion(self) -> Motion:
@@ -198,12 +196,33 @@ class CylinderForces(SampledCylinder, Results):
         found = self._extremes.get(column) if self.drive.has_force else None
         return found or self.motion.extremes_of(column)
 
+    @cached_property
+    def _extremes(self) -> dict[str, Extremes]:
+        """Those of every column that is declared to have extremes, as far as there is one."""
+        declared = column_rows(State, self.mechanism.OFFERS)
+        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
+
     def refuse_locking(self) -> None:
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
         if self.drive.count is None and may_lock(self.drive.cylinder):
             self.extremes_of("N")
 
-    # the shoe of the crosshead
+    # guide and shoe of the crosshead
+
+    @cached_property
+    def lifted(self) -> tuple[tuple[float, float], ...]:
+        """Stretches of crank angle in degrees on which N presses on the upper guide, R p. 602.
+
+        Empty, too, where there is no guide, no N, or no inclination, so that no guide is the lower one.
+        """
+        down, side = self.drive.down, self.sampled("N") if self.drive.has_force else None
+        if side is None or not down or not (self.mechanism.guided and self.mechanism.has_rod):
+            return ()
+        turns = self.pieces.zeros(side).degrees.tolist() or [0.0]
+        stretches = list(zip(turns, [*turns[1:], turns[0] + self.drive.cycle]))
+        middles = np.array([(start + end) / 2 for start, end in stretches])
+        pressing = self.pieces.at(side, np.zeros(len(middles), dtype=np.intp), middles) * down
+        return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
     @key_value("p_g,max", "pressure", after="T_peak")
     def p_guide_max(self) -> Extreme | None:
@@ -256,7 +275,7 @@ class CylinderForces(SampledCylinder, Results):
     @property
     def reversals_in_noise(self) -> int:
         """How many changes of the sign of P are noise of a trace, and are not listed."""
-        values = self.sampled("P") if self._noise and self.drive.has_force else None
+        values = self.sampled("P") if self.noise and self.drive.has_force else None
         return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
 
     @property
@@ -359,7 +378,8 @@ class CylinderForces(SampledCylinder, Results):
         """∮ f |N| |dx| in J per cycle."""
         if not self.drive.has_force or not self.drive.rubs:
             return 0.0 if self._has_crosshead else None
-        return self._over_cycle(self.samples.crosshead_power)
+        state = self.samples
+        return self._over_cycle(state.crosshead_drag * (state.slope * state.direction))
 
     @property
     def _has_crosshead(self) -> bool:
@@ -388,9 +408,10 @@ class CylinderForces(SampledCylinder, Results):
         rubbing = self.samples.rubbing if given else None
         if rubbing is None:
             return dict.fromkeys(given, 0.0)
-        moments = {"crank_pin": rubbing.crank_pin, "crosshead_pin": rubbing.crosshead_pin, "journals": rubbing.journals}
-        shape = self.pieces.degrees.shape
-        return {name: self._over_cycle(np.broadcast_to(moments[name], shape)) for name in given}
+        state, shape = self.samples, self.pieces.degrees.shape
+        losses = (state.crank_pin_loss, state.crosshead_pin_loss, rubbing.journals)
+        moments = (np.broadcast_to(one, shape) for one in losses)
+        return {name: self._over_cycle(moment) for name, moment in zip(_RUBBING, moments) if name in given}
 
     @property
     def way(self) -> Any:

@@ -13,6 +13,7 @@ A measured trace is in `kurbel.solver.trace`. The force is P = p_H A_H − p_C A
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -21,7 +22,7 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices, Number
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import within_cycle
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam, after_polytrope
@@ -232,22 +233,6 @@ def _wide(*segments: Segment) -> Stroke:
 # over the crank angle
 
 
-class Held(NamedTuple):
-    """Of the segments that hold angles, each (n,): as `Segment`, rise in Pa over the whole stroke, angles of the ends;
-    and the clearance, lift and base of their machines."""
-
-    z: Array
-    p: Array
-    next_z: Array
-    exponent: Array
-    rise: Array
-    begins: Array
-    ends: Array
-    clearance: Number
-    lift: Number
-    base: Number
-
-
 class CardPressure:
     """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
 
@@ -264,6 +249,7 @@ class CardPressure:
         self._first = np.searchsorted(self._machine, np.arange(own or 1))
         z, p, next_z, next_p, exponent = self._table
         self._rows = np.stack((z, p, next_z, exponent, (next_p - p) / (next_z - z), self._begins, self._ends))
+        self._clearance = _one_or_each([one.clearance for one in self.processes])
         self.straight = not exponent.any()
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
 
@@ -274,51 +260,42 @@ class CardPressure:
             return Angles(self._machine, self._begins)
         return Angles(np.repeat(np.arange(self._count), len(self._begins)), np.tile(self._begins, self._count))
 
-    def _of_machines(self, name: str) -> Any:
-        values = [getattr(one, name) for one in self.processes]
-        return values[0] if len(set(values)) == 1 else np.array(values)
+    def at(
+        self, z: Array, degrees: Array, within: Array, machine: Indices | None, remaining: Array | None = None
+    ) -> Array:
+        """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that hold `within` (n,).
 
-    @cached_property
-    def _clearance(self) -> Any:
-        return self._of_machines("clearance")
+        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; machine: of each, (n,); remaining:
+        1 − z with all its digits, of which steep lines near the outer dead centre need every one.
+        """
+        setting, row = self.setting, self._holding(within, machine)
+        begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
+        lift, base, clearance = (spread(one, machine) for one in (setting.lift, setting.base, self._clearance))
+        own, rest = (z, remaining) if setting.head_end else (remaining, z)
+        way = (1 - z if own is None else own) - begin
+        if remaining is not None:
+            way = np.where(begin > 0.5, (1 - begin) - rest, way)
+        # angles of corners are rounded, lines may be steep: at corners the pressure is exactly the card's; of a piece
+        # only the first and the last node may be there
+        at = np.s_[:: len(way) - 1] if way.ndim > 1 else np.s_[:]
+        turned = within_cycle(degrees[at], setting.cycle)
+        for corner, whole in ((ends, next_z - begin), (begins, 0.0)):
+            way[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, way[at])
+        straight: Array = (p - base) + rise * way
+        if self.straight:
+            return straight
+        curved = exponent != 0
+        clearance = np.where(curved, clearance, 1.0)  # what is straight may begin without any volume
+        power = (p + lift) * np.exp(growth(begin, way, clearance) * -exponent)
+        return np.where(curved, power - lift - base, straight)
 
-    def held(self, within: Array, machine: Indices | None) -> Held:
+    def _holding(self, within: Array, machine: Indices | None) -> Indices:
         """Return the segments that hold angles (n,) in degrees, of these machines."""
         turned = within_cycle(within, self.setting.cycle)
         own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
         row = np.searchsorted(self._keys, own * (2 * self.setting.cycle) + turned, side="right") - 1
         last = np.append(self._first[1:], len(self._keys))[own] - 1
-        row = np.where(row < self._first[own], last, row)
-        numbers = self._clearance, self.setting.lift, self.setting.base
-        return Held(*self._rows[:, row], *(spread(one, machine) for one in numbers))
-
-    def at(self, z: Array, degrees: Array, held: Held, remaining: Array | None = None) -> Array:
-        """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that are held.
-
-        z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; remaining: 1 − z with all its
-        digits, of which steep lines beside the outer dead centre need every one.
-        """
-        way = self._from_corner(z, degrees, held, remaining)
-        straight = (held.p - held.base) + held.rise * way
-        if self.straight:
-            return straight
-        curved = held.exponent != 0
-        clearance = np.where(curved, held.clearance, 1.0)  # what is straight may begin without any volume
-        power = (held.p + held.lift) * np.exp(growth(held.z, way, clearance) * -held.exponent)
-        return np.where(curved, power - held.lift - held.base, straight)
-
-    def _from_corner(self, z: Array, degrees: Array, held: Held, remaining: Array | None) -> Array:
-        """Return the way over the stroke since the corner where the segment begins; at corners exactly the card's."""
-        share = z if self.setting.head_end else 1 - z if remaining is None else remaining
-        way = share - held.z
-        if remaining is not None:
-            way = np.where(held.z > 0.5, (1 - held.z) - (remaining if self.setting.head_end else z), way)
-        # angles of corners are rounded, lines may be steep; of a piece only the first and the last node may stand there
-        at = np.s_[:: len(way) - 1] if way.ndim > 1 else np.s_[:]
-        turned = within_cycle(degrees[at], self.setting.cycle)
-        for corner, whole in ((held.ends, held.next_z - held.z), (held.begins, 0.0)):
-            way[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, way[at])
-        return way
+        return np.where(row < self._first[own], last, row)
 
     @cached_property
     def highest(self) -> Extreme:
@@ -337,7 +314,12 @@ class CardPressure:
     @cached_property
     def area(self) -> Any:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
-        return self._of_machines("area")
+        return _one_or_each([one.area for one in self.processes])
+
+
+def _one_or_each(values: Sequence[float]) -> Any:
+    """Return numbers of machines as one where they are equal, else as an array (machines,)."""
+    return values[0] if len(set(values)) == 1 else np.array(values)
 
 
 def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[Process, ...]:

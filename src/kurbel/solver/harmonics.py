@@ -9,17 +9,18 @@ A crank that follows crank 1 by β has its orders times e^{−iνβ}. Numbers of
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cached_property, reduce
+from collections.abc import Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import unit_vector
+from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.solver.effort import TurningEffort, inertia_torque, position
+from kurbel.solver.effort import TurningEffort, inertia_torque, moves, position
 from kurbel.solver.forces import CylinderForces
 
 HIGHEST = 24
@@ -79,81 +80,60 @@ class Spectrum(NamedTuple):
     orders: Array
     amplitudes: ComplexArray
 
-    def plus(self, other: Spectrum | None, factor: Any = 1.0) -> Spectrum:
-        """Return that of this torque and of another one times a factor."""
-        if other is None:
-            return self
-        return Spectrum(self.mean + factor * other.mean, self.orders, self.amplitudes + factor * other.amplitudes)
-
-    def times(self, factor: Any) -> Spectrum:
-        """Return that of the torque times a factor."""
-        return Spectrum(factor * self.mean, self.orders, factor * self.amplitudes)
-
-    def earlier(self, degrees: Any) -> Spectrum:
-        """Return that of the torque an angle earlier."""
-        orders = self.orders.reshape(-1, *(1,) * (self.amplitudes.ndim - 1))
-        return self._replace(amplitudes=self.amplitudes * unit_vector(orders * degrees))
-
-    def cleared(self, size: Any) -> Spectrum:
-        """Return it with 0 for what is rounding beside torques of this size in N m: the mean, cosines, and sines."""
-        parts = self.mean, self.amplitudes.real, self.amplitudes.imag
-        mean, cos, sin = (np.where(np.abs(part) > _ROUNDING * size, part, 0.0) for part in parts)
-        return Spectrum(mean if mean.ndim else float(mean), self.orders, cos + 1j * sin)
-
-    @property
-    def size(self) -> Any:
-        """The largest of its parts in N m."""
-        return np.maximum(np.abs(self.mean), np.abs(self.amplitudes).max(axis=0, initial=0.0))
-
     def at(self, degrees: Array) -> Array:
         """Return the sum of the mean and these orders in N m at crank angles (m,) in degrees, of one machine."""
         return np.asarray(self.mean + (unit_vector(np.multiply.outer(degrees, self.orders)) @ self.amplitudes).real)
 
 
 class Orders(NamedTuple):
-    """What is independent of the speed, and what the inertia forces give at the nominal speed, None without them."""
+    """The orders ν (k,) of a torque in two parts: independent of the speed, and of the inertia forces at ω_n.
 
-    gas: Spectrum
-    inertia: Spectrum | None
+    parts: complex amplitudes of both in N m, (2, 1 + k), or (2, 1 + k, n), after their mean; moving: whether masses
+    move.
+    """
+
+    orders: Array
+    parts: ComplexArray
+    moving: bool
+
+    def _spectrum(self, part: ComplexArray) -> Spectrum:
+        return Spectrum(part[0].real, self.orders, part[1:])
+
+    @property
+    def gas(self) -> Spectrum:
+        """What is independent of the speed."""
+        return self._spectrum(self.parts[0])
+
+    @property
+    def inertia(self) -> Spectrum | None:
+        """What the inertia forces give at the nominal speed; None without them."""
+        return self._spectrum(self.parts[1]) if self.moving else None
 
     @property
     def whole(self) -> Spectrum:
         """Both together."""
-        return self.gas.plus(self.inertia)
+        return self._spectrum(self.parts.sum(axis=0))
 
     def at_speed(self, ratio: float) -> Spectrum:
         """Return both together at a speed, over the nominal one."""
-        return self.gas.plus(self.inertia, ratio**2)
+        return self._spectrum(self.parts[0] + ratio**2 * self.parts[1])
 
-    @property
-    def size(self) -> Any:
-        """The largest of the parts of both in N m."""
-        return np.maximum(self.gas.size, self.inertia.size if self.inertia else 0.0)
-
-    def each(self, change: Callable[[Spectrum], Spectrum]) -> Orders:
-        """Return both, each changed."""
-        return Orders(change(self.gas), self.inertia and change(self.inertia))
+    def cleared(self, size: Any) -> Orders:
+        """Return it with 0 for what is rounding of torques of this size in N m: means, cosines, and sines."""
+        return self._replace(parts=unless_cancelled(self.parts, size, _ROUNDING))
 
 
 class CylinderOrders(NamedTuple):
     """The orders of the torque of one cylinder.
 
-    own: over its own crank angle, without the losses of the machine; share: what they leave of all of it; lost: what
-    they take off besides, with its factor.
+    own: over its own crank angle, without the losses of the machine; in_machine: over the angle of crank 1, with them;
+    share: what they leave of all of it.
     """
 
     forces: CylinderForces
     own: Orders
+    in_machine: Orders
     share: Any
-    lost: tuple[tuple[Any, Spectrum], ...]
-
-    @property
-    def in_machine(self) -> Orders:
-        """Those over the angle of crank 1, with the losses of the machine."""
-        shared, behind = self.own.each(lambda one: one.times(self.share)), self.forces.drive.cylinder.crank_position
-        for factor, lost in self.lost:
-            shared = Orders(shared.gas.plus(lost, factor), shared.inertia)
-        return shared.each(lambda one: one.earlier(-behind))
 
     @property
     def area(self) -> Any:
@@ -169,53 +149,55 @@ class MachineOrders:
         self.effort = effort
         self.orders = every_order(effort.cycle) if orders is None else orders
 
-    def spectra(self, pieces: Pieces, torques: Sequence[Array]) -> list[Spectrum]:
-        """Return mean and orders of torques in N m, (nodes, pieces); of shorter cycles the orders that they have."""
+    def spectra(self, pieces: Pieces, torques: Sequence[Array]) -> ComplexArray:
+        """Return means and amplitudes of torques (nodes, pieces), (q, 1 + k), or (q, 1 + k, n).
+
+        Torques of a shorter cycle have only some of the orders.
+        """
         present = np.flatnonzero((self.orders * round(pieces.cycle / 360.0)) % 1 == 0)
         values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in torques])
-        found = np.zeros((len(values), len(self.orders), pieces.count), dtype=complex)
-        found[:, present] = amplitudes(pieces, values, self.orders[present])
-        means = pieces.mean(values)
-        if self.effort.count is None:
-            return [Spectrum(float(mean[0]), self.orders, one[:, 0]) for mean, one in zip(means, found)]
-        return [Spectrum(mean, self.orders, one) for mean, one in zip(means, found)]
+        found = np.zeros((len(values), 1 + len(self.orders), pieces.count), dtype=complex)
+        found[:, 0], found[:, 1 + present] = pieces.mean(values), amplitudes(pieces, values, self.orders[present])
+        return found[..., 0] if self.effort.count is None else found
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
         """Those of every cylinder in which a force acts; one is computed of all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
-            forces, share, lost = group[0], self.effort.share(group[0].drive), self.effort.lost(group)
-            torques = [forces.samples.M, *(one.torque(forces.samples) for one in lost)]
-            if self.effort.moves(forces):
-                torques.append(inertia_torque(forces.samples))
-                torques[0] = torques[0] - torques[-1]
-            gas, *rest = self.spectra(forces.pieces, torques)
-            own = Orders(gas, rest.pop() if self.effort.moves(forces) else None)
-            own = own.each(lambda one, size=own.size: one.cleared(size))  # type: ignore[misc]
-            factors = tuple((one.factor, spectrum) for one, spectrum in zip(lost, rest))
-            found |= {one.drive.name: CylinderOrders(one, own, share, factors) for one in group}
-        return tuple(found[one.drive.name] for one in self.effort.cylinders)
+            samples, share, lost = group[0].samples, self.effort.share(group[0].drive), self.effort.lost(group)
+            inertia = inertia_torque(samples) if moves(group) else np.zeros(1)
+            torques = [samples.M - inertia, inertia, *(one.torque(samples) for one in lost)]
+            each = self.spectra(group[0].pieces, torques)
+            own = Orders(self.orders, each[:2], moves(group)).cleared(np.abs(each[:2]).max(axis=(0, 1)))
+            shared = own.parts * share
+            for term, loss in zip(lost, each[2:]):
+                shared[0] += term.factor * loss
+            for forces in group:
+                behind = np.multiply.outer(np.append(0.0, self.orders), forces.drive.cylinder.crank_position)
+                turned = np.reshape(unit_vector(-behind), (len(behind), -1) if each.ndim > 2 else -1)
+                found[forces.drive.name] = CylinderOrders(forces, own, own._replace(parts=shared * turned), share)
+        return tuple(found[one.drive.name] for one in self.effort.cylinders if one.drive.name in found)
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        if self.effort.given:
-            (known,) = self.spectra(self.effort.pieces, [self.effort.M])
-            return Orders(known.cleared(known.size), None)
-        each = [one.in_machine for one in self.cylinders]
-        inertia, size = [one.inertia for one in each if one.inertia], sum(one.size for one in each)
-        summed = Orders(
-            reduce(Spectrum.plus, (one.gas for one in each)), reduce(Spectrum.plus, inertia) if inertia else None
-        )
-        return summed.each(lambda one: one.cleared(size))
+        if self.effort.machine.effort:
+            known = self.spectra(self.effort.pieces, [self.effort.M])
+            parts, moving = np.concatenate((known, 0 * known)), False
+            size = np.abs(parts).max(axis=(0, 1))
+        else:
+            each = [one.in_machine for one in self.cylinders]
+            parts, moving = np.sum([one.parts for one in each], axis=0), any(one.moving for one in each)
+            size = sum(np.abs(one.parts).max(axis=(0, 1)) for one in each)
+        return Orders(self.orders, parts, moving).cleared(size)
 
     @property
     def M_mean(self) -> Any:
         """Mean torque in N m."""
         return self.effort.result(self.effort.mean)
 
-    @cached_property
+    @property
     def swing(self) -> Any:
         """Mean square in N² m² of the torque less its mean."""
         effort = self.effort
@@ -223,19 +205,20 @@ class MachineOrders:
 
     @property
     def orders_share(self) -> Any:
-        """Share of that which these orders carry, Σ |M_ν|²/2 over it (Parseval); None where the torque is uniform."""
-        carried, uniform = (np.abs(self.machine.whole.amplitudes) ** 2).sum(axis=0) / 2, 1e-28 * self.M_mean**2
-        if self.effort.count is None:
-            return float(carried) / self.swing if self.swing > uniform else None
-        return carried / np.where(self.swing > uniform, self.swing, np.nan)
+        """Share of the mean square of M − M_m that these orders carry, Σ |M_ν|²/2 over it (Parseval).
+
+        None where the torque is uniform.
+        """
+        swing, carried = self.swing, (np.abs(self.machine.whole.amplitudes) ** 2).sum(axis=0) / 2
+        varies = swing > 1e-28 * self.M_mean**2
+        return carried / where(varies, swing, math.nan) if some(varies) else None
 
     @property
     def major_orders(self) -> Any:
         """The orders to which all cranks contribute in phase; None with fewer than two cylinders."""
-        if len(self.cylinders) < 2:
+        positions = [position(forces) * np.ones(self.effort.pieces.count) for forces, *_ in self.cylinders]
+        if len(positions) < 2:
             return None
-        ones = np.ones(self.effort.pieces.count)
-        positions = [position(one.forces) * ones for one in self.cylinders]
         together = np.abs(sum(unit_vector(np.multiply.outer(self.orders, one)) for one in positions))
         in_phase = together >= (1 - _IN_PHASE) * len(positions)
         each = tuple(tuple(self.orders[one].tolist()) for one in in_phase.T)

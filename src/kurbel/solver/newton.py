@@ -24,8 +24,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
-from kurbel.solver.pins import on_crosshead_pin, on_pin
-from kurbel.solver.state import State, reduced_inertia
+from kurbel.solver.state import State, on_crosshead_pin, on_pin, reduced_inertia
 
 _ANGLES = np.random.default_rng(1927).uniform(0.0, 1.0, 7)
 """Of the cycle."""
@@ -39,7 +38,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     drive = cylinder.drive
     if not drive.has_force or drive.count is not None or not (drive.mechanism.has_rod and drive.mechanism.slides):
         return None
-    state = drive.at(_ANGLES * drive.cycle)
+    state = State.at(drive, _ANGLES * drive.cycle)
     sizes = [np.abs(one).max() for one in map(cylinder.sampled, ("P", "N", "D", "T", "S")) if one is not None]
     if not any(sizes):
         return 0.0

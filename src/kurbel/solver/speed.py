@@ -22,7 +22,7 @@ from kurbel.arrays import Array, Flags
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import every
 from kurbel.numerics.collocation import Standstill, periodic
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces, Sample, refined
 from kurbel.solver.effort import TurningEffort
 
@@ -125,12 +125,6 @@ class SpeedLine:
     def alpha(self) -> tuple[Pieces, Array]:
         """Samples of the angular acceleration dω/dt in rad/s² with their pieces."""
         raise NotImplementedError
-
-    @property
-    def alpha_extremes(self) -> Extremes:
-        """Largest and smallest angular acceleration in rad/s²."""
-        pieces, values = self.alpha
-        return pieces.extremes(np.where(pieces.of(self.failed), 0.0, values)[None]).each(self.result)[0]
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return the samples of ω in rad/s or α in rad/s² with their pieces; None for another column."""
@@ -251,4 +245,4 @@ class RigidLine(SpeedLine):
             return np.asarray((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[None]
 
         pieces, (values,) = refined(self.pieces, sample)
-        return pieces, values
+        return pieces, np.where(pieces.of(self.failed), 0.0, values)

@@ -17,24 +17,43 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property, reduce
 from operator import add
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel import crank_formulas as formulas
+from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import Mechanism, PointMotion
+from kurbel.mechanisms import PointMotion
 from kurbel.numerics.arithmetic import bearing, some
 from kurbel.numerics.lobatto import rule
+from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import Row, column
+from kurbel.solver.drive import Drive
 from kurbel.solver.figures import AtAngles, column_rows
 from kurbel.solver.gas import Pressure
+from kurbel.solver.shaft import Vector
 from kurbel.solver.trace import TracePressure, spread
 
-if TYPE_CHECKING:
-    from kurbel.solver.drive import Drive
-    from kurbel.solver.pins import Rubbing
+
+class Rubbing(NamedTuple):
+    """Moments of friction in N m: of both pins on the rod, in the sense of rotation, and of the journals.
+
+    Each takes f r |F| on its radius r, and in a turn by dα the work f r |F| dα: the journals turn by dφ, the rod on the
+    crank pin by dφ + dψ, on the crosshead pin by dψ. In each pin the moment also acts on the rod, as a couple that
+    guide and crank pin carry. The forces F are those without this friction: what it changes in them is of second order
+    in f, as with the friction circles of the books.
+    """
+
+    at_crank: Any
+    at_crosshead: Any
+    journals: Any
+
+    @property
+    def couple(self) -> Any:
+        """Couple of both pins on the rod."""
+        return self.at_crank + self.at_crosshead
 
 
 class State(AtAngles):
@@ -49,11 +68,18 @@ class State(AtAngles):
 
     def __init__(self, drive: Drive, angle: CrankAngle, within: Array, rubs: bool = True) -> None:
         self.drive, self.angle, self.within, self.rubs = drive, angle, within, rubs
+        self.mechanism, self.omega, self.phi = drive.mechanism, drive.omega, angle.degrees
 
-    @property
-    def rows(self) -> Mapping[str, Row]:
-        """The rows of its columns, those of the mechanism among them."""
-        return column_rows(State, self.drive.mechanism.OFFERS)
+    @classmethod
+    def at(cls, drive: Drive, degrees: Array, within: Array | None = None, machine: Indices | None = None) -> State:
+        """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
+        drive = drive if machine is None else drive.taken(machine)
+        return cls(drive, CrankAngle.of(degrees), degrees if within is None else within)
+
+    @classmethod
+    def on(cls, drive: Drive, pieces: Pieces) -> State:
+        """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
+        return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
     @property
     def unrubbed(self) -> State:
@@ -61,28 +87,19 @@ class State(AtAngles):
         return State(self.drive, self.angle, self.within, rubs=False) if self.rubs else self
 
     @property
-    def _on_pieces(self) -> bool:
-        return np.ndim(self.angle.sin) > 1
+    def rows(self) -> Mapping[str, Row]:
+        """The rows of its columns, those of the mechanism among them."""
+        return column_rows(State, self.mechanism.OFFERS)
 
     def _filled(self, value: Any) -> Array:
         return np.broadcast_to(np.asarray(value, dtype=float), self.phi.shape)
 
-    @property
-    def mechanism(self) -> Mechanism:
-        """The mechanism."""
-        return self.drive.mechanism
-
-    @property
-    def omega(self) -> Any:
-        """Angular velocity in rad/s."""
-        return self.drive.omega
-
-    @property
-    def phi(self) -> Array:
-        """Crank angle in degrees."""
-        return self.angle.degrees  # type: ignore[no-any-return]
-
     # motion
+
+    @cached_property
+    def rod_angle(self) -> Any:
+        """sin ψ and cos ψ; None without a rod."""
+        return self.mechanism.rod_angle(self.angle)
 
     @cached_property
     def posed(self) -> CrankAngle:
@@ -90,41 +107,42 @@ class State(AtAngles):
         return self.angle._replace(rod=self.rod_angle)
 
     @cached_property
+    def rod_slope(self) -> Any:
+        """dψ/dφ = λ cos φ/cos ψ; 0 without a rod."""
+        _, cos_psi = self.rod_angle or (0.0, 1.0)
+        return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
+
+    @cached_property
     def _coordinate(self) -> Any:
-        return self.drive.mechanism.coordinate(self.posed)
+        return self.mechanism.coordinate(self.posed)
 
     @cached_property
     def way(self) -> Any:
         """Displacement in m from the inner dead centre, even where x counts from elsewhere: for the chambers."""
-        return self.x - self.drive.mechanism.start
+        return self._coordinate - self.mechanism.start
 
     @cached_property
     def slope(self) -> Any:
         """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.drive.mechanism.slope(self.posed)
+        return self.mechanism.slope(self.posed)
 
     @cached_property
     def curvature(self) -> Any:
         """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
-        return self.drive.mechanism.curvature(self.posed)
-
-    @cached_property
-    def rod_angle(self) -> Any:
-        """sin ψ and cos ψ; None without a rod."""
-        return self.drive.mechanism.rod_angle(self.angle)
+        return self.mechanism.curvature(self.posed)
 
     @cached_property
     def direction(self) -> Array:
         """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
-        if self.drive.mechanism.turns:
+        if self.mechanism.turns:
             return np.ones_like(self.within)
-        inner, outer = self.drive.mechanism.dead_centres()
+        inner, outer = self.mechanism.dead_centres()
         return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @column("z", "ratio", commands=("motion", "forces"), on_request=("motion", "forces"))
     def z(self) -> Any:
         """Fraction of the stroke, or of the swing, from the inner dead centre."""
-        one = self.drive.mechanism
+        one = self.mechanism
         return None if one.turns else (self._coordinate - one.start) / one.stroke
 
     @column("ψ", "angle", commands=("motion", "forces"))
@@ -135,24 +153,24 @@ class State(AtAngles):
     @column("x", "length", commands=("motion", "forces"))
     def x(self) -> Any:
         """Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke."""
-        return self._coordinate if self.drive.mechanism.slides else None
+        return self._coordinate if self.mechanism.slides else None
 
     @column("c", "velocity", commands=("motion", "forces"))
     def c(self) -> Any:
         """Velocity, positive toward the shaft; of a quick-return ram, on the working stroke."""
-        return self.slope * self.omega if self.drive.mechanism.slides and self.omega is not None else None
+        return self.slope * self.omega if self.mechanism.slides and self.omega is not None else None
 
     @column("b", "acceleration", commands=("motion", "forces"))
     def b(self) -> Any:
         """Acceleration, positive as the velocity."""
-        w = self.omega if self.drive.mechanism.slides else None
+        w = self.omega if self.mechanism.slides else None
         return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
 
     # a point of the rod
 
     @cached_property
     def _point(self) -> PointMotion | None:
-        point, mechanism = self.drive.cylinder.point, self.drive.mechanism
+        point, mechanism = self.drive.cylinder.point, self.mechanism
         return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
 
     @column("x_Q", "length", commands=("motion", "forces"), on_request=("forces",))
@@ -181,26 +199,21 @@ class State(AtAngles):
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
         if isinstance(end, TracePressure):
-            return end.at(self.phi, end.held(self.within))
-        mechanism = self.drive.mechanism
-        left = mechanism.remaining(self.posed) / mechanism.stroke if end.steep else None
-        return end.at(self.z, self.phi, end.held(self.within, self.drive.index), left)
-
-    def _counted(self, end: Pressure | None) -> Any:
-        """Return a pressure as the machine file counts it."""
-        return None if end is None else self.pressure(end) + spread(end.setting.base, self.drive.index)
+            return end.at(self.phi, self.within)
+        left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
+        return end.at(self.z, self.phi, self.within, self.drive.index, left)
 
     @column("p_H", "pressure", gauge=True)
     def p_head(self) -> Any:
         """Gauge pressure in the head-end chamber, just after a jump."""
         gas = self.drive.own_gas
-        return gas and self._counted(gas.head)
+        return self.pressure(gas.head) + spread(gas.base, self.drive.index) if gas and gas.head else None
 
     @column("p_C", "pressure", gauge=True)
     def p_crank(self) -> Any:
         """Gauge pressure in the crank-end chamber, just after a jump."""
         gas = self.drive.own_gas
-        return gas and self._counted(gas.crank)
+        return self.pressure(gas.crank) + spread(gas.base, self.drive.index) if gas and gas.crank else None
 
     @column("V", "volume", on_request=("forces",))
     def V(self) -> Any:
@@ -214,7 +227,7 @@ class State(AtAngles):
         gas = self.drive.own_gas
         if not (gas and gas.crank):
             return None
-        return gas.piston.crank_area * (self.drive.mechanism.stroke - self.way) + gas.clearance_volumes[1]
+        return gas.piston.crank_area * (self.mechanism.stroke - self.way) + gas.clearance_volumes[1]
 
     @column("dV/dφ", "volume_rise", on_request=("forces",))
     def dV(self) -> Any:
@@ -290,31 +303,31 @@ class State(AtAngles):
         resistance = self.drive.resistance
         if resistance is None:
             return None
-        working = self.direction == (1.0 if self.drive.mechanism.works_outward else -1.0)
+        working = self.direction == (1.0 if self.mechanism.works_outward else -1.0)
         return self._filled(-self.direction * np.where(working, resistance.work, resistance.back))
 
     @column("P_r", "force")
     def P_ram(self) -> Any:
         """Force on a ram against its motion."""
-        return self._resistance if self.drive.mechanism.slides else None
+        return self._resistance if self.mechanism.slides else None
 
     @column("P", "force", extremes=("forces",), called="piston force", peak=True)
     def P(self) -> Any:
         """Force along the stroke line: gas, inertia, weight, and what a ram works against."""
         return _sum(self.P_inertia, self.P_start)
 
-    def rod_load(self, without: Any = 0.0) -> Any:
+    def _rod_load(self, without: Any = 0.0) -> Any:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
 
         without: mass in kg that is left out, as the connecting rod's share is. None without a gas force, and without a
         connecting rod, where it would be P.
         """
-        drive, masses = self.drive, self.drive.cylinder.masses
-        if self.P_gas is None or not drive.mechanism.has_rod:
+        masses = self.drive.cylinder.masses
+        if self.P_gas is None or not self.mechanism.has_rod:
             return None
         mass = masses.parts - without if masses else 0.0
-        weight = drive.weight_of(mass)
-        moved = self.P_gas - self.b * mass if drive.has_inertia else self.P_gas
+        weight = self.drive.weight_of(mass)
+        moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
         return moved + weight[0] if weight else moved
 
     @column("P_G", "force", unless=lambda forces: forces.no_compressor)
@@ -322,13 +335,16 @@ class State(AtAngles):
         """Rod load at the crosshead pin: gas, inertia and weight of all but the connecting rod, compression
         positive.
         """
-        return self.rod_load()
+        return self._rod_load()
 
     @column("P_KS", "force", unless=lambda forces: forces.no_compressor)
     def P_piston_rod(self) -> Any:
-        """The same at the piston rod, without the crosshead."""
+        """The same at the piston rod, without the crosshead.
+
+        None where its mass is unknown.
+        """
         masses = self.drive.cylinder.masses
-        return None if not masses or masses.crosshead is None else self.rod_load(without=masses.crosshead)
+        return None if not masses or masses.crosshead is None else self._rod_load(without=masses.crosshead)
 
     @column(
         "P_0",
@@ -341,7 +357,7 @@ class State(AtAngles):
         """Force along the stroke line without inertia."""
         return _sum(_sum(self.P_gas, self.P_weight), self.P_ram)
 
-    # rod and guide
+    # the rod
 
     @column("S", "force", extremes=("forces",), called="rod force", peak=True)
     def S(self) -> Any:
@@ -352,43 +368,84 @@ class State(AtAngles):
         if self.P is None or self.rod_angle is None:
             return None
         push = self.along_rod / self.rod_angle[1]
-        return push if self.rod_side is None else push - self.rod_side * self.rod_angle[0]
+        return push if self._rod_side is None else push - self._rod_side * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
     def S_crosshead(self) -> Any:
-        """Force along an exact rod at the crosshead pin, compression positive."""
-        if self.P is None or not self.drive.rod:
+        """Force along an exact rod at the crosshead pin, compression positive.
+
+        The rod's own mass at this pin, which the pin does not act on, is taken off.
+        """
+        drive = self.drive
+        if self.P is None or drive.rod is None:
             return None
-        b = self.b if self.drive.has_inertia else None
-        return self.drive.rod.at_crosshead(self.rod_angle, self.along_rod, self.N - self.drive.guide_weight, b)
+        weight = drive.weight_of(drive.rod.crosshead_mass) or (0.0, 0.0)
+        push = self.along_rod + self.b * drive.rod.crosshead_mass if drive.has_inertia else self.along_rod
+        push, lift = push - weight[0], self.N - drive.guide_weight + weight[1]
+        return push * self.rod_angle[1] + lift * self.rod_angle[0]
 
     @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
     def S_crank(self) -> Any:
-        """Force along an exact rod at the crank pin, compression positive."""
-        if self.P is None or not self.drive.rod:
+        """Force along an exact rod at the crank pin, compression positive.
+
+        T sin(φ+ψ) + D cos(φ+ψ).
+        """
+        if self.P is None or self.drive.rod is None:
             return None
-        return self.drive.rod.at_crank(self.rod_angle, self.angle, self.T, self.D)
+        (sin_psi, cos_psi), sin, cos = self.rod_angle, self.angle.sin, self.angle.cos
+        return self.T * (sin * cos_psi + cos * sin_psi) + self.D * (cos * cos_psi - sin * sin_psi)
 
     @cached_property
-    def rod_side(self) -> Any:
-        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
-        exact = self.drive.rod.side_force(self.rod_angle, self.angle) if self.drive.rod else None
-        return exact if self.rubbing is None else _sum(exact, self._pin_side)
+    def rod_couple(self) -> Any:
+        """Couple of an exact rod in N m, (I_r − m_r a (L − a)) ψ̈ at uniform rotation; 0 without one."""
+        rod, (sin_psi, cos_psi) = self.drive.rod, self.rod_angle or (0.0, 1.0)
+        if rod is None or self.omega is None:
+            return 0.0
+        bend = formulas.rod_curvature(self.angle.sin, sin_psi, cos_psi, self.rod_slope, self.mechanism.lam)
+        return bend * (rod.excess_inertia * self.omega * self.omega)
 
-    @property
-    def _pin_side(self) -> Any:
-        """Side force in N of the friction in both pins of the rod."""
-        assert self.rubbing is not None
-        return self.rubbing.couple / self.drive.mechanism.rod_length / self.rod_angle[1]
+    def _side(self, couple: Any) -> Any:
+        """Return the force in N, square to the stroke line, by which a couple on the rod relieves the guide."""
+        return couple / (self.rod_angle[1] * self.mechanism.rod_length)
+
+    @cached_property
+    def _rod_side(self) -> Any:
+        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
+        exact = None if self.drive.rod is None else self._side(self.rod_couple)
+        return exact if self.rubbing is None else _sum(exact, self._side(self.rubbing.couple))
 
     @cached_property
     def rubbing(self) -> Rubbing | None:
-        """Moments of friction in pins and journals in N m; None where there is none."""
+        """Moments of friction in pins and journals; None where there is none."""
         friction = self.drive.pin_friction if self.rubs else None
-        return None if friction is None or self.P is None else friction.moments(self.unrubbed)
+        if friction is None or self.P is None:
+            return None
+        # the rod turns by −dψ: forward where it swings back
+        turned = np.mod(self.within, 360.0)
+        swings = np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
+        return Rubbing(
+            np.hypot(*on_pin(self.unrubbed)) * friction.crank_pin,
+            np.hypot(*on_crosshead_pin(self.unrubbed)) * (swings * friction.crosshead_pin),
+            sum(np.hypot(*force) for force in self._on_journals(on_pin(self.unrubbed))) * friction.journals,
+        )
+
+    def _on_journals(self, pin: Vector) -> tuple[Vector, ...]:
+        """Return the forces of the throw on its bearings; without a crankshaft, that on the pin stands for their sum.
+
+        Of several cylinders each counts by itself, with an equal part of what else loads the bearings of its throw.
+        """
+        drive, friction = self.drive, self.drive.pin_friction
+        if friction is None or friction.line is None or not some(friction.journals != 0):
+            return (pin,)
+        throw = friction.line.throw_of([one.name for one in drive.machine.cylinders].index(drive.name))
+        count = len(throw.cylinders)
+        found = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
+        return tuple(Vector(force.D / count, force.T / count) for force in found)
+
+    # the guide
 
     @cached_property
-    def after_steady_friction(self) -> Any:
+    def _after_steady_friction(self) -> Any:
         """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
         steady = self.drive.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
@@ -396,25 +453,23 @@ class State(AtAngles):
     @cached_property
     def _guide_load(self) -> Any:
         """Load on the guide besides the push of the rod in N: weight less the side force of couples on the rod."""
-        weight = self.drive.guide_weight
-        return weight if self.rod_side is None else weight - self.rod_side
+        return self.drive.guide_weight if self._rod_side is None else self.drive.guide_weight - self._rod_side
 
     @cached_property
     def guide_sense(self) -> Any:
         """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
-        return self.after_steady_friction * sin_psi + cos_psi * self._guide_load
+        return self._after_steady_friction * sin_psi + self._guide_load * cos_psi
 
     @cached_property
     def guide_side(self) -> Array:
         """+1 where N ≥ 0, else −1; (n,), each piece having one."""
-        if self._on_pieces:
-            above = rule(len(self.phi)).weights @ self.guide_sense
-        elif self.within is self.phi:
-            above = self.guide_sense
-        else:
-            above = State(self.drive, CrankAngle.of(self.within), self.within, self.rubs).guide_sense
-        return np.where(above >= 0, 1.0, -1.0)
+        sense = self.guide_sense
+        if np.ndim(self.angle.sin) > 1:
+            sense = rule(len(self.phi)).weights @ sense
+        elif self.within is not self.phi:
+            sense = State(self.drive, CrankAngle.of(self.within), self.within, self.rubs).guide_sense
+        return np.where(sense >= 0, 1.0, -1.0)
 
     @cached_property
     def below(self) -> Any:
@@ -434,11 +489,11 @@ class State(AtAngles):
         if self.P is None:
             return None
         if self.rod_angle is None:
-            alone = drive.weight if drive.mechanism.known_across else None
+            alone = drive.weight if self.mechanism.known_across else None
             return alone and self._filled(alone[1])
-        sin_psi, cos_psi = self.rod_angle
         if not drive.rubs:
-            return self.after_steady_friction * (sin_psi / cos_psi) + self._guide_load
+            sin_psi, cos_psi = self.rod_angle
+            return self._after_steady_friction * (sin_psi / cos_psi) + self._guide_load
         locked = self.below <= 0
         if locked.any() and drive.index is None:
             raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
@@ -460,36 +515,42 @@ class State(AtAngles):
         """Work of friction on the guide over time, by which it wears (Redtenbacher)."""
         return None if self.p_guide is None or self.c is None else self.crosshead_drag * self.c * self.direction
 
-    @cached_property
-    def crosshead_power(self) -> Any:
-        """Work of crosshead friction by crank angle, f |N| |dx/dφ| in J per radian."""
-        return self.crosshead_drag * (self.slope * self.direction)
-
-    # crank pin
+    # the crank pin
 
     @column("D", "force")
     def D(self) -> Any:
         """Radial force at the crank pin, positive toward the shaft.
 
-        R 302.
+        R 302; an exact rod adds its couple, centrifugal force and weight.
         """
-        radial = None if self.P is None else self.drive.mechanism.radial(self.posed)
+        radial = None if self.P is None else self.mechanism.radial(self.posed)
         if radial is None:
             return None
         push = self.along_rod * radial
-        if self.drive.rod is not None and self.rod_angle is not None:
-            push = push + self.drive.rod.radial(self.rod_angle, self.angle)
-        return push if self.rubbing is None else push + self.angle.sin * self._pin_side
+        push = push if self._rod_side is None else push + self._rod_side * self.angle.sin
+        if self.drive.rod is None:
+            return push
+        weight = self.drive.weight_of(self.drive.rod.pin_mass) or (0.0, 0.0)
+        pull = self.drive.centrifugal(self.drive.rod.pin_mass)
+        return push - pull + (self.angle.cos * weight[0] + self.angle.sin * weight[1])
 
     @column("M_2", "torque")
     def M_out(self) -> Any:
         """Moment on what swings, or on the second crank, against its motion."""
-        return None if self.drive.mechanism.slides else self._resistance
+        return None if self.mechanism.slides else self._resistance
 
     @property
     def _output(self) -> Any:
         """What reaches the crank of the force, or of the moment, at the output."""
-        return self.along_rod if self.drive.mechanism.slides else self.M_out
+        return self.along_rod if self.mechanism.slides else self.M_out
+
+    @cached_property
+    def _rod_tangential(self) -> Any:
+        """What couple and weight of an exact rod give to T in N."""
+        assert self.drive.rod is not None
+        weight = self.drive.weight_of(self.drive.rod.pin_mass) or (0.0, 0.0)
+        couple = -self._side(self.rod_couple) * self.angle.cos
+        return couple + (self.angle.sin * weight[0] - self.angle.cos * weight[1])
 
     @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
     def T(self) -> Any:
@@ -499,15 +560,9 @@ class State(AtAngles):
         """
         if self._output is None:
             return None
-        push = self._output * (self.slope / self.drive.mechanism.crank)
+        push = self._output * (self.slope / self.mechanism.crank)
         push = push + self._rod_tangential if self.drive.rod else push
-        return push if self.rubbing is None else push - self.angle.cos * self._pin_side
-
-    @cached_property
-    def _rod_tangential(self) -> Any:
-        """What couple and weight of an exact rod give to T in N."""
-        assert self.drive.rod is not None
-        return self.drive.rod.tangential(self.rod_angle, self.angle)
+        return push if self.rubbing is None else push - self.angle.cos * self._side(self.rubbing.couple)
 
     @column("F_f", "force")
     def F_friction(self) -> Any:
@@ -519,33 +574,59 @@ class State(AtAngles):
     @cached_property
     def along_rod(self) -> Any:
         """The part of the rod force along the stroke line in N: the piston force less all friction."""
-        friction = self.F_friction
-        return self.P if friction is None else self.P + friction
+        return self.P if self.F_friction is None else self.P + self.F_friction
 
     @cached_property
     def _free_torque(self) -> Any:
         """Torque in N m before friction in pins and journals, from the work of the force at the output."""
         torque = self._output * self.slope
-        return torque + self._rod_tangential * self.drive.mechanism.crank if self.drive.rod else torque
-
-    @column("M", "torque")
-    def M(self) -> Any:
-        """Torque on the shaft."""
-        if self._output is None:
-            return None
-        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.lost
+        return torque + self._rod_tangential * self.mechanism.crank if self.drive.rod else torque
 
     @property
     def torque(self) -> Any:
         """Torque T R in N m of the force on the pin, before friction in crank pin and journals; from the work, as M."""
-        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.by_couple
+        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.couple * self.rod_slope
+
+    @cached_property
+    def crank_pin_loss(self) -> Any:
+        """What friction in the crank pin takes of the torque, in N m; `crosshead_pin_loss` in the crosshead pin."""
+        return self.rubbing and self.rubbing.at_crank * (1 + self.rod_slope)
+
+    @cached_property
+    def crosshead_pin_loss(self) -> Any:
+        """What friction in the crosshead pin takes of the torque, in N m."""
+        return self.rubbing and self.rubbing.at_crosshead * self.rod_slope
+
+    @column("M", "torque")
+    def M(self) -> Any:
+        """Torque on the shaft."""
+        if self._output is None or self.rubbing is None:
+            return None if self._output is None else self._free_torque
+        return self._free_torque - (self.crank_pin_loss + self.crosshead_pin_loss + self.rubbing.journals)
+
+
+def on_pin(state: State) -> Vector:
+    """Return the force of the rod on the crank pin in N, in the frame of the throw."""
+    return Vector(state.D - state.drive.rod_pull, state.T)
+
+
+def on_crosshead_pin(state: State) -> Vector:
+    """Return the force of the crosshead on its pin in N, along as P and across as N, without inertia of the rod.
+
+    Along it is the rod load less friction.
+    """
+    drive, masses = state.drive, state.drive.cylinder.masses
+    of_rod = drive.mass - masses.parts if masses else 0.0
+    weight = drive.weight_of(of_rod) or (0.0, 0.0)
+    along = state.along_rod + state.b * of_rod if drive.has_inertia else state.along_rod
+    return Vector(along - weight[0], state.N - drive.guide_weight + weight[1])
 
 
 def reduced_inertia(state: State) -> Any:
     """Return m x′² + … in kg m²: what the moving masses of a cylinder, connecting rod included, add to the shaft."""
-    rod = state.drive.rod
-    inertia = state.slope * state.slope * state.drive.mass + state.drive.pin_inertia
-    return inertia + rod.reduced_inertia(state.rod_angle, state.angle) if rod else inertia
+    drive, rod = state.drive, state.drive.rod
+    inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
+    return inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
 
 
 def _sum(first: Any, second: Any) -> Any:

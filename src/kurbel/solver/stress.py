@@ -43,9 +43,8 @@ from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.solver.figures import Columns, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.pins import on_pin
 from kurbel.solver.shaft import FreeBody, Vector, WebLoads, equilibrium_residual, flywheel_weight
-from kurbel.solver.state import State
+from kurbel.solver.state import State, on_pin
 
 PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
 
@@ -248,7 +247,7 @@ class CrankshaftStrength(Results):
 
     def _columns(self, phi: Array, within: Array) -> Columns:
         """Return forces on pin (D, T: of the rod alone, R 302 and 303) and bearings, and the stresses of each part."""
-        state = self.forces.drive.at(phi, within)
+        state = State.at(self.forces.drive, phi, within)
         body = self._running(state)
         found = dict(zip(("D", "T", "A_D", "A_T", "B_D", "B_T"), (state.D, state.T, *body.A, *body.B)))
         for part in PARTS:

@@ -25,17 +25,16 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.numerics.collocation import Unsettled, periodic
+from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
-from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, Response, passing, response
+from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
-from kurbel.solver.effort import Term, TurningEffort, inertia_torque, shaft_torque
+from kurbel.solver.effort import Term, TurningEffort, inertia_torque, moves
 from kurbel.solver.figures import Columns, Results
-from kurbel.solver.forces import CylinderForces
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
 from kurbel.solver.speed import SpeedLaw
-from kurbel.solver.state import reduced_inertia
+from kurbel.solver.state import State, reduced_inertia
 
 NEAR = 0.1
 """A critical speed so near the working speed, relatively, is worth a note."""
@@ -73,13 +72,6 @@ def stress(line: ShaftLine, segment: int) -> float | None:
     return 1 / min(moduli) if moduli and math.isfinite(min(moduli)) else None
 
 
-class Motion(NamedTuple):
-    """The torques in the segments less their means in N m, (segments, nodes, pieces), on pieces of the cycle."""
-
-    pieces: Pieces
-    torques: Array
-
-
 # what acts on the masses
 
 
@@ -97,11 +89,6 @@ class Excitation(NamedTuple):
     means: Array
     load_slope: Array
 
-    def torques(self, omegas: Array) -> ComplexArray:
-        """Return the amplitudes (n, s, k) at angular velocities (s,) in rad/s."""
-        square = (omegas / self.omega) ** 2
-        return np.asarray(self.gas[:, None] + self.inertia[:, None] * square[:, None])
-
 
 def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
     """Return what acts on the masses of a shaft line, order by order.
@@ -109,20 +96,20 @@ def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
     An effort that is known from elsewhere acts on the first mass. The load takes the mean of all torques, and its own
     orders where it varies over the turn.
     """
-    effort, shape = found.effort, (len(line.masses), len(found.orders))
-    gas, inertia, means = np.zeros(shape, complex), np.zeros(shape, complex), np.zeros(len(line.masses))
+    effort, masses = found.effort, len(line.masses)
+    gas, inertia = np.zeros((2, masses, len(found.orders)), complex)
+    means, slopes = np.zeros((2, masses))
     places = {name: index for index, mass in enumerate(line.masses) for name in mass.cylinders}
     for one in found.cylinders:
-        place, in_machine = places[one.forces.drive.name], one.in_machine
-        gas[place] += in_machine.gas.amplitudes
-        means[place] += in_machine.whole.mean
-        if in_machine.inertia:
-            inertia[place] += in_machine.inertia.amplitudes / one.share
-    if not found.cylinders:
+        place, (own, moved) = places[one.forces.drive.name], one.in_machine.parts
+        gas[place] += own[1:]
+        inertia[place] += moved[1:] / one.share  # without losses
+        means[place] += (own + moved)[0].real
+    if effort.machine.effort:
         gas[0], means[0] = found.machine.gas.amplitudes, found.M_mean
     if effort.diagram:
-        gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0].amplitudes
-    omega, law, slopes = effort.omega or 0.0, SpeedLaw.of(effort), np.zeros(len(line.masses))
+        gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0, 1:]
+    omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
     if not line.ground:
         means[line.load] -= means.sum()
     if law:
@@ -138,10 +125,10 @@ def driving(effort: TurningEffort, line: ShaftLine) -> Array:
         for group in effort.groups:
             here, share = [one for one in group if one.drive.name in mass.cylinders], effort.share(group[0].drive)
             if here:
-                terms += [Term(share, here, shaft_torque), *effort.lost(here)]
-                terms += [Term(1 - share, here, inertia_torque)] if share != 1 and effort.moves(here[0]) else []
+                terms += [Term(share, here), *effort.lost(here)]
+                terms += [Term(1 - share, here, inertia_torque)] if share != 1 and moves(here) else []
         torque += effort.sampled(terms)
-    if effort.given:
+    if effort.machine.effort:
         found[0] = effort.M
     if effort.diagram:
         found[line.load] -= effort.load
@@ -154,47 +141,32 @@ def driving(effort: TurningEffort, line: ShaftLine) -> Array:
 class Vibration:
     """The forced vibration of a chain at angular velocities (s,) in rad/s, order by order.
 
-    angles (n, s, k) in rad of the cranks' shaft; torques (segments, s, k) in N m, true ones on both sides of a gear.
+    driving, angles: amplitudes (n, s, k) in N m and in rad of the cranks' shaft; torques (segments, s, k) in N m, true
+    ones on both sides of a gear. endless (s,): where an order meets a mode that next to nothing damps, so that rounding
+    bounds the torques.
     """
 
     def __init__(self, chain: Chain, line: ShaftLine, acting: Excitation, omegas: Array) -> None:
         self.chain, self.line, self.acting, self.omegas = chain, line, acting, omegas
-        self.driving = acting.torques(omegas)
+        self.driving = acting.gas[:, None] + acting.inertia[:, None] * ((omegas / acting.omega) ** 2)[:, None]
         self._frequencies = np.multiply.outer(omegas, acting.orders)
         # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
         self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
-
-    @cached_property
-    def _response(self) -> Response:
-        return response(self.chain, self._frequencies, self.driving, self._load_damping)
-
-    @property
-    def angles(self) -> ComplexArray:
-        """Amplitudes of the masses in rad."""
-        return self._response.angles
-
-    def _true(self, angles: ComplexArray) -> ComplexArray:
-        """Return the torques in the segments in N m that angles of the masses make."""
-        return passing(self.chain, self._frequencies, angles) / _ratios(self.line)[:, None, None]
-
-    @cached_property
-    def torques(self) -> ComplexArray:
-        """Amplitudes of the torques in the segments in N m."""
-        return self._true(self.angles)
-
-    @cached_property
-    def endless(self) -> Flags:
-        """Where an order meets a mode that next to nothing damps, so that rounding bounds the torques, (s,)."""
-        largest, unsure = (np.abs(one).max(axis=(0, 2)) for one in (self.torques, self._true(self._response.moved)))
-        return np.asarray(np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest))
+        self.angles, moved = response(chain, self._frequencies, self.driving, self._load_damping)
+        self.ratios = np.array([piece.ratio for piece in line.pieces])
+        self.torques, unsure = (
+            passing(chain, self._frequencies, angles) / self.ratios[:, None, None] for angles in (self.angles, moved)
+        )
+        largest, unsure = (np.abs(one).max(axis=(0, 2)) for one in (self.torques, unsure))
+        self.endless: Flags = np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest)
 
     @cached_property
     def means(self) -> Array:
         """Mean torques in the segments in N m."""
-        reached, ratios = np.cumsum(self.acting.means), _ratios(self.line)
+        reached = np.cumsum(self.acting.means)
         if self.chain.ground == "before":
             reached = np.append(0.0, reached) - reached[-1]
-        return np.asarray(reached[: len(ratios)] / ratios)
+        return np.asarray(reached[: len(self.ratios)] / self.ratios)
 
     @cached_property
     def crests(self) -> tuple[Array, Array]:
@@ -230,14 +202,9 @@ class Vibration:
         return np.asarray((of_masses + of_segments) / 2)
 
 
-def _ratios(line: ShaftLine) -> Array:
-    """Return the speeds of the segments over that of the cranks."""
-    return np.array([piece.ratio for piece in line.pieces])
-
-
 def _mean_inertia(drive: Drive) -> float:
     """Return the mean over the turn of the reduced moment of inertia of a cylinder in kg m², whatever forces act."""
-    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(drive.on(some))[None])
+    pieces, inertia = refined(drive.pieces, lambda some: reduced_inertia(State.on(drive, some))[None])
     return float(pieces.mean(inertia[0])[0])
 
 
@@ -300,22 +267,26 @@ class Critical(NamedTuple):
 
 
 class ShaftVibration(Results):
-    """The vibrations of the shaft line of a machine; orders (k,): those of the tables. Raises UsageError."""
+    """The vibrations of the shaft line of a machine; orders (k,): those of the tables. Raises UsageError.
+
+    first, last: numbers of the first mode, 0 where the shaft turns freely, and of the last.
+    """
 
     command = "torsion"
 
-    def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], orders: Array | None = None) -> None:
-        self.machine, self._cylinders = machine, cylinders
-        self.line, self.cycle = shaft_line_of(machine), 360.0 * machine.revolutions
+    def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
+        self.effort, self.machine, self.line = effort, effort.machine, shaft_line_of(effort.machine)
         self._every = orders is None
-        self.orders = every_order(self.cycle) if orders is None else orders
+        self.orders = every_order(effort.cycle) if orders is None else orders
         self.chain = Chain.of(self.line, [self._inertia(mass) for mass in self.line.masses])
         self.modes = Modes(self.chain)
+        self.first = 1 if self.chain.ground else 0
+        self.last = self.first + len(self.modes.omegas) - 1
 
     def _inertia(self, mass: ShaftMass) -> float:
         """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
         wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
-        drives = (one.drive for one in self._cylinders if one.drive.name in mass.cylinders)
+        drives = (one.drive for one in self.effort.cylinders if one.drive.name in mass.cylinders)
         moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
         inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *moving))
         if not inertia > 0:
@@ -323,16 +294,6 @@ class ShaftVibration(Results):
         return inertia
 
     # natural vibrations
-
-    @property
-    def first(self) -> int:
-        """Number of the first mode: 0 where the shaft turns freely."""
-        return 1 if self.chain.ground else 0
-
-    @property
-    def last(self) -> int:
-        """Number of the last mode."""
-        return self.first + len(self.modes.omegas) - 1
 
     def holzer(self, mode: int) -> Holzer:
         """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
@@ -357,36 +318,31 @@ class ShaftVibration(Results):
         found, working = [], self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            sums = self._phase_sums(angles)
-            for order, total, share in zip(self.orders.tolist(), sums.tolist(), self._shares(angles, sums).tolist()):
+            sums, shares = self._excited(angles)
+            for order, total, share in zip(self.orders.tolist(), sums.tolist(), shares.tolist()):
                 speed = omega / (2 * math.pi * order)
                 distance = speed / working - 1 if working else None
                 if order <= highest:
                     found.append(Critical(order, mode, speed, total, distance, share))
         return tuple(found)
 
-    def _phase_sums(self, angles: Array) -> Array:
-        """Return |Σ Θ e^{−iνβ}| over the cranks (k,); of an effort without cranks, the amplitude where it acts."""
+    def _excited(self, angles: Array) -> tuple[Array, Array]:
+        """Return |Σ Θ e^{−iνβ}| over the cranks, and how strongly the orders excite a mode, over the strongest; (k,).
+
+        Of an effort without cranks the first is the amplitude where it acts. The second is |Σ M_ν Θ| of the torques at
+        the working speed, over the largest; of torques that are not known that of the first.
+        """
         at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
         cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
         amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
         sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
-        return np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
-
-    def _shares(self, angles: Array, sums: Array) -> Array:
-        """Return how strongly the orders excite a mode, over the one that does so most (k,).
-
-        That is |Σ M_ν Θ| of the torques at the working speed; of torques that are not known |Σ Θ e^{−iνβ}|.
-        """
-        works = sums
-        if not self._unexcited:
-            torques = self.acting.torques(np.array([self.acting.omega]))
-            works = np.abs(np.tensordot(angles, torques, 1)[0])
-        return np.asarray(works / (works.max() or 1.0))
+        sums = np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
+        works = sums if self._unexcited else np.abs(angles @ (self.acting.gas + self.acting.inertia))
+        return sums, works / (works.max() or 1.0)
 
     def met(self, critical: Critical) -> bool:
         """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
-        return not self.obstacle and bool(self.machine.speed) and critical.speed <= RUN_UP * (self.machine.speed or 0.0)
+        return not self.obstacle and critical.speed <= RUN_UP * (self.machine.speed or 0.0)
 
     # forced vibration
 
@@ -395,25 +351,19 @@ class ShaftVibration(Results):
         """Why no torques are known, or an empty text."""
         if not self.machine.speed:
             return "no speed given" if self.machine.speed is None else "not defined at rest"
-        if not self.machine.effort and not any(forces.drive.has_force for forces in self._cylinders):
-            return "no torque acts: no effort and no cylinder with a force is given"
-        return ""
+        known = self.effort.groups or self.machine.effort
+        return "" if known else "no torque acts: no effort and no cylinder with a force is given"
 
     @property
     def obstacle(self) -> str:
         """Why no forced vibration can be computed, or an empty text."""
-        if self._unexcited:
-            return self._unexcited
-        return "" if self.chain.damped else "no damping given; at resonance nothing but damping bounds a vibration"
-
-    @cached_property
-    def _effort(self) -> TurningEffort:
-        return TurningEffort(self.machine, self._cylinders)
+        undamped = "no damping given; at resonance nothing but damping bounds a vibration"
+        return self._unexcited or ("" if self.chain.damped else undamped)
 
     @cached_property
     def acting(self) -> Excitation:
         """The torques on the masses."""
-        return excitation(MachineOrders(self._effort, self.orders), self.line)
+        return excitation(MachineOrders(self.effort, self.orders), self.line)
 
     def forced(self, speeds: Sequence[float]) -> Vibration:
         """Return the forced vibration at speeds in revolutions per second."""
@@ -425,33 +375,28 @@ class ShaftVibration(Results):
         return None if self.obstacle or self.machine.speed is None else self.forced([self.machine.speed])
 
     @cached_property
-    def steady(self) -> Motion | None:
-        """The motion at the working speed with all orders, as chains of one shaft have it.
+    def steady(self) -> tuple[Pieces, Array] | None:
+        """The motion at the working speed with all orders: torques in the segments less their means, in N m.
 
-        None where certain orders are requested, where a loss factor is given, and where no motion is found.
+        (segments, nodes, pieces), as chains of one shaft have them. None where certain orders are requested, where a
+        loss factor is given, and where no motion is found, or none that is worth its time.
         """
         if self.vibration is None or not self._every or self.chain.loss.any():
             return None
-        effort, line, law = self._effort, self.line, SpeedLaw.of(self._effort)
-        order, driven = self.modes.omegas[-1] / effort.omega, driving(effort, line)
-        equation = ChainEquation(
-            self.chain, order, effort.omega, effort.pieces, driven, law, line.load % len(line.masses)
-        )
+        effort, loaded = self.effort, self.line.load % len(self.line.masses)
+        order, driven = self.modes.omegas[-1] / effort.omega, driving(effort, self.line)
+        equation = ChainEquation(self.chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded)
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
-        try:
-            found = periodic(equation, equation.pieces)
-            found.refuse()
-        except Unsettled:
-            return None
-        return Motion(found.pieces, equation.torques(found.samples, found.pieces))
+        found = periodic(equation, equation.pieces)
+        return None if found.failed[0] else (found.pieces, equation.torques(found.samples, found.pieces))
 
     @cached_property
     def _summed(self) -> Vibration | None:
         """The orders that are summed at the working speed, four times the usual ones; None where `steady` has all."""
         if self.steady or self.vibration is None or not self._every:
             return None if self.steady else self.vibration
-        orders = MachineOrders(self._effort, every_order(self.cycle, 4 * HIGHEST))
+        orders = MachineOrders(self.effort, every_order(self.effort.cycle, 4 * HIGHEST))
         return Vibration(self.chain, self.line, excitation(orders, self.line), self.vibration.omegas)
 
     @property
@@ -469,29 +414,27 @@ class ShaftVibration(Results):
         """The torque in every segment at the working speed; none where no forced vibration can be computed."""
         if self.vibration is None:
             return ()
-        waves, (high, low) = self._over_the_angle()
+        waves, (high, low) = self._over_the_angle(self.vibration)
         ends = self.vibration.means[:, None] + np.stack((high, low), axis=1)
         return tuple(
-            SegmentTorque(self.piece_name(i), float(mean), float(top), float(bottom), over, stress(self.line, i))
-            for i, (mean, (top, bottom), over) in enumerate(zip(self.vibration.means, ends, waves))
+            SegmentTorque(self.piece_name(i), float(mean), float(top), float(bottom), wave, stress(self.line, i))
+            for i, (mean, (top, bottom), wave) in enumerate(zip(self.vibration.means, ends, waves))
         )
 
-    def _over_the_angle(self) -> tuple[list[Callable[[Array], Array]], tuple[Array, Array]]:
+    def _over_the_angle(self, vibration: Vibration) -> tuple[list[Callable[[Array], Array]], tuple[Array, Array]]:
         """Return the torques of the segments by the crank angle, and the largest and smallest less their means."""
-        assert self.vibration
-        means = self.vibration.means
         if self._summed:
             orders, (high, low) = self._summed.acting.orders, self._summed.crests
-            summed = zip(means.tolist(), self._summed.torques[:, 0])
+            summed = zip(vibration.means.tolist(), self._summed.torques[:, 0])
             return [Spectrum(mean, orders, one).at for mean, one in summed], (high[:, 0], low[:, 0])
         assert self.steady
-        pieces, torques = self.steady.pieces, self.steady.torques / _ratios(self.line)[:, None, None]
+        pieces, torques = self.steady[0], self.steady[1] / vibration.ratios[:, None, None]
 
         def wave(mean: float, torque: Array) -> Callable[[Array], Array]:
             return lambda degrees: mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
 
         found = pieces.extremes(torques)
-        return [wave(mean, one) for mean, one in zip(means, torques)], (found.largest[:, 0], found.smallest[:, 0])
+        return [wave(*one) for one in zip(vibration.means, torques)], (found.largest[:, 0], found.smallest[:, 0])
 
     @property
     def vibration_loss(self) -> float | None:

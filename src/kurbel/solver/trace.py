@@ -33,18 +33,6 @@ class Segments(NamedTuple):
     next_p: Array
 
 
-class HeldSamples(NamedTuple):
-    """The straight pieces that hold angles `within` in degrees, each (n,).
-
-    since: degrees from their starts on; p: pressure in Pa there; gradient: Pa per degree.
-    """
-
-    within: Array
-    since: Array
-    p: Array
-    gradient: Array
-
-
 class TracePressure:
     """Gauge pressure in one chamber from a trace.
 
@@ -74,16 +62,13 @@ class TracePressure:
         """Where the segments begin; a trace is of one machine."""
         return Angles(np.zeros(len(self._starts), dtype=np.intp), self._starts)
 
-    def held(self, within: Array) -> HeldSamples:
-        """Return what holds on the segments in which angles (n,) in degrees lie."""
+    def at(self, degrees: Array, within: Array) -> Array:
+        """Return the gauge pressure in Pa at crank angles in degrees, on the segments that hold `within` (n,)."""
         turned = np.mod(within, self.setting.cycle)
         segment = np.searchsorted(self._starts, turned, side="right") - 1
         since = np.mod(turned - self._starts[segment], self.setting.cycle)
-        return HeldSamples(within, since, self._segments.p[segment], self._gradients[segment])
-
-    def at(self, degrees: Array, held: HeldSamples) -> Array:
-        """Return the gauge pressure in Pa at crank angles in degrees, on the segments that are held."""
-        return held.p + held.gradient * (held.since + (degrees - held.within))
+        pressures: Array = self._segments.p[segment] + self._gradients[segment] * (since + (degrees - within))
+        return pressures
 
     @property
     def highest(self) -> Extreme:
@@ -95,7 +80,7 @@ class TracePressure:
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
-        ahead, behind = (self.at(at, self.held(at)) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
+        ahead, behind = (self.at(at, at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return np.asarray((ahead - behind) / _CHORD)
 
     @cached_property

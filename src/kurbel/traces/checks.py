@@ -251,16 +251,15 @@ def _drift(reading: Reading) -> str:
 
 
 def _bends(reading: Reading) -> float:
-    """Return in Pa what noise, and the bend of the pressure, may do to the jump where the cycle closes."""
-    p, trace = reading.p, reading.trace
-    noise = _SURE_OF_NOISE * (noise_of(p[:-1]) if trace.even else 0.0)
-    if not trace.completed:
+    """Return in Pa what noise, resolution, and the bend of the pressure may do to the jump where the cycle closes."""
+    p = reading.p
+    noise = _SURE_OF_NOISE * (noise_of(p[:-1]) if reading.trace.even else 0.0)
+    if not reading.trace.completed:
         return noise
-    bends = np.sort(np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2)))))
-    coarse = trace.angles[-1] - trace.angles[-4] > LAST
+    bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
     steps = np.abs(np.diff(p))
     resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
-    return max(noise, resolution, 3.0 * float(bends[-1] if coarse else bends[len(bends) // 2]))
+    return max(noise, resolution, 3.0 * float(bends.max()))
 
 
 # sign and unit

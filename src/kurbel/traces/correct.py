@@ -291,7 +291,6 @@ _SIDES = (20.0, 50.0), (50.0, 80.0)
 """Degrees from the peak between which both its sides are compared: where something burnt, they are not alike."""
 _LOW = 0.15
 """Share of the cycle below the level from which pressures are compared."""
-_FEWEST_MOTORED = 36
 _ALIKE = 0.5, 1.15
 
 
@@ -330,8 +329,6 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     if len(laps) % 2 == 0:
         angles, laps = np.concatenate((angles[:-1], angles + angles[-1] - angles[0])), joined_in_pairs(laps)
     pressures, period = laps.mean(axis=0)[:-1], float(angles[-1] - angles[0])
-    if len(pressures) // 2 * 2 < _FEWEST_MOTORED:
-        refused(f"has {len(pressures) // 2 * 2} samples only; measure it finer")
     top = float(angles[int(np.argmax(pressures))])
     places = np.remainder(angles[:-1] - top + period / 2, period) - period / 2
     if np.count_nonzero(np.abs(places) <= _HALF / 2) < _FEWEST:

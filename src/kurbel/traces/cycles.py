@@ -245,6 +245,8 @@ _ROUNDED = 0.25
 """Share of samples at the angle of the one before from which on the angles are rounded: of those none is left out."""
 _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
 """(degrees, times the median step) beyond both of which no straight line stands for what was not measured."""
+_WIDE = 3.0
+"""Times the usual step beyond which samples are missing, and a note says so."""
 
 
 def _without_twins(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
@@ -276,22 +278,21 @@ def _closed(recording: Recording, period: float, notes: tuple[str, ...]) -> Samp
         values = np.append(values, values[:, :1], axis=1)
     angles = np.append(angles if completed else angles[:-1], end)
     _refuse_large_holes(recording._replace(angles=angles))
-    wide = np.flatnonzero(np.diff(angles) > 3 * usual_step(angles))[:5].tolist()
+    wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))[:5].tolist()
     small = (f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them" for i in wide)
     return Samples(angles, values, (*notes, *small), completed)
 
 
 def _refuse_large_holes(recording: Recording) -> None:
-    """Raise RuleError where a stretch without samples is wide, in degrees and in steps."""
+    """Raise RuleError where a stretch without samples is wide, in degrees and in median steps."""
     angles = recording.angles
     steps = np.diff(angles)
     given = np.sort(steps[steps > 0])
-    median = float(given[len(given) // 2])  # numpy.median imports numpy.ma, a fifth of the start-up
-    for width, times in _LARGE_HOLES:
-        wide = np.flatnonzero((steps > width) & (steps > times * median))
-        if len(wide):
-            i = int(wide[0])
-            recording.refuse(i, _hole(float(angles[i]), float(angles[i + 1])))
+    median = float(given[len(given) // 2])
+    wide = np.flatnonzero(steps > min(max(degrees, times * median) for degrees, times in _LARGE_HOLES))
+    if len(wide):
+        i = int(wide[0])
+        recording.refuse(i, _hole(float(angles[i]), float(angles[i + 1])))
 
 
 def usual_step(angles: Array) -> float:

@@ -1,4 +1,4 @@
-"""LaTeX that plain article with booktabs and longtable compiles: nothing but what these know."""
+"""Markup: every text is escaped, and LaTeX uses nothing but what article, booktabs and longtable know."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.render.markup import Latex
-from render.sample_report import REPORT
+from kurbel.report.tables import KeyValue, LeftOut, Part, PlaceTable, Report
+from render.sample_report import ONE, PHI, REPORT
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -36,8 +37,32 @@ def test_texts(plain: str, typeset: str) -> None:
     assert Latex().text(plain) == typeset
 
 
-def test_dots_stand_over_their_letter_in_a_symbol() -> None:
-    assert Latex().symbol("θ̈_max") == r"$\ddot{\theta}_{\mathrm{max}}$"
+@pytest.mark.parametrize(
+    ("plain", "typeset"), [("θ̈_max", r"$\ddot{\theta}_{\mathrm{max}}$"), ("x^2_a{b", r"x\textasciicircum{}2\_a\{b")]
+)
+def test_symbols(plain: str, typeset: str) -> None:
+    assert Latex().symbol(plain) == typeset
+
+
+HOSTILE = r"\end{document}<script>|a|* [x](y) `z` $ & # % _ ^ ~ { } > -1"
+"""A name from a file that every format would take for markup."""
+
+
+@pytest.mark.parametrize("format", ["markdown", "html", "latex"])
+def test_every_text_is_escaped(format: str) -> None:
+    """One walk, one door: wherever a text stands, none of its marks works."""
+    column = ONE.parts[0].columns[1]._replace(symbol=HOSTILE, unit=HOSTILE)
+    one = KeyValue("x", HOSTILE, HOSTILE, HOSTILE, 1.0, HOSTILE)
+    places = PlaceTable("t", HOSTILE, (HOSTILE,), ((HOSTILE,),), (column._replace(values=(1.0,)),), headed=True)
+    part = Part(HOSTILE, (PHI, column), (one,), (LeftOut(HOSTILE, HOSTILE),), (HOSTILE,), (places,))
+    report = Report(HOSTILE, "forces", HOSTILE, "cylinders", (part, part._replace(key_values=())), None, HOSTILE)
+    text = render(report._replace(notes=(HOSTILE,), head=(HOSTILE,)), Look(format))
+    marks = {
+        "markdown": r"(?<!\\)(<script|\|a|\[x|`z)",
+        "html": "<script",
+        "latex": r"\\end\{document|(?<!\\)[&%#_] [#%_^]",
+    }
+    assert not re.search(marks[format], text)
 
 
 def test_no_quantity_has_a_character_that_latex_does_not_know() -> None:

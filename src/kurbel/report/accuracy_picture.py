@@ -3,7 +3,7 @@
 import numpy as np
 
 from kurbel.errors import UsageError
-from kurbel.report.pictures.picture import Axis, Curve, Panel, Picture, Piece, Words
+from kurbel.report.picture import Axis, Curve, Panel, Picture, Words
 from kurbel.report.tables import Report
 
 _TABLE = "numerical_error"
@@ -58,10 +58,13 @@ def _panel(
     methods: list[str],
     span: tuple[float, float],
 ) -> Panel:
-    curves = [
-        Curve(Words(method), tuple(Piece(*np.array(answers).T) for answers in scenes), "dots", methods.index(method))
-        for method, scenes in found.items()
-    ]
-    rounding = Curve(Words(""), (Piece(np.array([_ROUNDING, _ROUNDING]), np.array(span)),), "faint")
-    x = Axis(Words("error"), "", True, _LEAST, 1.0, falling=True)
-    return Panel(x, Axis(Words("time"), "ms", True, *span), (rounding, *curves), title=quantity)
+    curves = []
+    for method, scenes in found.items():
+        # a gap between scenes
+        answers = np.array([one for scene in scenes for one in (*scene, (np.nan, np.nan))])[:-1]
+        curves.append(Curve(Words(method), answers[:, 0], answers[:, 1], "dots", methods.index(method)))
+    rounding = Curve(Words(""), np.array([_ROUNDING, _ROUNDING]), np.array(span), "faint")
+    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
+    return Panel(
+        x, Axis(Words("time"), unit="ms", log=True, low=span[0], high=span[1]), (rounding, *curves), title=quantity
+    )

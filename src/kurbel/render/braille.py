@@ -1,0 +1,145 @@
+"""A picture as lines of characters, for a terminal: curves in dots of Braille or in letters, with axes and labels."""
+
+from collections.abc import Iterator
+from itertools import groupby
+from operator import itemgetter
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.render import Look
+from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, looks_of
+from kurbel.render.text import BLANK, Line, Piece, folded, line, right, width
+from kurbel.report.picture import Curve, Panel, Picture
+
+# lengths in columns; a row is as high as two columns are wide
+TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5)
+_WIDTH, _NARROWEST, _WIDEST = 80, 24, 160
+_TALL, _SHORT, _LEAST, _MOST = 32.0, 20.0, 14.0, 60.0
+"""Height of a panel alone and of one among several, and bounds of one with equal scales."""
+LETTERS = "*+ox#@"
+"""What draws a curve of each look where there is no Braille."""
+_BLANK = 0x2800
+_DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
+"""Bits of the dots of a character, four down and two across."""
+
+
+class Canvas:
+    """Characters (rows, columns) with dots in them, written over with texts; each has the role of what is in it.
+
+    braille: whether there are dots; else a letter represents its curve.
+    """
+
+    def __init__(self, columns: int, rows: int, braille: bool) -> None:
+        self.columns, self.rows, self.braille = columns, rows, braille
+        self.fine = np.array([2, 2] if braille else [1, 0.5])  # dots to a unit across and down
+        self._bits = np.zeros((rows, columns), dtype=int)
+        self._letters = [[" "] * columns for _ in range(rows)]
+        self._roles = [["text"] * columns for _ in range(rows)]
+
+    def line(self, x: Array, y: Array, role: str) -> None:
+        """Draw a line through places (n,), counted in dots from the upper left corner; what is beyond is cut off."""
+        down, across = (4 * self.rows, 2 * self.columns) if self.braille else (self.rows, self.columns)
+        columns, rows = (np.rint(one).astype(int) for one in dense(x, y))
+        inside = (columns >= 0) & (columns < across) & (rows >= 0) & (rows < down)
+        columns, rows = columns[inside], rows[inside]
+        if self.braille:
+            np.bitwise_or.at(self._bits, (rows // 4, columns // 2), _DOTS[rows % 4, columns % 2])
+            columns, rows = columns // 2, rows // 4
+        for column, row in set(zip(columns.tolist(), rows.tolist())):
+            if not self.braille and (role != "rule" or self._letters[row][column] == " "):
+                self._letters[row][column] = "." if role == "rule" else LETTERS[int(role[-1])]
+            self._roles[row][column] = role
+
+    def write(self, column: int, row: int, text: str, role: str) -> None:
+        """Write a text over what is drawn."""
+        for letter in text:
+            wide = width(letter)
+            if not wide:  # a mark on the letter before it, as the dots of θ̈
+                self._letters[row][column - 1] += letter
+            for place in range(column, column + wide):
+                self._letters[row][place] = letter if place == column else ""
+                self._bits[row, place] = 0
+                self._roles[row][place] = role
+            column += wide
+
+    def lines(self) -> list[Line]:
+        """Return the rows, neighbours of one role as one piece."""
+        found = []
+        for bits, letters, roles in zip(self._bits.tolist(), self._letters, self._roles):
+            alike = groupby(zip(bits, letters, roles), key=itemgetter(2))
+            texts = ((role, [chr(_BLANK + dots) if dots else sign for dots, sign, _ in each]) for role, each in alike)
+            found.append(tuple(Piece("".join(text), role) for role, text in texts))
+        return found
+
+
+def braille(picture: Picture, look: Look) -> Iterator[Line]:
+    """Yield a picture line by line, in the width of the look."""
+    wide = min(max(look.width or _WIDTH, _NARROWEST), _WIDEST)
+    yield from (line(one, "title") for one in folded(look.charset.text(picture.heading), wide))
+    for panel in picture.panels:
+        yield BLANK
+        yield from _panel(panel, look, wide, _TALL if len(picture.panels) == 1 else _SHORT)
+
+
+def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
+    has_dots = look.charset.has("⣿")
+    dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
+
+    def framed(side: int) -> PanelFrame:
+        return PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1], _LEAST - dot[1], _MOST - dot[1])
+
+    texts = [] if panel.plain else [text for _, text in framed(0).ticks_up(int(tall / 4))]
+    side = max(map(width, texts), default=-1) + 1
+    frame = framed(side)
+    canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
+    _draw(canvas, frame, dot)
+    axis = "" if panel.plain else axis_text(panel.y, look)
+    yield from (line(one) for one in folded("   ".join(filter(None, (look.charset.text(panel.title), axis))), wide))
+    if panel.plain:
+        rows = canvas.lines()
+        used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
+        yield from rows[used[0] : used[-1] + 1]
+        return
+    at = {int(place // 2): text for place, text in frame.ticks_up(int(tall / 4))}
+    for number, row in enumerate(canvas.lines()):
+        yield (*line(right(at.get(number, ""), side - 1) + " ", "unit"), *row)
+    yield from _below(frame, side, canvas.columns)
+
+
+def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
+    """Draw curves, or bars where there are none, with their labels; areas between curves are left blank."""
+    panel = frame.panel.at_moment(0)
+    drawn = [(curve, _role(curve, look)) for curve, look in zip(panel.curves, looks_of(panel)) if curve.kind != "fixed"]
+    # the lines to compare with first, so that curves are over them
+    for curve, role in sorted(drawn, key=lambda one: one[1] != "rule"):
+        for x, y in (*curve.pieces(), *curve.jumps()):
+            across, down = frame.place(x, y)
+            canvas.line(across / dot[0], down / dot[1], role)
+    for shade in () if panel.curves else panel.shades:
+        left, right_ = frame.x.place(shade.x[[0, -1]]) / dot[0]
+        ends = frame.y.place(np.array([shade.low[0], shade.high[0]])) / dot[1]
+        for place in np.arange(np.ceil(left), right_, 1 if shade.gain else 2):
+            canvas.line(np.full(2, place), ends, "curve0" if shade.gain else "curve1")
+    for label in frame.labels(named=True):
+        role = "head" if label.look is None else f"curve{label.look}"
+        canvas.write(round(label.left), round(label.top / 2), label.text, role)
+
+
+def _role(curve: Curve, look: int) -> str:
+    """Return the role in which a terminal draws a curve."""
+    if curve.kind in ("line", "dots"):
+        return f"curve{look}"
+    return {"member": "curve0", "arrow": "curve1"}.get(curve.kind, "rule")
+
+
+def _below(frame: PanelFrame, side: int, columns: int) -> Iterator[Line]:
+    """Yield the axis below a panel, its ticks, and what runs along it."""
+    charset = frame.look.charset
+    rule, under = [charset.text("─")] * columns, [" "] * columns
+    for place, left, text in frame.ticks_across(max(2, columns // 10), 0.0, columns):
+        rule[int(place)] = "┴" if charset.has("┴") else "+"
+        under[round(left) : round(left) + len(text)] = text
+    yield line(" " * side + "".join(rule), "rule")
+    yield line(" " * side + "".join(under).rstrip(), "unit")
+    yield line(right(axis_text(frame.panel.x, frame.look), side + columns), "unit")

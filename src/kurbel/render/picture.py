@@ -1,0 +1,313 @@
+"""Where everything of a panel is placed, on paper and in a terminal alike: scales, ticks, and labels on free ground."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.render import Look
+from kurbel.render.numbers import angle, decimal, single
+from kurbel.render.text import width
+from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Words
+
+_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
+_DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
+_AIR = 0.12
+"""Share of its height that a panel leaves free above and below its curves."""
+_MOST_MARKED = 12
+LOOKS = 6
+"""Different colours and strokes of curves."""
+
+# texts
+
+
+def symbol(words: Words, look: Look) -> str:
+    """Return a symbol in the characters of the output."""
+    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol or words.symbol))
+
+
+def axis_text(axis: Axis, look: Look) -> str:
+    """Return what is written at the end of an axis."""
+    return " in ".join(filter(None, (symbol(axis.name, look), look.charset.unit(axis.unit))))
+
+
+def figure_text(figure: Figure, look: Look) -> str:
+    """Return a figure: symbol, value, unit, and its crank angle."""
+    text, place = symbol(figure.name, look), ""
+    if figure.at_deg is not None:
+        place = f"{angle(figure.at_deg, look.comma)}{look.charset.text('°')}"
+    if figure.value is None:
+        return f"{text} {place}".rstrip()
+    number, power = single(figure.value, look.digits, look.comma)
+    number = look.charset.counted(_signed(number, look), power)
+    text = f"{text} {number} {look.charset.unit(figure.unit)}".rstrip()
+    return f"{text}, {place}" if place else text
+
+
+def picture_text(picture: Picture, look: Look) -> str:
+    """Return a picture in words: what it shows, and every figure in it."""
+    figures = [mark.figure for panel in picture.panels for mark in panel.marks]
+    figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
+    texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
+    sentence = f"{look.charset.text(picture.heading)}. {look.charset.text(picture.text)}"
+    return f"{sentence} {texts}." if texts else sentence
+
+
+def _signed(number: str, look: Look) -> str:
+    """Return a number with a minus sign in place of a hyphen."""
+    return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
+
+
+# scales
+
+
+class AxisScale(NamedTuple):
+    """The places `start` and `end` of the values `low` and `high` on an axis; log: by powers of ten."""
+
+    low: float
+    high: float
+    start: float = 0.0
+    end: float = 1.0
+    log: bool = False
+
+    def place(self, values: Any) -> Any:
+        """Return the places of values."""
+        low, high, at = (np.log10(one) if self.log else one for one in (self.low, self.high, values))
+        # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
+        return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
+
+    def ticks(self, axis: Axis, most: int) -> list[float]:
+        """Return the values, at most so many or a few more, at which an axis has ticks."""
+        low, high = sorted((self.low, self.high))
+        if axis.names:
+            return [float(number) for number in range(len(axis.names)) if low <= number <= high]
+        if self.log:
+            powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
+            return [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
+        least = (high - low) / max(most, 1)
+        power = 10.0 ** math.floor(math.log10(least))
+        steps = [step for step in _DEGREES if step >= least > 10.0] if axis.unit == "deg" else []
+        step = (steps or [one * power for one in _STEPS if one * power >= least * (1 - 1e-9)])[0]
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+        return [float(f"{number * step:.12g}") for number in range(first, last + 1)]
+
+
+def scales(panel: Panel) -> tuple[AxisScale, AxisScale]:
+    """Return the scales from 0 to 1 of both axes of a panel, which hold all that is drawn, with air around it."""
+    across, up = panel.places
+    return _scale(panel.x, across, panel.plain), _scale(panel.y, up, True)
+
+
+def _scale(axis: Axis, drawn: Sequence[Array], air: bool) -> AxisScale:
+    every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
+    low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
+    if axis.log:
+        low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
+    elif not high > low:  # a level line is in the middle
+        low, high = low - (0.1 * abs(low) or 1.0), high + (0.1 * abs(high) or 1.0)
+    elif air:
+        low, high = low - _AIR * (high - low), high + _AIR * (high - low)
+    return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
+
+
+def tick_texts(axis: Axis, values: list[float], look: Look) -> list[str]:
+    """Return what is written at the ticks of an axis, numbers with the decimals that all of them need."""
+    if axis.names:
+        return [axis.names[int(value)] for value in values]
+    if axis.log:
+        return [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
+    if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
+        texts = [f"{value:.4g}" for value in values]
+    else:
+        decimals = max((len(f"{one:.9g}".partition(".")[2]) for one in values if "e" not in f"{one:.9g}"), default=0)
+        texts = [f"{value:.{decimals}f}" for value in values]
+    return [_signed(decimal(text, look.comma), look) for text in texts]
+
+
+# a panel in its place
+
+
+class Medium(NamedTuple):
+    """Sizes in the units of a medium, points or columns: width of a character, height of a line, radius of a mark.
+
+    grain: width and height of the cells of a grid on which labels look for free ground; covering: how far a label moves
+    away rather than cover one cell of a curve.
+    """
+
+    letter: float
+    line: float
+    dot: float
+    grain: tuple[float, float]
+    covering: float
+
+
+class Label(NamedTuple):
+    """A text between left and right, the point that it names, and its own place next to that point.
+
+    look: of the curve that it names; far: whether a line must lead to it.
+    """
+
+    text: str
+    left: float
+    right: float
+    top: float
+    point: tuple[float, float]
+    end: tuple[float, float]
+    far: bool
+    look: int | None = None
+
+
+class PanelFrame:
+    """A panel in a rectangle; places count rightward and downward from its upper left corner.
+
+    tall: its height; with equal scales the height follows from the width, between shortest and tallest.
+    """
+
+    def __init__(
+        self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float, shortest: float, tallest: float
+    ) -> None:
+        self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
+        x, y = scales(panel)
+        if panel.equal:
+            across, up = x.high - x.low, y.high - y.low
+            tall = min(max(wide * up / across, shortest), tallest)
+            spare = max(across / wide, up / tall) * np.array([wide, tall]) - (across, up)
+            x, y = (one._replace(low=one.low - more / 2, high=one.high + more / 2) for one, more in zip((x, y), spare))
+        self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
+        # how often curves cross a cell of the grid, and whether a label has it
+        shape = [math.ceil((size - medium.dot) / cell) for size, cell in zip((tall, wide), medium.grain[::-1])]
+        self._crossed, self._taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
+
+    def place(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Return the places of points."""
+        return self.x.place(x), self.y.place(y)
+
+    def ticks_across(self, most: int, start: float, end: float) -> list[tuple[float, float, str]]:
+        """Return the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
+
+        start, end: how far texts may reach. Of two that meet the outer one is written.
+        """
+        values = self.x.ticks(self.panel.x, most)
+        texts = tick_texts(self.panel.x, values, self.look)
+        found: list[tuple[float, float, str]] = []
+        spans: list[tuple[float, float]] = []
+        for k in sorted(range(len(values)), key=lambda k: min(k, len(values) - 1 - k)):
+            place, wide = float(self.x.place(values[k])), width(texts[k]) * self.medium.letter
+            left = max(min(place - wide / 2, end - wide), start)
+            if free := all(left >= right or left + wide <= other for other, right in spans):
+                spans.append((left - self.medium.letter, left + wide + self.medium.letter))
+            found.append((place, left, texts[k] if free else ""))
+        return sorted(found)
+
+    def ticks_up(self, most: int) -> list[tuple[float, str]]:
+        """Return the ticks of the axis at the left: place and text."""
+        values = self.y.ticks(self.panel.y, most)
+        texts = tick_texts(self.panel.y, values, self.look)
+        return [(float(self.y.place(value)), text) for value, text in zip(values, texts)]
+
+    def labels(self, named: bool) -> list[Label]:
+        """Return the labels of lines to compare with, of marks and of shades; named: of several other curves, too."""
+        panel = self.panel.at_moment(0)
+        tracks = [self._track(curve) for curve in panel.curves]
+        for track in tracks:
+            self._occupy(self._crossed, track)
+        points = [self.place(mark.x, mark.y) for mark in panel.marks]
+        reach = np.array([-1.0, 0.0, 1.0]) * self.medium.dot
+        for x, y in points:
+            self._occupy(self._taken, np.add.outer(x + reach, 1j * (y + reach)).ravel())
+        faint = [curve for curve in panel.curves if curve.kind == "faint" and curve.name.symbol]
+        found = [self._nearest(symbol(one.name, self.look), *self.place(one.x[-1], one.y[-1])) for one in faint]
+        found += self._names(panel, tracks) if named else []
+        for mark, (x, y) in list(zip(panel.marks, points))[:_MOST_MARKED]:
+            found.append(self._nearest(figure_text(mark.figure, self.look), x, y, led=True))
+        found += self._figures()
+        return [label for label in found if label]
+
+    def _names(self, panel: Panel, tracks: list[ComplexArray]) -> Iterator[Label | None]:
+        """Yield the symbol of each force, and of each of several curves where it is farthest from the others."""
+        for curve in (one for one in panel.curves if one.kind == "arrow"):
+            yield self._nearest(symbol(curve.name, self.look), *self.place(curve.x[1], curve.y[1]))
+        tracks = [track[::4] for track in tracks]
+        lines = [one for one in zip(panel.curves, looks_of(panel), tracks) if one[0].kind in ("line", "dots")]
+        for curve, look, own in lines if len(lines) > 1 else ():
+            others = np.concatenate([track for other, _, track in lines if other is not curve])
+            best = own[np.abs(own[:, None] - others).min(axis=1).round(6).argmax()]
+            label = self._nearest(symbol(curve.name, self.look), best.real, best.imag)
+            yield label and label._replace(look=look)
+
+    def _figures(self) -> Iterator[Label | None]:
+        """Yield what is written into shades: their figures, or the names alone where not each figure has the room."""
+        shades = [(shade, shade.figure) for shade in self.panel.shades if shade.figure]
+        texts = [figure_text(figure, self.look) for _, figure in shades]
+        rooms = [np.ptp(self.x.place(shade.x)) for shade, _ in shades]
+        if any(width(text) * self.medium.letter > room for text, room in zip(texts, rooms)):
+            texts = [symbol(figure.name, self.look) for _, figure in shades]
+        for (shade, _), text in zip(shades, texts):
+            widest = int(np.argmax(np.abs(shade.high - shade.low)))
+            middle = (shade.high[widest] + shade.low[widest]) / 2
+            yield self._nearest(text, *self.place(shade.x[widest], middle))
+
+    def _track(self, curve: Curve) -> ComplexArray:
+        """Return places x + iy along a curve, no farther apart than a quarter of a cell."""
+        across, down = (size / 4 for size in self.medium.grain)
+        pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
+        found = [dense(x / across, y / down) for x, y in pieces if len(x)]
+        return np.concatenate([x * across + 1j * y * down for x, y in found])
+
+    def _occupy(self, grid: Indices, places: ComplexArray) -> None:
+        """Mark the cells of the grid in which places x + iy are."""
+        wide, tall = self.medium.grain
+        column, row = np.floor(places.real / wide).astype(int), np.floor(places.imag / tall).astype(int)
+        inside = (row >= 0) & (row < grid.shape[0]) & (column >= 0) & (column < grid.shape[1])
+        grid[row[inside], column[inside]] = 1
+
+    def _nearest(self, text: str, x: float, y: float, led: bool = False) -> Label | None:
+        """Return a label for a place on the nearest ground that no label has and no curve crosses, if there is such.
+
+        led: a line leads to it where it is far.
+        """
+        wide, tall, grain = width(text) * self.medium.letter, self.medium.line, self.medium.grain
+        rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
+        if rows > self._taken.shape[0] or columns > self._taken.shape[1]:
+            return None
+        crossed, taken = _sums(self._crossed, rows, columns), _sums(self._taken, rows, columns)
+        left, top = grain[0] * np.arange(crossed.shape[1]), grain[1] * np.arange(crossed.shape[0])[:, None]
+        across = np.maximum(np.maximum(left - x, x - left - wide), 0.0)
+        down = np.maximum(np.maximum(top - y, y - top - tall), 0.0)
+        off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
+        cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * crossed
+        cost = np.where(taken > 0, np.inf, cost.round(6))
+        row, column = np.unravel_index(cost.argmin(), cost.shape)
+        if np.isinf(cost[row, column]):
+            return None
+        self._taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
+        start, height = float(left[column]), float(top[row, 0])
+        end = min(max(x, start), start + wide), min(max(y, height), height + tall)
+        far = led and math.hypot(end[0] - x, end[1] - y) > 1.2 * tall
+        return Label(text, start, start + wide, height, (x, y), end, far)
+
+
+def looks_of(panel: Panel) -> list[int]:
+    """Return the number of the colour and stroke of each curve of a panel: lines take one after the other."""
+    found, following = [], 0
+    for curve in panel.curves:
+        found.append((following if curve.look is None else curve.look) % LOOKS)
+        following += curve.kind in ("line", "dots")
+    return found
+
+
+def dense(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return points along a line x, y (n,), neither coordinate of neighbours more than 1 apart."""
+    steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))), 1).astype(int)
+    numbers, ends = np.arange(len(x)), np.append(0, steps.cumsum())
+    along = np.interp(np.arange(ends[-1] + 1), ends, numbers)
+    return np.interp(along, numbers, x), np.interp(along, numbers, y)
+
+
+def _sums(grid: Indices, rows: int, columns: int) -> Indices:
+    """Return the sums of a grid over each rectangle of rows and columns that fits into it, by summed areas."""
+    sums = np.pad(grid.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+    found: Indices = sums[rows:, columns:] - sums[:-rows, columns:] - sums[rows:, :-columns] + sums[:-rows, :-columns]
+    return found

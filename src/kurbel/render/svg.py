@@ -1,0 +1,313 @@
+"""Pictures as SVG: text stays text, colours and strokes are classes, and what moves, moves without a script."""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from typing import NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array, ComplexArray
+from kurbel.render import Look
+from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol
+from kurbel.render.text import folded, width
+from kurbel.report.picture import Curve, Picture
+
+# lengths in points from the upper left corner
+PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0)
+WIDTH = 720.0
+_TALL, _SHORT, _LEAST, _MOST = 250.0, 170.0, 110.0, 460.0
+"""Height of a panel among at most two and of one among several, and bounds of one with equal scales."""
+_BOLD = 8.3
+"""Width of a character of a heading."""
+_SECONDS = 6.0
+"""Time that a moving mechanism takes for one cycle."""
+_STRAIGHT = 0.1
+"""How far a point that is left out may be from the line between its neighbours."""
+_SUBSCRIPT = re.compile("(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|]+?)(?=,?\\s|,?$|\\|)")
+
+
+class Stroke(NamedTuple):
+    """A curve's colour on a light and on a dark ground, and lengths of its dashes and gaps, none for a full line."""
+
+    light: str
+    dark: str
+    dashes: str
+
+
+STROKES = (
+    Stroke("#0b0b0b", "#f2f2f2", ""),
+    Stroke("#0062a3", "#6cc0f2", "8 3"),
+    Stroke("#a8420a", "#f0a35e", "2 2.5"),
+    Stroke("#00694f", "#3fd1a0", "9 3 2 3"),
+    Stroke("#8f2f74", "#eaa0cf", "5 2"),
+    Stroke("#6b5900", "#e6d354", "1 3"),
+)
+"""After Okabe and Ito, whom the colour-blind can tell apart, darkened or lightened to a contrast of 4.5."""
+INK, PAPER = ("#1a1a1a", "#e8e8e8"), ("#ffffff", "#15181b")
+FAINT, GRID = ("#5c5c5c", "#a5a5a5"), ("#dcdcdc", "#33383d")
+GAIN, LOSS = ("#b9cfe2", "#2d4a63"), ("#f1dccd", "#59402c")
+"""Each in light and in dark."""
+SHAPES: tuple[tuple[complex, ...], ...] = (
+    (),
+    (-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j),
+    (-1.3j, 1.2 + 1j, -1.2 + 1j),
+    (-1.4j, 1.4, 1.4j, -1.4),
+    (1.3j, 1.2 - 1j, -1.2 - 1j),
+    (-1.4 - 0.5j, 1.4 - 0.5j, 1.4 + 0.5j, -1.4 + 0.5j),
+    (-0.5 - 1.4j, 0.5 - 1.4j, 0.5 + 1.4j, -0.5 + 1.4j),
+)
+"""Corners of the figures that mark points, over their radius; none of a circle. Seven of them and six colours."""
+
+
+def css(dark: bool = True) -> str:
+    """Return the style sheet of pictures; dark: also for dark screens, and for readers who want nothing to move."""
+    still = "svg .moving{display:none}svg .still{display:inline}"
+    always = (
+        'text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}'
+        ".m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}"
+        ".f,.g,.x,.m{fill:none}.halo{paint-order:stroke;stroke-width:3px;stroke-linejoin:round}"
+    )
+    for number, stroke in enumerate(STROKES):
+        dashes = f";stroke-dasharray:{stroke.dashes}" if stroke.dashes else ""
+        always += f".k{number}{{stroke-width:1.6;fill:none{dashes}}}.j{number}{{stroke-width:1.2;fill:none}}"
+    if not dark:
+        return f"{always}{_colours(0)}"
+    return (
+        f"{always}{_colours(0)}svg .still{{display:none}}@media (prefers-reduced-motion:reduce){{{still}}}"
+        f"@media print{{{still}}}@media screen and (prefers-color-scheme:dark){{{_colours(1)}}}"
+    )
+
+
+def _colours(mode: int) -> str:
+    ink, paper, faint, grid = INK[mode], PAPER[mode], FAINT[mode], GRID[mode]
+    rules = (
+        f".s{{background:{paper}}}text{{fill:{ink}}}.halo{{stroke:{paper}}}.f{{stroke:{faint}}}.g{{stroke:{grid}}}"
+        f".x,.m,.o,.b,.i{{stroke:{ink}}}.o{{fill:{paper}}}.b{{fill:{grid}}}.i{{fill:{ink}}}"
+        f".p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
+    )
+    for number, stroke in enumerate(STROKES):
+        colour = (stroke.light, stroke.dark)[mode]
+        rules += f".k{number},.j{number}{{stroke:{colour}}}.c{number}{{fill:{colour}}}"
+    return rules
+
+
+def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> str:
+    """Return a file with pictures one below the other; paper: as what can neither be dark nor move."""
+    drawn = [(picture, *_drawn(picture, look, paper)) for picture in pictures]
+    title = escape(" ".join(picture_text(picture, look) for picture, _, _ in drawn))
+    height, parts = 0.0, []
+    for _, tall, items in drawn:
+        parts.append(f'<g transform="translate(0 {height:g})">\n{items}</g>\n')
+        height += tall
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="s" viewBox="0 0 {WIDTH:g} {height:g}" width="{WIDTH:g}" '
+        f'height="{height:g}" role="img">\n<title>{title}</title>\n'
+        f"<style>{css(not paper)}</style>\n{''.join(parts)}</svg>\n"
+    )
+
+
+def svg(picture: Picture, look: Look) -> str:
+    """Return a picture as a part of a page that has the style sheet."""
+    tall, items = _drawn(picture, look, False)
+    head = f'<svg class="s" viewBox="0 0 {WIDTH:g} {tall:g}" role="img">'
+    return f"{head}<title>{escape(picture_text(picture, look))}</title>\n{items}</svg>"
+
+
+def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
+    """Return the height of a picture and its items."""
+    heading = folded(look.charset.text(picture.heading), int((WIDTH - 16) / _BOLD))
+    items = "".join(_text(8, 16 + 17 * number, text, "h", plain=True) for number, text in enumerate(heading))
+    top, each = 7.0 + 17 * len(heading), WIDTH / picture.across
+    tall = _TALL if len(picture.panels) < 3 else _SHORT
+    for first in range(0, len(picture.panels), picture.across):
+        below = top
+        for number, panel in enumerate(picture.panels[first : first + picture.across]):
+            left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
+            frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall, _LEAST, _MOST)
+            inside = "".join(_panel(frame, left, paper))
+            items += f'<g transform="translate({number * each + left:g} {top + above:g})">\n{inside}</g>\n'
+            below = max(below, top + above + frame.tall + under)
+        top = below + 4
+    for number, (name, mark) in enumerate(picture.legend):
+        left, base = 12 + number % 4 * (WIDTH - 12) / 4, top + 14 + number // 4 * 16
+        items += _shape(f"c{mark % LOOKS}", _dot(complex(left, base - 4), mark))
+        items += _text(left + 9, base, symbol(name, look))
+    return top + (-(-len(picture.legend) // 4) * 16 + 8 if picture.legend else 0), items
+
+
+def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
+    """Yield what is on a panel, from below to above; what moves twice, in motion and at rest.
+
+    left: the room at its left.
+    """
+    panel = frame.panel
+    if not panel.plain:
+        yield from _axes(frame)
+        yield from _head(frame, -left + 12)
+    for shade in panel.shades:
+        low, high = (thinned(_places(frame, shade.x, line)) for line in (shade.low, shade.high))
+        yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
+    resting = _text(0, -5, frame.look.charset.text(panel.title), plain=True) if panel.plain else ""
+    moving = ""
+    for curve, look in zip(panel.curves, looks_of(panel)):
+        if curve.x.ndim == 1 or paper:
+            yield _curve(frame, curve, look, moving=False)
+        else:
+            moving += _curve(frame, curve, look, moving=True)
+            resting += _curve(frame, curve, look, moving=False)
+    yield f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n' if moving else resting
+    labels = frame.labels(named=False)
+    leads = [np.array([complex(*label.point), complex(*label.end)]) for label in labels if label.far]
+    yield "".join(_shape("f", _path(lead)) for lead in leads)
+    yield "".join(_shape("o", _circle(complex(*frame.place(mark.x, mark.y)), 2.6)) for mark in panel.marks)
+    yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
+
+
+def _axes(frame: PanelFrame) -> Iterator[str]:
+    """Yield thin lines with their values, and what runs along the lower axis."""
+    wide, tall = frame.wide, frame.tall
+    across, up = frame.ticks_across(max(3, int(wide / 64)), -50.0, wide + 14), frame.ticks_up(int(tall / 30))
+    lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
+    lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
+    yield _shape("g", "".join(lines)) + _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))
+    yield "".join(_text(start, tall + 14, text, plain=True) for _, start, text in across if text)
+    yield "".join(_text(-6, place + 3.5, text, anchor="end") for place, text in up)
+    yield _text(wide, tall + 26, axis_text(frame.panel.x, frame.look), anchor="end")
+
+
+def _head(frame: PanelFrame, left: float) -> Iterator[str]:
+    """Yield what is above a panel: its title, what runs upward, and which stroke is which quantity."""
+    panel, look = frame.panel, frame.look
+    for text, plain in ((look.charset.text(panel.title), True), (axis_text(panel.y, look), False)):
+        if text:
+            yield _text(left, -10, text, plain=plain)
+            left += PAPER_SIZES.letter * width(text) + 20
+    lines = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
+    for curve, number in lines if len(lines) > 1 else ():
+        name = symbol(curve.name, look)
+        wide = 46 + PAPER_SIZES.letter * width(name)
+        if left + wide > frame.wide + 16:
+            break
+        yield _shape(f"k{number}", _path(np.array([left - 14j, left + 26 - 14j]))) + _text(left + 30, -10, name)
+        left += wide
+
+
+def _curve(frame: PanelFrame, curve: Curve, look: int, moving: bool) -> str:
+    """Return a curve, or a force with its name; moving: through all its moments, else as it is at rest."""
+    moments = [curve.at_moment(moment) for moment in range(len(curve.x) if moving else 1)]
+    outlines = zip(*(_outlines(frame, one, look) for one in moments))
+    shapes = "".join(_shape(look_, path, [one for _, one in loop]) for (look_, path), *loop in outlines)
+    if curve.kind == "arrow":
+        tips = [_arrow(_places(frame, one.x, one.y))[1] for one in moments]
+        shapes += _text(tips[0].real, tips[0].imag, symbol(curve.name, frame.look), "halo", "middle", loop=tips[1:])
+    return shapes
+
+
+def _outlines(frame: PanelFrame, curve: Curve, look: int) -> list[tuple[str, str]]:
+    """Return classes of the style with the paths in which a curve is drawn."""
+    pieces = [_places(frame, x, y) for x, y in curve.pieces()]
+    lines = "".join(map(_path, map(thinned, pieces) if curve.kind in ("line", "faint") else pieces))
+    if curve.kind == "line":
+        jumps = "".join(_path(_places(frame, x, y)) for x, y in curve.jumps())
+        return [(f"k{look}", lines), (f"j{look}", jumps)] if jumps else [(f"k{look}", lines)]
+    if curve.kind == "dots":
+        shape = look if curve.look is None else curve.look
+        return [(f"j{look}", lines), (f"c{look}", "".join(_dot(point, shape) for piece in pieces for point in piece))]
+    if curve.kind in ("joint", "fixed"):
+        return [("o" if curve.kind == "joint" else "i", "".join(_circle(point, 4.0) for point in pieces[0]))]
+    if curve.kind == "arrow":
+        return [("c1", _path(_arrow(pieces[0])[0]) + "Z")]
+    return [({"member": "m", "block": "b"}.get(curve.kind, "f"), lines)]
+
+
+def _arrow(ends: ComplexArray) -> tuple[ComplexArray, complex]:
+    """Return the corners of an arrow from one place to another, and the place of its name."""
+    tail, tip = ends
+    length = abs(tip - tail)
+    along = (tip - tail) / length if length else 0.0
+    size = min(9.0, length)
+    half = np.array([0.8, 0.8, 3.6]) * 1j * along
+    side = np.array([tail, tip - size * along, tip - size * along])
+    return np.concatenate((side + half, [tip], (side - half)[::-1])), tip + 9.0 * along + 3.5j
+
+
+def _places(frame: PanelFrame, x: Array | float, y: Array | float) -> ComplexArray:
+    """Return the places of points as x + iy."""
+    across, down = frame.place(x, y)
+    return np.asarray(across + 1j * down)
+
+
+def thinned(places: ComplexArray) -> ComplexArray:
+    """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
+    while len(places) > 2:
+        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
+        share = (off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
+        dull = np.abs(off - np.minimum(np.maximum(share, 0.0), 1.0) * chord) <= _STRAIGHT
+        if not dull.any():
+            break
+        order = np.arange(len(dull))  # of neighbours every other one
+        dull &= (order - np.maximum.accumulate(np.where(dull, -1, order))) % 2 == 1
+        places = places[np.concatenate(([True], ~dull, [True]))]
+    return places
+
+
+def _path(places: ComplexArray) -> str:
+    rounded = (np.round(places, 1) + 0.0).tolist()
+    return "M" + "L".join([f"{one.real:g} {one.imag:g}" for one in rounded])
+
+
+def _circle(middle: complex, radius: float) -> str:
+    x, y, r = _number(middle.real - radius), _number(middle.imag), f"{radius:g}"
+    return f"M{x} {y}a{r} {r} 0 1 0 {2 * radius:g} 0a{r} {r} 0 1 0-{2 * radius:g} 0Z"
+
+
+def _dot(middle: complex, shape: int) -> str:
+    corners = SHAPES[shape % len(SHAPES)]
+    return _path(np.array([middle + 2.4 * one for one in corners])) + "Z" if corners else _circle(middle, 2.4)
+
+
+def _shape(look: str, path: str, loop: Sequence[str] = ()) -> str:
+    """Return a path; loop: the paths through which it moves."""
+    moves = _animated("d", loop)
+    return f'<path class="{look}" d="{path}"{f">{moves}</path>" if moves else "/>"}\n'
+
+
+def _text(
+    x: float,
+    y: float,
+    text: str,
+    look: str = "",
+    anchor: str = "",
+    plain: bool = False,
+    loop: Sequence[complex] = (),
+) -> str:
+    """Return a text, with subscripts if it is not plain; loop: the places through which it moves."""
+    first, *following = [text] if plain else subscripts(text)
+    words = escape(first)
+    for below, rest in zip(following[::2], following[1::2]):
+        words += f'<tspan dy="2" font-size="80%">{escape(below)}</tspan>'
+        words += f'<tspan dy="-2">{escape(rest)}</tspan>' if rest else ""
+    moves = _animated("x", [_number(one.real) for one in loop]) + _animated("y", [_number(one.imag) for one in loop])
+    attributes = (f' class="{look}"' if look else "") + (f' text-anchor="{anchor}"' if anchor else "")
+    return f'<text{attributes} x="{_number(x)}" y="{_number(y)}">{words}{moves}</text>\n'
+
+
+def subscripts(text: str) -> list[str]:
+    """Return what is on the line and what is below it as subscripts, in turn.
+
+    >>> subscripts("T_max 5.1 kN"), subscripts("F_x, F_y in N"), subscripts("my_engine")
+    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
+    """
+    return _SUBSCRIPT.split(text)
+
+
+def _animated(attribute: str, values: Sequence[str]) -> str:
+    if len(set(values)) < 2:
+        return ""
+    around = ";".join((*values, values[0]))
+    return f'<animate attributeName="{attribute}" dur="{_SECONDS:g}s" repeatCount="indefinite" values="{around}"/>'
+
+
+def _number(value: float) -> str:
+    return f"{round(value, 1) + 0.0:g}"

@@ -1,0 +1,200 @@
+"""Where pictures take their curves from: results sampled so finely that no line of points leaves its curve visibly."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.quantity import Quantity
+from kurbel.declared.unit_systems import convert, shown_unit
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.frame import too_large
+from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
+from kurbel.solver.figures import Results
+
+PHI = "phi"
+FINENESS = 1 / 2000
+"""By what of its height a line of points may miss a curve: less than can be seen on paper."""
+_WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
+_HALVINGS = 12
+ZERO = "0 at every angle"
+_JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
+
+Values = Callable[[Array, Array], Array]
+"""Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
+
+
+class PictureOptions(NamedTuple):
+    """The unit system; the one cylinder to draw; crank angles in degrees of a mechanism, None where it moves."""
+
+    system: str = "metric"
+    cylinder: str | None = None
+    angles: Sequence[float] | None = None
+
+
+class Sampled(NamedTuple):
+    """Quantities (k, n) in SI at rising crank angles (n,) in degrees; a break is there twice, with both its sides."""
+
+    degrees: Array
+    values: Array
+
+    def curve(self, name: Words, x: Array, y: Array) -> Curve:
+        """Return the curve through points x, y (n,) at these angles, with a gap where either jumps."""
+        breaks = np.flatnonzero(np.diff(self.degrees) == 0)
+        jumps = [np.abs(np.diff(line)[breaks]) > _JUMP * (np.ptp(line) or 1.0) for line in (x, y)]
+        gaps = breaks[jumps[0] | jumps[1]] + 1
+        return Curve(name, np.insert(x, gaps, np.nan), np.insert(y, gaps, np.nan))
+
+
+def sampled(breaks: Array, values: Values) -> Sampled:
+    """Return points so dense that straight lines between them miss no quantity by more than its height × FINENESS.
+
+    breaks: crank angles (m,) in degrees between which all quantities are smooth. Intervals are halved where the point
+    in their middle is off the line; every point is one of `values`.
+    """
+    counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int)
+    ends = np.append(0, counts.cumsum())
+    edges = np.interp(np.arange(ends[-1] + 1), ends, breaks)
+    low, high, within = edges[:-1], edges[1:], np.repeat((breaks[:-1] + breaks[1:]) / 2, counts)
+    at_low, at_high = values(low, within), values(high, within)
+    found = [(low, within, at_low), (high, within, at_high)]
+    allowed = np.ptp(np.concatenate((at_low, at_high), axis=1), axis=1)[:, None] * FINENESS
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        at_middle = values(middle, within)
+        found.append((middle, within, at_middle))
+        off = (np.abs(at_middle - (at_low + at_high) / 2) > allowed).any(axis=0)
+        if not off.any():
+            break
+        low, high = np.append(low[off], middle[off]), np.append(middle[off], high[off])
+        at_low = np.concatenate((at_low[:, off], at_middle[:, off]), axis=1)
+        at_high = np.concatenate((at_middle[:, off], at_high[:, off]), axis=1)
+        within = np.tile(within[off], 2)
+    degrees, within, points = (np.concatenate(parts, axis=-1) for parts in zip(*found))
+    order = np.lexsort((degrees, within))
+    degrees, within, points = degrees[order], within[order], points[:, order]
+    new = np.append(True, (np.diff(degrees) != 0) | (np.diff(within) != 0))
+    return Sampled(degrees[new], points[:, new])
+
+
+class Source:
+    """The results of one cylinder, bearing or machine; angles: in degrees at which a mechanism is drawn, if any."""
+
+    def __init__(self, results: Any, angles: Sequence[float] | None) -> None:
+        self.results, self.angles = results, angles
+        self.quantities: dict[str, Quantity] = {}
+        self.key_values: dict[str, Quantity] = {}
+        if isinstance(results, Results):  # others have no columns
+            self.quantities = {one.id: one for one in results.lists.all_columns}
+            self.key_values = results.lists.key_values(results.command)
+            self._start = results.at(np.zeros(1), np.full(1, 1e-3))
+
+    def having(self, ids: Iterable[str]) -> tuple[str, ...]:
+        """Return those of these columns that there are."""
+        return tuple(id for id in ids if id in self.quantities and self._start[id] is not None)
+
+    def values(self, ids: Sequence[str], degrees: Array, within: Array) -> Array:
+        """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
+        state = self.results.at(degrees, within)
+        found = [degrees if id == PHI else np.broadcast_to(state[id], degrees.shape) for id in ids]
+        return np.stack([np.asarray(one, dtype=float) for one in found])
+
+    def samples(
+        self, ids: Sequence[str], also: Iterable[float] = (), values: Values | None = None, breaks: Array | None = None
+    ) -> Sampled:
+        """Return columns over the cycle, or other `values` under these ids, with points at the angles `also`.
+
+        breaks: instead of those of the results. Raises UsageError where one has left the range of floats.
+        """
+        breaks = self.results.breaks if breaks is None else breaks
+        # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
+        breaks = np.array(sorted({*breaks.tolist(), *(angle for angle in also if 0 < angle < breaks[-1])}))
+        found = sampled(breaks, values or (lambda degrees, within: self.values(ids, degrees, within)))
+        for id, line in zip(ids, found.values):
+            if not np.isfinite(line).all():
+                raise too_large(self.quantities[id])
+        return found
+
+    def axis(self, id: str) -> Axis:
+        """Return the axis of a column."""
+        return Axis(self.words(id), self.quantities[id].kind)
+
+    def words(self, id: str) -> Words:
+        """Return the symbol of a column, or of a key value."""
+        quantity = self.quantities.get(id) or self.key_values[id]
+        return Words(quantity.symbol, quantity.ascii_symbol)
+
+    def extremes(self, id: str) -> list[tuple[str, Extreme]]:
+        """Return the extremes of a column with the ids of these key values; none of a level line."""
+        named = [name for name in (f"{id}_max", f"{id}_min") if name in self.key_values]
+        found = [(name, self.results.rows.key_values[name].of(self.results)) for name in named]
+        found = [(name, extreme) for name, extreme in found if isinstance(extreme, Extreme)]
+        return found if len({extreme.value for _, extreme in found}) == len(found) else []
+
+    def mark(self, id: str, extreme: Extreme, x: float, y: float | None = None) -> Mark:
+        """Return an extreme, which is the key value of this id, at a place; y: its value, if none is given."""
+        figure = Figure(self.words(id), extreme.value, at_deg=extreme.degrees)
+        return Mark(x, extreme.value if y is None else y, figure)
+
+    def panel(self, ids: Sequence[str], over: str = PHI, zero: bool = False) -> Panel:
+        """Return a panel of columns of one kind over another column, with their extremes; zero: with the line y = 0."""
+        samples = self.samples((over, *ids))
+        x, *lines = samples.values
+        curves = [samples.curve(self.words(id), x, line) for id, line in zip(ids, lines)]
+        curves += [level(x)] if zero else []
+        marks = []
+        for name, extreme in (one for id in ids for one in self.extremes(id)):
+            at = np.array([extreme.degrees])
+            marks.append(self.mark(name, extreme, float(self.values((over,), at, at)[0, 0])))
+        every = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
+        y = self.axis(ids[0])._replace(name=every)
+        return Panel(self.axis(over), y, tuple(curves), marks=tuple(marks), title="" if np.any(lines) else ZERO)
+
+    def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
+        """Yield a panel for each group of columns of one kind, as far as there are any."""
+        if self.having((over,)) or over == PHI:
+            yield from (self.panel(ids, over) for group in groups if (ids := self.having(group)))
+
+
+def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
+    """Return a faint level line as far as x (n,) reaches."""
+    return Curve(name, np.array([np.nanmin(x), np.nanmax(x)]), np.full(2, height), "faint")
+
+
+def in_units(panel: Panel, system: str) -> Panel:
+    """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
+    across, up = panel.places
+    if panel.equal:
+        across = up = [*across, *up]
+    x_unit, y_unit = _unit(panel.x.kind, system, across), _unit(panel.y.kind, system, up)
+    works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
+    energy = _unit("energy", system, works)
+
+    def run(values: Any) -> Any:
+        return convert(values, panel.x.kind, x_unit)
+
+    def rise(values: Any) -> Any:
+        return convert(values, panel.y.kind, y_unit)
+
+    def shown(figure: Figure, kind: str, unit: str, mark: str = "") -> Figure:
+        value = None if figure.value is None else float(convert(figure.value, kind, unit))
+        return figure._replace(value=value, unit=f"{unit} {mark}".rstrip())
+
+    curves = tuple(one._replace(x=run(one.x), y=rise(one.y)) for one in panel.curves)
+    shades = tuple(
+        Shade(run(x), rise(low), rise(high), gain, figure and shown(figure, "energy", energy))
+        for x, low, high, gain, figure in panel.shades
+    )
+    marks = tuple(
+        Mark(float(run(x)), float(rise(y)), shown(figure, panel.y.kind, y_unit, panel.y.mark))
+        for x, y, figure in panel.marks
+    )
+    axes = panel.x._replace(unit=x_unit), panel.y._replace(unit=f"{y_unit} {panel.y.mark}".rstrip())
+    return Panel(*axes, curves, shades, marks, panel.equal, panel.plain, panel.title)
+
+
+def _unit(kind: str, system: str, values: Sequence[Array]) -> str:
+    """Return the unit in which values in SI of one kind are shown together."""
+    largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
+    return shown_unit(kind, system, largest) if kind else ""

@@ -1,0 +1,481 @@
+"""The pictures of a machine: each a function that yields its panels, and the list of them."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.reading import shown
+from kurbel.declared.shaft import SHAFT_PARTS
+from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine.alike import gathered, work_alike
+from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme
+from kurbel.report.alike import together
+from kurbel.report.mechanism_picture import mechanism
+from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
+from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
+from kurbel.report.tables import cylinder_meant
+from kurbel.solver.case import Case
+from kurbel.solver.gas import PistonGas
+
+_REVERSAL = Words("force reversal")
+_CROSSING = 1e-9
+"""Of the largest distance between two lines: where they cross, rounding alone is between them."""
+_MOST_NUMBERED = 24
+_HIGHEST = 12
+"""Order up to which bars are drawn: beyond it they are too small to be seen."""
+_MODES = 4
+_LONGEST_NAME = 14
+_FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
+_PARTS = "left: gas, weight, friction; right: inertia"
+_SENSES = "left: circles with the rotation, right: against it"
+
+# one cylinder
+
+
+def piston_force(source: Source) -> Iterator[Panel]:
+    """Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what is
+    between them is the piston force P, shown alone below. It changes sign where both lines cross."""
+    if not source.having(("P",)):
+        return
+    reversals = source.results.phi_reversal or ()
+    ids = source.having(("P_start", "P_inertia"))
+    if len(ids) == 2:
+        panel = _remaining_force(source, source.samples((PHI, *ids), reversals), PHI)
+        at = np.array(reversals)
+        heights = -source.values(ids, at, at)[1]
+        yield panel._replace(marks=tuple(map(_reversal, reversals, heights.tolist())))
+    panel = source.panel(("P",), zero=True)
+    yield panel._replace(marks=(*panel.marks, *(_reversal(angle, 0.0) for angle in reversals)))
+
+
+def _reversal(angle: float, height: float) -> Mark:
+    return Mark(angle, height, Figure(_REVERSAL, at_deg=angle))
+
+
+def _remaining_force(source: Source, samples: Sampled, over: str) -> Panel:
+    """Return a panel of a force and the inertia line, or the line of no force, with what is between them shaded."""
+    x, force, *inertia = samples.values
+    base = -inertia[0] if inertia else np.zeros_like(x)
+    curves = [samples.curve(Words("P_0" if inertia else "P"), x, force)]
+    curves += [samples.curve(Words("−P_b"), x, base)] if inertia else []
+    return Panel(source.axis(over), source.axis("P"), (*curves, level(x)), tuple(between(x, base, force)))
+
+
+def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
+    """Yield what is between two lines, cut where they cross."""
+    apart = line - base
+    above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
+    # a point on the base belongs to the area before it, and to the next one, too
+    crossings = np.flatnonzero((above[1:-1] == 0) | (above[1:-1] * above[2:] < 0)) + 1
+    for start, end in pairwise((0, *crossings.tolist(), len(x) - 1)):
+        part = slice(start, end + 1)
+        if end > start and (above[part] != 0).any():
+            yield Shade(x[part], base[part], line[part], bool(above[part].sum() > 0))
+
+
+def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
+    """The same over the displacement of the piston, stroke by stroke (R Abb. 1055)."""
+    results, drive = source.results, source.results.drive
+    if len(source.having(("P", "x"))) < 2 or drive.mechanism.turns:
+        return
+    parts = source.having(("P_start", "P_inertia"))
+    ids = ("x", *(parts if len(parts) == 2 else ("P",)))
+    cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
+    bends = [angle + turn for angle in (*results.breaks, *(results.phi_reversal or ())) for turn in (0.0, cycle)]
+
+    def values(degrees: Array, within: Array) -> Array:
+        turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
+        return source.values(ids, degrees - turned, within - turned)
+
+    ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
+    for start, end in pairwise((*ends, ends[0] + cycle)):
+        breaks = np.array(sorted({start, *(angle for angle in bends if start < angle < end), end}))
+        panel = _remaining_force(source, source.samples(ids, values=values, breaks=breaks), "x")
+        name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
+        yield panel._replace(title=f"{name} {start:.4g}–{end:.4g}°")
+
+
+def cards(source: Source) -> Iterator[Panel]:
+    """Pressure at both ends of the pistons over the displacement from the inner dead centre (R Abb. 1051)."""
+    for number, gas in enumerate(source.results.drive.gas):
+        panel = _card(source, gas, over_volume=False)
+        if number == 0 and (highest := source.results.p_max):
+            at = float(source.results.at(np.array([highest.degrees])).way[0])
+            panel = panel._replace(marks=(source.mark("p_max", highest, at),))
+        yield panel
+
+
+def cards_over_volume(source: Source) -> Iterator[Panel]:
+    """Pressure over the volume swept in each chamber, with the clearance where that is known."""
+    return (_card(source, gas, over_volume=True) for gas in source.results.drive.gas)
+
+
+def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
+    """Return the pressures of both ends of a piston over its displacement, or over the volume of each chamber."""
+    ends = [(id, end) for id, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
+
+    def values(degrees: Array, within: Array) -> Array:
+        state = source.results.at(degrees, within)
+        return np.stack([state.way, *(state.pressure(end) + gas.base for _, end in ends)])
+
+    samples = source.samples(("x", *(id for id, _ in ends)), values=values)
+    way, *pressures = samples.values
+    places = [_volume(gas, id, way) if over_volume else way for id, _ in ends]
+    curves = [samples.curve(source.words(id), x, p) for (id, _), x, p in zip(ends, places, pressures)]
+    x = Axis(Words("V"), "volume") if over_volume else source.axis("x")
+    y = Axis(Words("p"), "pressure", mark="abs" if gas.absolute else "")
+    title = gas.piston.name if len(source.results.drive.gas) > 1 else ""
+    return Panel(x, y, (*curves, level(np.concatenate(places), gas.base)), title=title)
+
+
+def _volume(gas: PistonGas, end: str, way: Array) -> Array:
+    """Return the volume in m³ of a chamber: what the piston has swept, and the clearance where it is known."""
+    indicator, head = gas.piston.indicator, end == "p_head"
+    chamber = indicator and (indicator.head_end if head else indicator.crank_end)
+    area = gas.piston.head_area if head else gas.piston.crank_area
+    clearance = getattr(chamber, "clearance", None) or 0.0
+    return np.asarray(area * ((way if head else gas.stroke - way) + clearance * gas.stroke))
+
+
+def forces(source: Source) -> Iterator[Panel]:
+    """Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062)."""
+    offered = [one.quantity.id for one in source.results.drive.mechanism.OFFERS if one.quantity.commands == ("forces",)]
+    found = source.having(("S", "N", "D", "T", "M_out", *offered))
+    for kind in dict.fromkeys(source.quantities[id].kind for id in found):
+        yield source.panel([id for id in found if source.quantities[id].kind == kind], zero=True)
+
+
+def polar_effort(source: Source) -> Iterator[Panel]:
+    """Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063)."""
+    if not source.having(("T",)):
+        return
+    (force,) = source.samples(("T",)).values
+    size = float(np.abs(force).max()) or 1.0
+    base = max(0.6 * size, 0.25 * size - float(force.min()))
+
+    def tip(degrees: Array, within: Array) -> Array:
+        place = (base + source.values(("T",), degrees, within)[0]) * np.exp(1j * np.radians(degrees))
+        return np.stack([place.real, place.imag])
+
+    around = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
+    rings = [(Words("T = 0"), base * around)]
+    if mean := source.results.W:
+        rings.append((Words("W"), (base + mean) * around))
+    for angle in range(0, 360, 90):
+        spoke = np.array([base, 1.04 * (base + size)]) * np.exp(1j * np.radians(angle))
+        rings.append((Words(f"φ = {angle}°", f"phi = {angle}"), spoke))
+    samples = source.samples(("T", "T"), values=tip)
+    curve = samples.curve(source.words("T"), *samples.values)
+    faint = [Curve(name, places.real, places.imag, "faint") for name, places in rings]
+    marks = []
+    for id, extreme in source.extremes("T"):
+        at = np.array([extreme.degrees])
+        marks.append(source.mark(id, extreme, *tip(at, at)[:, 0].tolist()))
+    axis = Axis(Words(""), "force")
+    yield Panel(axis, axis, (curve, *faint), marks=tuple(marks), equal=True, plain=True)
+
+
+def motion(source: Source) -> Iterator[Panel]:
+    """Displacement, velocity and acceleration over the crank angle (R Abb. 1047 to 1050)."""
+    return source.panels(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",))
+
+
+def motion_over_stroke(source: Source) -> Iterator[Panel]:
+    """Velocity and acceleration over the displacement (R Abb. 1049, 1050)."""
+    return source.panels(("c",), ("b",), over="x")
+
+
+# the whole machine
+
+
+def effort(source: Source) -> Iterator[Panel]:
+    """Turning effort of the whole machine and the resistance, its lobes numbered with their work; below them the excess
+    work and the speed (R Abb. 1064 to 1067)."""
+    results = source.results
+    at_crank = bool(source.having(("T",)))
+    id, radius = ("T", results.crank) if at_crank else ("M", 1.0)
+    samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
+    x, line, load = samples.values
+    base = load / radius
+    level_load = results.machine.load is None or results.machine.load.diagram is None
+    resistance = samples.curve(Words("W" if at_crank else "M_m" if level_load else "M_W"), x, base)
+    curves = samples.curve(source.words(id), x, line), resistance._replace(kind="faint" if level_load else "line")
+    marks = tuple(source.mark(name, extreme, extreme.degrees) for name, extreme in source.extremes(id))
+    shades = tuple(_numbered(source, list(between(x, base, line))))
+    yield Panel(source.axis(PHI), source.axis(id), curves, shades, marks)
+    for id, mean, height in (
+        ("E", "", 0.0),
+        ("omega", "omega_mean", results.omega_mean),
+        ("M_coupling", "M_mean", results.M_mean),
+    ):
+        if source.having((id,)):
+            panel = source.panel((id,))
+            line_ = (level(panel.curves[0].x, height, source.words(mean)),) if mean else ()
+            yield panel._replace(curves=(*panel.curves, *line_))
+
+
+def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
+    """Yield the lobes with their numbers and works; of one that the end of the cycle cuts, the wider part has them."""
+    crossings, lobes = source.results.phi_crossing, source.results.lobes
+    if not 0 < len(lobes) <= _MOST_NUMBERED:
+        yield from shades
+        return
+    owners = [int(np.searchsorted(crossings, (one.x[0] + one.x[-1]) / 2) - 1) % len(lobes) for one in shades]
+    for shade, owner in zip(shades, owners):
+        widest = max(other.x[-1] - other.x[0] for other, one in zip(shades, owners) if one == owner)
+        work = Figure(Words(f"A_{owner + 1}"), lobes[owner])
+        yield shade._replace(figure=work) if shade.x[-1] - shade.x[0] == widest else shade
+
+
+def throw_stress(source: Source) -> Iterator[Panel]:
+    """Largest combined stress of each part of the crank throw over the cycle."""
+    return source.panels(tuple(f"sigma_{part}" for part in SHAFT_PARTS))
+
+
+def torque_orders(source: Source) -> Iterator[Panel]:
+    """Amplitudes of the turning effort by order, periods per turn of the shaft."""
+    found, drawn = source.results.machine, source.results.orders <= _HIGHEST
+    orders = source.results.orders[drawn]
+    yield _bars(orders, [np.abs(found.whole.amplitudes)[drawn]], Axis(Words("|M_ν|"), "torque", low=0.0), "all")
+    if found.inertia is not None:
+        parts = [np.abs(one.amplitudes)[drawn] for one in (found.gas, found.inertia)]
+        yield _bars(orders, parts, Axis(Words("|M_ν|"), "torque", low=0.0), _PARTS)
+
+
+def unbalanced_orders(source: Source) -> Iterator[Panel]:
+    """The circles of each order, with the rotation and against it."""
+    if source.having(("F_x",)):
+        omega, free = source.results.omega, source.results.free
+        for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
+            if vector is not None and free.orders:
+                sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
+                yield _bars(free.orders, sizes, Axis(Words(name), kind, low=0.0), _SENSES)
+
+
+def _bars(orders: Sequence[float], sizes: Sequence[Array], y: Axis, title: str) -> Panel:
+    """Return one or two rows of sizes as bars over orders, next to each other."""
+    wide = 0.76 / len(sizes)
+    shades = []
+    for number, row in enumerate(sizes):
+        for place, size in enumerate(row):
+            left = place - 0.38 + number * wide
+            shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
+    names = tuple(f"{order:g}" for order in orders)
+    x = Axis(Words("n"), low=-0.6, high=len(names) - 0.4, names=names)
+    return Panel(x, y, shades=tuple(shades), title=title)
+
+
+def shaft_modes(source: Source) -> Iterator[Panel]:
+    """Angles by which the masses of the shaft line turn in its first natural vibrations."""
+    found, curves = source.results, []
+    places = np.arange(float(len(found.line.masses)))
+    for mode in range(1, min(_MODES, found.first + len(found.modes.omegas) - 1) + 1):
+        angles = np.asarray(found.holzer(mode).angles, dtype=float)
+        frequency = float(found.modes.omegas[mode - found.first]) / (2 * math.pi)
+        curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max()))
+    if curves:
+        names = tuple(mass.name[:_LONGEST_NAME] for mass in found.line.masses)
+        yield Panel(Axis(Words(""), names=names), Axis(Words("θ")), (*curves, level(places)))
+
+
+# tips of vectors over the cycle
+
+
+def unbalanced_vectors(source: Source) -> Iterator[Panel]:
+    """Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution."""
+    results = source.results
+    for ids, id, largest in (
+        (("F_x", "F_y"), "F_free_max", results.F_free_max),
+        (("M_x", "M_y"), "M_free_max", results.M_free_max),
+    ):
+        if source.having(ids) == ids:
+            at = np.array([largest.degrees if largest else 0.0])
+            marks = _largest(source, id, largest, source.values(ids, at, at)[:, 0])
+            samples = source.samples(ids)
+            curve = samples.curve(source.words(ids[1]), *samples.values)
+            yield Panel(source.axis(ids[0]), source.axis(ids[1]), (curve,), marks=marks, equal=True)
+
+
+def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
+    """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
+    return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
+
+
+def polar_loads(source: Source) -> Iterator[Panel]:
+    """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod."""
+    largest = dict(source.extremes("load")).get("load_max")
+    for frame in source.having(_FRAMES):
+
+        def tip(degrees: Array, within: Array, frame: str = frame) -> Array:
+            """Return the load (2, n) along and across the direction from which its angle counts; of 0 there is none."""
+            load, angle = source.values(("load", frame), degrees, within)
+            angle = np.radians(np.where(load > 0, np.nan_to_num(angle), 0.0))
+            return np.stack([load * np.cos(angle), load * np.sin(angle)])
+
+        at = np.full(2, largest.degrees if largest else 0.0)
+        # at a jump the largest load is on one of its sides
+        sides = tip(at, at + np.array([-1e-6, 1e-6]))
+        side = int(np.argmin(np.abs(np.hypot(*sides) - (largest.value if largest else 0.0))))
+        samples, axis = source.samples(("load", "load"), values=tip), Axis(Words("F"), "force")
+        curve = samples.curve(source.words("load"), *samples.values)
+        marks = _largest(source, "load_max", largest, sides[:, side])
+        yield Panel(axis, axis, (curve,), marks=marks, equal=True, title=_FRAMES[frame])
+
+
+def _largest(source: Source, id: str, largest: Extreme | None, tip: Array) -> tuple[Mark, ...]:
+    """Return the mark of the largest vector, whose tip (2,) is given; none where all are 0."""
+    return (source.mark(id, largest, *tip.tolist()),) if largest and largest.value else ()
+
+
+# which pictures there are
+
+
+class PictureKind(NamedTuple):
+    """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
+
+    The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
+    across: panels next to each other.
+    """
+
+    id: str
+    title: str
+    command: str
+    panels: Callable[[Source], Iterable[Panel]]
+    across: int = 1
+
+    @property
+    def text(self) -> str:
+        """The sentence that says what is seen."""
+        return " ".join((self.panels.__doc__ or "").split())
+
+
+PICTURES = (
+    PictureKind("piston-force", "Piston force", "forces", piston_force),
+    PictureKind("piston-force-way", "Piston force over the stroke", "forces", piston_force_over_stroke),
+    PictureKind("card", "Indicator diagram", "forces", cards),
+    PictureKind("card-volume", "Indicator diagram over the volume", "forces", cards_over_volume),
+    PictureKind("forces", "Forces in the crank train", "forces", forces),
+    PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
+    PictureKind("effort", "Turning effort", "flywheel", effort),
+    PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
+    PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
+    PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
+    PictureKind("modes", "Natural modes of the shaft", "torsion", shaft_modes),
+    PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
+    PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
+    PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
+    PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
+    PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
+    PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
+)
+"""The pictures, the one that says most of a machine first."""
+
+
+def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Iterator[Picture]:
+    """Yield these pictures of a machine; without names the first that it has, for `all` every one.
+
+    Raises UsageError for a picture that does not exist, or that this machine does not have, NoSolutionError where the
+    machine locks itself or stalls.
+    """
+    if options.cylinder:
+        options = options._replace(cylinder=cylinder_meant(options.cylinder, _cylinder_names(case)))
+    if not names:
+        found = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
+        first = next(found, None)
+        if first is None:
+            raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
+        yield from first
+    elif "all" in names:
+        for kind in PICTURES:
+            yield from pictures_if_any(case, kind, options)
+    else:
+        for kind in [_named(case, name, options) for name in names]:
+            if not (found_here := list(_drawn(case, kind, options))):
+                raise UsageError(_missing(case, kind, options))
+            yield from found_here
+
+
+def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
+    """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
+    with suppress(UsageError):
+        return list(_drawn(case, kind, options))
+    return []
+
+
+def pictures_of(case: Case, options: PictureOptions) -> tuple[PictureKind, ...]:
+    """Return the pictures that a machine has, those without a solution among them: drawing reports why."""
+    return tuple(kind for kind in PICTURES if _has(case, kind, options))
+
+
+def _has(case: Case, kind: PictureKind, options: PictureOptions) -> bool:
+    with np.errstate(all="ignore"):
+        try:
+            return any(True for source, _ in _sources(case, kind, options) for _ in kind.panels(source))
+        except UsageError:
+            return False
+        except NoSolutionError:
+            return True
+
+
+def _named(case: Case, name: str, options: PictureOptions) -> PictureKind:
+    known = {kind.id: kind for kind in PICTURES}
+    if name not in known:
+        hint, having = did_you_mean(name, tuple(known)), _having(case, options)
+        raise UsageError(f"no picture '{shown(name)}'{hint} ({case.machine.name} has {having})")
+    return known[name]
+
+
+def _missing(case: Case, kind: PictureKind, options: PictureOptions) -> str:
+    names = _cylinder_names(case)
+    if options.cylinder is not None and options.cylinder not in names:
+        return f"--cylinder: there is no '{shown(options.cylinder)}'; there are {', '.join(names)}"
+    having = _having(case, options)
+    return f"{case.machine.name} has no picture '{kind.id}': what it shows is left out; it has {having}"
+
+
+def _having(case: Case, options: PictureOptions) -> str:
+    return ", ".join(kind.id for kind in pictures_of(case, options))
+
+
+def _cylinder_names(case: Case) -> tuple[str, ...]:
+    return tuple(one.drive.name for one in case.cylinders)
+
+
+def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[Picture]:
+    with np.errstate(all="ignore"):
+        for source, name in _sources(case, kind, options):
+            if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
+                across = min(kind.across, len(panels))
+                yield Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across)
+
+
+def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:
+    """Yield what a picture is drawn from, each with the name of its cylinder or bearing; equal ones are drawn once."""
+    command = kind.command
+    if command in _OF_MACHINE:
+        yield Source(_OF_MACHINE[command](case), options.angles), ""
+    elif command == "bearings":
+        yield from ((Source(part, options.angles), part.name) for part in case.bearings.parts)
+    else:
+        wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
+        for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
+            if command == "forces":
+                equal[0].refuse_locking()
+            names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
+            yield Source(equal[0], options.angles), names
+
+
+_OF_MACHINE: dict[str, Callable[[Case], Any]] = {
+    "flywheel": lambda case: case.flywheel,
+    "stress": lambda case: case.stress,
+    "balance": lambda case: case.balance,
+    "harmonics": lambda case: case.harmonics(),
+    "torsion": lambda case: case.torsion,
+}
+"""Command -> the result that its pictures are drawn from; those of other commands are drawn of each cylinder."""
