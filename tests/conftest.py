@@ -46,7 +46,7 @@ def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     Not where a file is written, which may be refused, nor for machines with traces, whose files may change.
     """
-    from kurbel.cli.output_options import Asked
+    from kurbel.cli.options import Asked
     from kurbel.machine_file import source
     from kurbel.machine_file.reader import read_machine
     from kurbel.solver.case import Case

@@ -134,3 +134,23 @@ def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, for
 
 def test_units_that_say_which_zero_they_have_are_listed() -> None:
     assert set(ZEROED) <= set(unit_names("pressure"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("ambient: 1 bara\n", ""),
+        ("ambient: 1 barg\n", "ambient: 'barg' is gauge, but the ambient is absolute"),
+        ("indicator: {head_end: {mean_pressure: 3 barg}}\n", "'barg' is gauge, but this pressure has no zero"),
+        ("indicator: {head_end: {steam: {admission: 9 ata, exhaust: 1 ata, cut_off: 0.3, clearance: 0.1}}}\n", "'ata'"),
+        ("name: ata\n", ""),
+    ],
+)
+def test_what_a_zero_in_a_unit_belongs_to(text: str, said: str) -> None:
+    base = "crank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
+    if not said:
+        assert loads(base + text)
+        return
+    with pytest.raises(MachineFileError) as caught:
+        loads(base + text)
+    assert said in str(caught.value)

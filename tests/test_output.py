@@ -251,7 +251,7 @@ def test_help_names_the_statuses(command: str) -> None:
     assert (" 3 " in said) == (command in ("", *solved))
 
 
-IMPORTED = ["typing", "kurbel.cli", "click", "kurbel.cli.motion", "numpy", "kurbel.report.crank"]
+IMPORTED = ["typing", "kurbel.cli", "click", "kurbel.cli.machine", "numpy", "kurbel.report.crank"]
 
 
 @pytest.mark.parametrize("module", few(IMPORTED, ["typing", "click", "kurbel.report.crank"]))

@@ -29,7 +29,7 @@ MACHINE = (
     "cylinders, name='machine', speed=None, cycle='two-stroke', efficiency=1.0, ambient=101325.0, brake_power=None, "
     "flywheel=None, load=None, effort=None, coupling=None, crankshaft=None, counterweights=(), balance_shafts=(), "
     "moment_reference=None, locomotive=None, shaft=None, limits=(), expect=(), uncertainty=(), rotation=None, "
-    "origin=None"
+    "origin=None, cases=()"
 )
 SIGNATURES = {
     "Case": "machine, count=None",
@@ -38,7 +38,7 @@ SIGNATURES = {
     "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston'",
     "SliderCrank": "crank, rod, offset=0.0",
     "draw": "case, *names, units='metric', angles=None",
-    "load": "path, overrides=()",
+    "load": "path, overrides=(), case=''",
     "loads": "text, name='<text>', overrides=()",
     "solve": "machine",
     "sweep": "machine, inputs, columns=(), with_angles=False",

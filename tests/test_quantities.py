@@ -128,9 +128,9 @@ class TestACamFromOutside:
         assert found == pytest.approx(exact if outstroke else 360 - exact, abs=1e-6)
 
 
-@pytest.mark.parametrize("missing", ["name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "curvature"])
+@pytest.mark.parametrize("missing", ["name", "crank", "stroke", "dead_centres", "coordinate", "curvature"])
 def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> None:
-    members = {"name": "x", "KEYS": {}, "crank": 1.0, "stroke": 2.0, "dead_centres": None}
+    members = {"name": "x", "crank": 1.0, "stroke": 2.0, "dead_centres": None}
     members |= {"coordinate": None, "slope": None, "curvature": None}
     with pytest.raises(UsageError, match=rf"mechanism Half does not define {missing}$"):
         type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})

@@ -357,3 +357,22 @@ def test_the_column_of_an_injector_is_no_pressure(tmp_path: Path, current: float
     assert "column 2" in notes[0]
     assert "pressure_column" in notes[0]
     assert notes_of(machine_text(tmp_path / "p.csv", f"{keys}, pressure_column: 3")) == []
+
+
+OPENTORSION = STIRLING.with_name("opentorsion_pressure_data.csv")
+
+
+@pytest.mark.skipif(not OPENTORSION.is_file(), reason="the digitised diesel pressures are not here")
+@pytest.mark.parametrize("keys", ["", ", compression_ratio: 17"])
+@pytest.mark.parametrize("pressures", ["gauge", "absolute"])
+def test_a_published_diesel_engine(keys: str, pressures: str) -> None:
+    """openTorsion (MIT): 71 uneven samples of a cycle in MPa, which fires at 360 deg; called kPa, MPa is named."""
+    text = (
+        "cycle: four-stroke\nspeed: 1500 rpm\nstroke: 137 mm\nrod: 207 mm\nbore: 105 mm\nindicator: {pressures: %s, "
+        "head_end: {trace: {file: '%s', delimiter: semicolon, unit: %s, angle_zero: 360 deg%s}}}\n"
+    )
+    assert notes_of(text % (pressures, OPENTORSION, "MPa", keys)) == []
+    (note,) = notes_of(text % (pressures, OPENTORSION, "kPa", keys))
+    assert "1000 times too small? mend 'unit' (unit: MPa fits), or write 'scale: 1000'" in note
+    (note,) = notes_of((text % (pressures, OPENTORSION, "MPa", keys)).replace(", angle_zero: 360 deg", ""))
+    assert "in the gas exchange: write 'angle_zero: 360 deg'" in note

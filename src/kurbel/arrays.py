@@ -10,3 +10,7 @@ Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
 Indices = np.ndarray[tuple[Any, ...], np.dtype[np.intp]]
 Number = Union[float, Array]
 """A number of one machine, or of many machines, (machines,)."""
+
+
+class Indivisible:
+    """A record whose arrays are its own: no numbers of many machines."""

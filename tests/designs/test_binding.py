@@ -19,7 +19,6 @@ from kurbel.machine.variants import values_of
 from kurbel.machine_file import source
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.reader import read_machine
-from kurbel.numerics.varied import Parted, Varied
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
@@ -207,28 +206,6 @@ def test_the_word_like_in_a_comment_makes_no_cylinder_like_another() -> None:
     file = source.decode("m.yaml", b"{crank: 1 m, rod: 5 m, name: like new} # like any other\n")
     found = Binder(file, ("rod",), ("5 m",)).bound([("4 m",), ("5 m",), ("6 m",)])
     assert [list(lot.rows) for lot in found.lots] == [[0, 1, 2]]
-
-
-def test_numbers_of_many_variants_are_those_of_floats() -> None:
-    random = np.random.default_rng(3)
-    first, second = random.uniform(-9, 9, 50), random.uniform(1, 2, 50)
-    a, b = Varied(first), Varied(second)
-    pairs = [*zip(first.tolist(), second.tolist())]
-    for formula in (
-        lambda x, y: 2 + (x - y) * 3 - x / y + 1 / y - 2 * x,
-        lambda x, y: abs(-x) ** y + y**2 + 2**y,
-    ):
-        assert formula(a, b).values.tolist() == [formula(x, y) for x, y in pairs]
-    assert (b > 0.5) is True
-    assert (b > 2.5) is False
-    with pytest.raises(Parted) as parted:
-        bool(a > 0)
-    assert parted.value.holds.tolist() == [x > 0 for x, _ in pairs]
-    with pytest.raises(ZeroDivisionError):
-        b / (a * 0)
-    for written_for_floats in (float, round, hash, "{:g}".format, list, int):
-        with pytest.raises(TypeError):
-            written_for_floats(a)
 
 
 def test_a_row_with_more_faults_than_a_reader_tells_is_told_like_others() -> None:

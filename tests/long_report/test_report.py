@@ -16,8 +16,8 @@ import pytest
 from click.testing import CliRunner, Result
 from pages import page_of, page_of_case
 
-from kurbel.cli import kurbel
-from kurbel.cli.report import Progress
+from kurbel.cli import kurbel, pages
+from kurbel.cli.pages import Progress
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning
@@ -254,7 +254,6 @@ def test_progress_is_told_to_a_terminal_after_a_second(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Also where the first step itself takes so long, which is told once the second has gone by in its midst."""
-    import threading
 
     late: list[Callable[[], None]] = []
 
@@ -269,7 +268,7 @@ def test_progress_is_told_to_a_terminal_after_a_second(
         def cancel(self) -> None:
             late.clear()
 
-    monkeypatch.setattr(threading, "Timer", AfterASecond)
+    monkeypatch.setattr(pages, "Timer", AfterASecond)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     with Progress("kurbel report") as progress:
         progress("reading and checking")

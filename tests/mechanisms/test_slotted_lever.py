@@ -141,7 +141,7 @@ def test_theta_of_the_turning_lever_runs_on():
         ({"link": 0.19, "ram_height": 1.39}, "link: 190 mm gets into line with the lever within its swing"),
         ({"frame": 0.2, "link": 1.4, "ram_height": 0.2}, "link: 1400 mm does not reach: as the lever turns fully it"),
         ({"link": 0.5, "ram_height": math.nan}, "ram_height: must be finite"),
-        ({"link": -0.5}, "link: must be a positive"),
+        ({"link": -0.5}, "link: -0.5 is too small; it must be more than 0"),
     ],
 )
 def test_levers_that_do_not_run(lengths, message):

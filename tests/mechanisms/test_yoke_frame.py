@@ -31,7 +31,7 @@ def test_the_arm_grows_as_the_pin_leaves_the_stuffing_box():
 
 @pytest.mark.parametrize("gland", [0.0, -0.1, float("inf")])
 def test_a_gland_must_be_somewhere(gland):
-    with pytest.raises(RuleError, match="gland: must be a positive"):
+    with pytest.raises(RuleError, match=r"gland: (.* too small; it must be more than 0|must be finite)"):
         YokeFrame(0.1, 0.3, gland=gland)
 
 

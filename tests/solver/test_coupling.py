@@ -294,10 +294,10 @@ def test_figures_beyond_floats_are_refused_by_name() -> None:
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_what_floats_do_not_hold_is_no_solution(count: int, capfd: pytest.CaptureFixture[str]) -> None:
     """LAPACK would print a line of its own for it and answer with anything; another machine has its own answer."""
-    before, sides = np.ones((2, count, 1, 1)), np.ones((2, count, 1))
-    before[0, -1] = np.inf
+    gain = np.full((2, count, 1, 1), -1.0)
+    gain[0, -1] = np.inf
     with np.errstate(all="ignore"):
-        found = around_the_cycle(before, np.ones((2, count, 1, 1)), sides)
+        found = around_the_cycle(gain, np.ones((2, count, 1)))
     assert np.isnan(found[0]).all()
     assert found[1].sum() == pytest.approx(count / 2)
     assert capfd.readouterr() == ("", "")

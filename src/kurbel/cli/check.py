@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from kurbel.cli import BROKEN, DONE, message_of, to_stderr
-from kurbel.cli.output_options import format_of, loaded, output_option, set_option, width_option
+from kurbel.cli.group import BROKEN, DONE, message_of, to_stderr
+from kurbel.cli.options import format_of, loaded, output_option, set_options, width_option
 from kurbel.errors import KurbelError
 from kurbel.render import Look
 
@@ -36,7 +36,7 @@ class _Outcome(NamedTuple):
 
 @click.command()
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
-@set_option
+@set_options
 @click.option(
     "--format",
     "-f",
@@ -47,13 +47,18 @@ class _Outcome(NamedTuple):
 @output_option
 @width_option
 def check(
-    files: tuple[str, ...], overrides: tuple[str, ...], format: str | None, file_name: str | None, width: int | None
+    files: tuple[str, ...],
+    case_name: str,
+    overrides: tuple[str, ...],
+    format: str | None,
+    file_name: str | None,
+    width: int | None,
 ) -> int:
     """Read the machine in each FILE and say what will be computed, what is left out and why.
 
-    Where the file gives 'limits', hold the key values to them; where it gives 'expect', compare them with the figures
-    there. As json every fault, limit, figure and warning has file, line, column, key, message and severity. Of several
-    files all are checked; the exit status is the gravest one.
+    Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
+    compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
+    message and severity. Of several files all are checked; the exit status is the gravest one.
     """
     from kurbel.render.output import refuse_overwriting, stdout_look, write_out
 
@@ -61,7 +66,7 @@ def check(
     if written not in ("table", "json"):
         raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
     refuse_overwriting(file_name, files)
-    outcomes = [_outcome(file, overrides, file_name) for file in files]
+    outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = Look(width=width) if file_name else stdout_look(Look(width=width))
     if written == "json":
         write_out(_as_json(outcomes, look), file_name)
@@ -74,21 +79,25 @@ def check(
     return min((outcome.status for outcome in outcomes), key=_GRAVEST.index)
 
 
-def _outcome(file: str, overrides: tuple[str, ...], file_name: str | None) -> _Outcome:
+def _outcome(file: str, case_name: str, overrides: tuple[str, ...], file_name: str | None) -> _Outcome:
     """Read and check one machine; raises UsageError where the output would overwrite a trace that it names."""
     from kurbel.designs.uncertainty import given_uncertainty
+    from kurbel.machine_file.reader import read_machine
     from kurbel.render.output import refuse_overwriting
     from kurbel.report.check import checked
     from kurbel.solver.case import Case
 
     try:
-        machine = loaded(file, overrides)
+        machine = loaded(file, case_name, overrides)
         if machine.uncertainty:  # is judged by what is in the file
             given_uncertainty(machine)
+        origin = machine.origin
+        names = [one.name for one in machine.cases] if not case_name else []
+        cases = [Case(read_machine(origin._replace(case=name))) for name in names if origin]
     except KurbelError as error:
         return _Outcome(file, error=error)
     refuse_overwriting(file_name, machine.trace_files)
-    return _Outcome(file, machine, checked(Case(machine)))
+    return _Outcome(file, machine, checked(Case(machine), cases))
 
 
 def _error(outcome: _Outcome) -> KurbelError | None:

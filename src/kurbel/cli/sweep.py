@@ -7,9 +7,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from kurbel.cli.completion import complete_override
-from kurbel.cli.output_options import format_of, machine_file, output_option, stacked, units_option, with_bar
-from kurbel.cli.readings import words
+from kurbel.cli.group import to_stderr
+from kurbel.cli.options import (
+    complete_override,
+    format_of,
+    machine_file,
+    output_option,
+    stacked,
+    units_option,
+    with_bar,
+    words,
+)
 from kurbel.render import Look
 
 if TYPE_CHECKING:
@@ -26,12 +34,12 @@ _what_varies = stacked(
     click.option(
         "--vary",
         multiple=True,
-        required=True,
         metavar="KEY=VALUES",
         shell_complete=complete_override,
         help="rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm) or uniform(...); may be repeated, "
         "for all combinations; in one, 'bore=400,450 mm; head_end_rod=70,80 mm' go together.",
     ),
+    click.option("--cases", is_flag=True, help="Every load case of FILE, by itself or with every --vary."),
     click.option("--zip", "side_by_side", is_flag=True, help="First values with first values; else all combinations."),
     click.option(
         "--sample", type=click.IntRange(1, 10**8), metavar="N", help="Points of a Latin hypercube of distributions."
@@ -103,8 +111,10 @@ class _Asked(NamedTuple):
     """The options, by the names above."""
 
     file: str
+    case_name: str
     overrides: tuple[str, ...]
     vary: tuple[str, ...]
+    cases: bool
     side_by_side: bool
     sample: int | None
     seed: int
@@ -149,6 +159,8 @@ class _Asked(NamedTuple):
         """Raise click.UsageError for options that do not go together."""
         named = self.file_name not in (None, "-")
         for wrong, message in (
+            (not (self.vary or self.cases), "Missing option '--vary', which says what varies; or give --cases."),
+            (self.cases and self.case_name, "--cases has every load case, --case one; leave one of them out."),
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
             (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
@@ -168,7 +180,6 @@ class _Asked(NamedTuple):
 
     def run(self) -> None:
         """Compute and write the rows."""
-        from kurbel.cli import to_stderr
         from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
         from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep
@@ -204,9 +215,9 @@ class _Asked(NamedTuple):
         refuse_overwriting(self.file_name, (self.file,))
         system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
         plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
-        origin = source.read(self.file).set_over(self.overrides)
+        origin = source.read(self.file)._replace(case=self.case_name).set_over(self.overrides)
         most = None if self.yes else MOST_ROWS
-        return Spec(origin, *plan, self.columns or (), self.with_angles, system, most=most)
+        return Spec(origin, *plan, self.columns or (), self.with_angles, system, most=most, cases=self.cases)
 
     def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
         """Return where the rows go, and those that are not there yet."""

@@ -3,12 +3,18 @@
 A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
+import dataclasses
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
-from typing import Any, ClassVar, NamedTuple
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple, Union
 
+import numpy as np
+
+from kurbel.arrays import Flags
 from kurbel.declared.reading import REFUSED, Reading, Tree
+from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, RuleError, refuse
 
 Schema = dict[str, Any]
@@ -57,6 +63,15 @@ class Form(ABC):
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
         """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
         return None
+
+    @property
+    def is_number(self) -> bool:
+        """Whether what stands under a key becomes a number, so that many machines have an array there."""
+        return False
+
+    def of_numbers(self, numbers: Any) -> Any:
+        """Return what a number in the base of its kind, or those of many machines, becomes."""
+        return numbers
 
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
@@ -137,7 +152,8 @@ class Key(NamedTuple):
 
     `absent` says what holds without it. `instead` names another key that says the same thing, so that both together are
     a contradiction; where that one is required, one of both is. `needs` names a key that must stand beside it. `also`:
-    other words that people try for it.
+    other words that people try for it. attribute: of the record, that the value becomes; '' for one that only `gives`
+    others: it takes the values by key, and returns those that follow from them.
     """
 
     form: Form
@@ -149,6 +165,8 @@ class Key(NamedTuple):
     needs: str = ""
     example: str = ""
     also: tuple[str, ...] = ()
+    attribute: str = ""
+    gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None
 
     @property
     def description(self) -> str:
@@ -199,10 +217,87 @@ def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
             yield Fault((), f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
 
 
-class Described:
-    """A record that a machine file describes by its `KEYS`."""
+class Rule(NamedTuple):
+    """What must not be: the entry or path that is wrong, where it is broken, the sentence, and its numbers.
 
-    KEYS: ClassVar[Keys]
+    broken: true where it is, of one machine or of many, (machines,); comparisons with an unknown number, NaN, are not.
+    The sentence has entries and numbers in braces: `{bore}` with its unit, `{x:length}` a number with that of a kind.
+    """
+
+    place: Union[str, Path]
+    broken: Union[bool, Flags]
+    sentence: str
+    numbers: Mapping[str, Any] = MappingProxyType({})
+    at_key: bool = False
+
+    @classmethod
+    def of(cls, fault: Fault) -> "Rule":
+        """Return a fault that was found by itself as a rule that is broken."""
+        plain = fault.message.replace("{", "{{").replace("}", "}}")
+        return cls(fault.path, True, plain, at_key=fault.at_key)
+
+    def below(self, *path: Any) -> "Rule":
+        """Return it as seen from further up."""
+        return self._replace(place=(*path, *self.path))
+
+    @property
+    def path(self) -> Path:
+        """Where it is broken, from its record on."""
+        return self.place if isinstance(self.place, tuple) else (self.place,)
+
+    def fault(self, record: "Described | None", row: int = 0) -> Fault:
+        """Return what is wrong with one of the machines, its numbers filled in, also from the entries of a record."""
+        return Fault(self.path, self.sentence.format_map(_Numbers(record, self.numbers, row)), self.at_key)
+
+
+class _Numbers(dict[str, Any]):
+    """The numbers of a sentence: its own, or entries of the record as they are shown."""
+
+    def __init__(self, record: "Described | None", numbers: Mapping[str, Any], row: int) -> None:
+        super().__init__(numbers)
+        self._record, self._row = record, row
+
+    def __getitem__(self, name: str) -> "_Shown":
+        if name in self or self._record is None:
+            value, kind = super().__getitem__(name), ""
+        else:
+            key = self._record.KEYS[name]
+            value, kind = vars(self._record)[key.attribute], key.form.kind
+        return _Shown(value[self._row] if getattr(value, "ndim", 0) else value, kind)
+
+
+class _Shown(NamedTuple):
+    """A number of a sentence, with the kind of its entry."""
+
+    value: Any
+    kind: str
+
+    def __format__(self, kind: str) -> str:
+        known = kind or self.kind
+        if isinstance(self.value, str):
+            return self.value
+        return f"{self.value:g}" if known in ("", "ratio") else show(self.value, known)
+
+
+class Described:
+    """A record of the machine file; each entry is said once, by `field` or `alternative`."""
+
+    KEYS: ClassVar[Keys] = {}
+
+    def __init_subclass__(cls) -> None:
+        given = vars(cls).get("KEYS", {})
+        inherited: Keys = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
+        own = {**inherited, **{name: key._replace(attribute=name) for name, key in given.items()}}
+        for name, value in vars(cls).items():
+            if isinstance(value, dataclasses.Field) and "key" in value.metadata:
+                key = value.metadata["key"]
+                own[key.attribute or name] = key._replace(attribute=name)
+            elif isinstance(value, Key):
+                own[value.attribute or name] = value._replace(attribute="")
+        cls.KEYS = own
+
+    def __post_init__(self) -> None:
+        refuse(*self.faults())
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
@@ -211,6 +306,34 @@ class Described:
         given = (f"{one.name}={value!r}" for one, value in values if value is not one.default)
         return f"{type(self).__name__}({', '.join(given)})"
 
+    def rules(self) -> Iterator[Rule]:
+        """Yield what must not be, beside the bounds of the entries."""
+        return iter(())
+
+    def contradictions(self) -> Iterator[Rule]:
+        """Yield which entries say the same thing, or lack one another: for what is also made in Python."""
+        given = {
+            name: one.default is not vars(self)[one.name]
+            for one in fields(self)  # type: ignore[arg-type]
+            for name, key in self.KEYS.items()
+            if key.attribute == one.name
+        }
+        known = {name: True for name, differs in given.items() if differs}
+        return (Rule(one.path, True, one.message) for one in contradictions(self.KEYS, known))
+
+    def faults(self) -> Iterator[Fault]:
+        """Yield what is wrong with the record of one machine: the bounds, or else the rules."""
+        beyond = list(self._out_of_bounds())
+        yield from beyond or (rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken)
+
+    def _out_of_bounds(self) -> Iterator[Fault]:
+        defaults = {one.name: one.default for one in fields(self)}  # type: ignore[arg-type]
+        for name, key in self.KEYS.items():
+            value: Any = vars(self).get(key.attribute)
+            given = value is not None and value is not defaults.get(key.attribute)
+            if given and np.ndim(value) == 0 and (wrong := key.form.out_of_bounds(value)):
+                yield Fault((name,), f"{value:g} {wrong}")
+
     @classmethod
     def from_keys(cls, **values: Any) -> Any:
         """Return the record that the values of these keys make; absent keys are not passed.
@@ -218,14 +341,26 @@ class Described:
         Raises RuleError for values that contradict one another, and for whatever the record refuses.
         """
         check(cls.KEYS, values)
+        refuse(*cls.faults_of_keys(values))
         return cls.of_keys(**values)
 
     @classmethod
     def of_keys(cls, *args: Any, **values: Any) -> Any:
-        """Return the record; its fields are the keys, where it does not say otherwise."""
-        return cls(*args, **values)
+        """Return the record of the values of its keys: its fields, and what its alternatives give."""
+        keys = cls.KEYS
+        known = {keys[name].attribute if name in keys else name: value for name, value in values.items()}
+        known.pop("", None)
+        for name, key in keys.items():
+            if key.gives and name in values:
+                known |= key.gives({**known, **values})
+        return cls(*args, **known)
 
-    @staticmethod
-    def faults_of_keys(values: Mapping[str, Any]) -> Iterable[Fault]:
-        """Return what is wrong with the values that could be read, where others could not be."""
-        return ()
+    @classmethod
+    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
+        """Return what is wrong with values by key, of which some may be REFUSED."""
+        return [rule.fault(None) for rule in cls.rules_of_keys(values) if rule.broken]
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        """Yield what must not be of the values by key, before they become a record; some may be REFUSED."""
+        return iter(())

@@ -10,6 +10,7 @@ import math
 from typing import Any, NamedTuple
 
 from kurbel.errors import Fault, Path
+from kurbel.numerics.arithmetic import every, some
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
@@ -72,16 +73,16 @@ MOST_ITEMS = 100
 """Items of one list, such as cylinders."""
 
 
-def out_of_size(value: float, kind: str) -> str:
-    """Return in what way a value in the base of its kind is beyond what a machine file may hold; '' if it is not.
+def out_of_size(value: Any, kind: str) -> str:
+    """Return in what way a value in the base of its kind, or any of many, is beyond what a machine file may hold.
 
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
     smallest, largest, unit, *_ = KINDS[kind]
-    if not abs(value) <= largest:
+    if not every(abs(value) <= largest):
         return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
-    if 0 < abs(value) < smallest:
+    if some((value != 0) & (abs(value) < smallest)):
         return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
     return ""
 

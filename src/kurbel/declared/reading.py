@@ -35,15 +35,18 @@ class _Refused:
 REFUSED = _Refused()
 
 
-@dataclass(frozen=True, eq=False)
-class Birth:
-    """A record that was read: its form, the mapping at a path, the values of its keys, and what was made of them."""
+@dataclass(eq=False)
+class Given:
+    """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.
+
+    values: by key, with others like it and tuples of them in place of records; mapping, path: where it was read.
+    """
 
     form: Any
     mapping: Tree
     path: Path
     values: Tree
-    born: Any
+    made: Any = None
 
 
 class StopReading(Exception):
@@ -66,8 +69,6 @@ class Reading:
         self.folder, self.key_values = folder, key_values
         self._places = places
         self.faults: list[Fault] = []
-        self.births: list[Birth] | None = None
-        """The records that were made, those inside others first; None where nobody wants to know."""
         self.partly: dict[Path, tuple[Any, ...]] = {}
         """Lists of which some items could not be read, those REFUSED."""
         self.alike: dict[Path, Path] = {}

@@ -1,202 +1,319 @@
-"""From a machine file and the texts of some of its keys to a machine: only the records that hang on them are made anew.
+"""From a machine file and the values of some of its keys to machines: what was read once is made again, with arrays.
 
-Every record that is made anew keeps its rules as when it is read; what a row breaks is told as `--set` would tell it.
+Making records is what reading does, and the rules of records hold for arrays: a sweep of 1e5 rows is one machine whose
+numbers are arrays (machines,), and the rows that break a rule. Words, counts and points of cards are structure: rows
+that differ in these are made apart.
 """
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.declared.keys import Form
+from kurbel.arrays import Array, Flags, Indices, Indivisible
+from kurbel.declared.forms.records import TOO_EXTREME, Maker, too_extreme
+from kurbel.declared.keys import Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, StopReading, Tree, shown
+from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
-from kurbel.machine.variants import Lot, joined, one_kind, sort_of
+from kurbel.machine.variants import Lot, changed
 from kurbel.machine_file.given import leaves, tree_of
 from kurbel.machine_file.overrides import by_numbers, dotted, path_of
-from kurbel.machine_file.reader import read_machine, reading_of
+from kurbel.machine_file.reader import read_values, reading_of
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.varied import Parted
 
-_Part = dict[int, tuple[Any, ...]]
-"""Rows, each with the values of its slots."""
+Column = Sequence[str] | Array
+"""What a key has in every row: texts as in the file, or numbers (rows,) in SI."""
+_Place = tuple[int, str]
+"""A value that was read: of which `Given`, by its id, and under which key."""
 
 
 class Unbound(Exception):
-    """The texts of a row make no machine; the message tells why."""
+    """The texts of a row make no value; the message tells why."""
 
 
 class Bound(NamedTuple):
-    """What rows of texts make, counted from 0: machines, those of one kind in one record, or the reason why none."""
+    """What rows make, counted from 0: machines, those of one structure in one record, or the reason why none."""
 
     lots: list[Lot]
     failures: dict[int, str]
 
 
 class _Slot(NamedTuple):
-    """A value of a record that is read anew: under which of its keys, and which varied keys stand there, and where."""
+    """A value that is read anew: of what, under which of its keys, and which varied keys stand there, and where."""
 
-    birth: Birth
+    given: Given
     name: str
     varied: list[tuple[int, Path]]
 
-    def column(self, rows: Sequence[Sequence[str]], folder: str) -> list[Any]:
-        """Return what the record gets in these rows of texts; Unbound, unraised, where it gets nothing."""
-        texts = [tuple([row[number] for number, _ in self.varied]) for row in rows]
-        different = list(dict.fromkeys(texts))
-        known = dict(zip(different, self._numbers(different) or [self._read(one, folder) for one in different]))
-        return [known[one] for one in texts]
+    @property
+    def form(self) -> Form:
+        """What may stand there."""
+        return self.given.form.keys[self.name].form  # type: ignore[no-any-return]
 
     @property
-    def _form(self) -> Form:
-        return self.birth.form.keys[self.name].form  # type: ignore[no-any-return]
+    def numeric(self) -> bool:
+        """Whether one varied key is all that stands here, and what it becomes is a number."""
+        alone = len(self.varied) == 1 and not self.varied[0][1]
+        return alone and self.form.is_number and not isinstance(self.given.made, Indivisible)
 
-    def _numbers(self, texts: Sequence[tuple[str, ...]]) -> Sequence[Any] | None:
-        """Return what texts become if one varied key is all that stands here, and all are plain numbers."""
-        single = len(self.varied) == 1 and not self.varied[0][1]
-        return self._form.numbers([text for (text,) in texts]) if single else None
-
-    def _read(self, texts: Sequence[str], folder: str) -> Any:
-        """Return what the record gets for texts of its varied keys, or Unbound."""
-        tree = self.birth.mapping[self.name]
+    def read(self, texts: Sequence[str], folder: str) -> Any:
+        """Return what texts of its varied keys become, or Unbound, unraised."""
+        tree = self.given.mapping[self.name]
         reading = Reading(folder)
         try:
             for (_, inner), text in zip(self.varied, texts):
                 tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
         except Unbound as error:
             return error
-        value = self._form.read(reading, tree, (self.name,))
+        value = self.form.read(reading, tree, (self.name,))
         if value is REFUSED or reading.faults:
-            return Unbound(_told([fault.below(self.birth.path) for fault in reading.faults]))
-        return value
-
-
-class _Step(NamedTuple):
-    """A record that is made anew: which slots are its own, each with its key, and the keys of such records in it."""
-
-    birth: Birth
-    own: list[tuple[int, str]]
-    inner: list[str]
+            return Unbound(_joined([fault.below(self.given.path) for fault in reading.faults]))
+        return Maker(reading).made(value)
 
 
 class Binder:
-    """Makes machines of a file from the texts of these keys, in their order.
+    """Makes machines of a file from the values of these keys, in their order.
 
     start: texts that make a machine, from which the others differ. Raises UsageError for a key that is none.
     """
 
     def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str]) -> None:
         self._reading = reading_of(origin)
-        births: list[Birth] = []
-        self._reading.births = births
         begun = origin._replace(varied=tuple(f"{key}={text}" for key, text in zip(keys, start)))
-        self.machine = read_machine(begun, self._reading)
+        self._root = read_values(begun, self._reading)
+        self.machine: Machine = self._root.made
         self.kinds: list[str] = []
         """Of the numbers that stand under the keys, '' of words."""
-        self._slots: dict[tuple[int, str], _Slot] = {}
+        self._slots: dict[_Place, _Slot] = {}
+        every = list(_every(self._root))
         for number, key in enumerate(keys):
-            self._place(number, path_of(key), births)
-        self._steps = self._planned(births)
+            self._place(number, path_of(key), every)
+        self._anew = {id(one) for slot in self._slots.values() for one in _around(slot.given, every)}
 
-    def _place(self, number: int, path: Path, births: list[Birth]) -> None:
+    def _place(self, number: int, path: Path, every: Sequence[Given]) -> None:
         """Note in which slots a key stands: that of its record, and those of what is `like` that."""
-        owner, name = _owner(path, births)
+        owner, name = _owner(path, every)
         inner = path[len(owner.path) + 1 :]
         bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
         self.kinds.append(owner.form.keys[name].form.kind or ("ratio" if bare else ""))
-        for birth in births:
-            if _reads(birth, name) and birth.mapping.get(name) is owner.mapping.get(name):
-                slot = self._slots.setdefault((id(birth), name), _Slot(birth, name, []))
+        for one in every:
+            if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name):
+                slot = self._slots.setdefault((id(one), name), _Slot(one, name, []))
                 slot.varied.append((number, inner))
 
-    def _planned(self, births: list[Birth]) -> list[_Step]:
-        steps: list[_Step] = []
-        anew: set[int] = set()
-        for birth in births:
-            own = [(number, slot.name) for number, slot in enumerate(self._slots.values()) if slot.birth is birth]
-            inner = [key for key, value in birth.values.items() if anew.intersection(map(id, _parts(value)))]
-            if own or inner:
-                anew.add(id(birth.born))
-                steps.append(_Step(birth, own, inner))
-        return steps
-
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
-        """Return the machines of rows of texts, those of one kind in one record, and why the other rows make none."""
+        """Return the machines of rows of texts, those of one structure in one record, and why other rows make none."""
+        return self.of_columns([[row[number] for row in rows] for number in range(len(self.kinds))], len(rows))
+
+    def of_columns(self, columns: Sequence[Column], count: int) -> Bound:
+        """Return the same of columns, one for each key: texts, or numbers (count,) in SI."""
         found = Bound([], {})
-        columns = [slot.column(rows, self._reading.folder) for slot in self._slots.values()]
-        read: _Part = {}
-        for row, values in enumerate(zip(*columns)):
-            if failed := next((one for one in values if isinstance(one, Unbound)), None):
-                found.failures[row] = str(failed)
+        numbers: dict[_Place, Array] = {}
+        others: dict[_Place, list[Any]] = {}
+        for place, slot in self._slots.items():
+            values = self._read(slot, columns, found.failures)
+            if isinstance(values, np.ndarray):
+                numbers[place] = values
             else:
-                read[row] = values
-        waiting = _of_one_sort(read)
-        with np.errstate(all="ignore"):  # as floats do; what is beyond them is refused
-            while waiting:
-                waiting += self._bind(waiting.pop(), found)
+                others[place] = values
+        whole = np.delete(np.arange(count), [*found.failures])
+        for rows in _grouped([*others.values()], whole):
+            words = {place: column[rows[0]] for place, column in others.items()}
+            self._bind(rows, words, numbers, found)
         return found
 
-    def _bind(self, part: _Part, found: Bound) -> list[_Part]:
-        """Make the machines of these rows at once; return the parts that can only be made by themselves.
+    def _read(self, slot: _Slot, columns: Sequence[Column], failures: dict[int, str]) -> Any:
+        """Return what a slot gets in every row: numbers (rows,), or a list of other values; notes rows without any."""
+        own = [columns[number] for number, _ in slot.varied]
+        if isinstance(own[0], np.ndarray):
+            return own[0]
+        if slot.numeric and (plain := slot.form.numbers(own[0])) is not None:
+            return np.array(plain)
+        texts = list(zip(*own))
+        known = {one: slot.read(one, self._reading.folder) for one in dict.fromkeys(texts)}
+        for row, text in enumerate(texts):
+            if isinstance(known[text], Unbound):
+                failures.setdefault(row, str(known[text]))
+        values = [known[text] for text in texts]
+        if slot.numeric and all(isinstance(one, (float, Unbound)) for one in known.values()):
+            return np.array([np.nan if isinstance(one, Unbound) else one for one in values])
+        return values
 
-        These are the rows for which a rule holds, and those for which it does not; and each row where a rule is broken,
-        to tell why, or is written for floats alone, and asks for what `Varied` has not.
-        """
+    def _bind(self, rows: Indices, words: dict[_Place, Any], numbers: dict[_Place, Array], found: Bound) -> None:
+        """Make the machines of rows that have the same words; what cannot be made at once is made row by row."""
+        own = {place: column[rows] for place, column in numbers.items()}
+        if len(rows) == 1 or not own:
+            self._alone(rows, words | {place: column[0].item() for place, column in own.items()}, found)
+            return
+        maker = _Maker(self._reading, self._anew, words | self._formed(own), len(rows))
         try:
-            machine = self._made(joined(list(part.values())))
-            one_kind(machine)
-        except Parted as parted:
-            sides = parted.holds, ~parted.holds
-            return [{row: part[row] for row, own in zip(part, side.tolist()) if own} for side in sides]
-        except (Unbound, TypeError, AttributeError) as error:
-            if len(part) > 1:
-                return [{row: values} for row, values in part.items()]
-            if not isinstance(error, Unbound):
-                raise
-            found.failures.update(dict.fromkeys(part, str(error)))
-        else:
-            found.lots.append(Lot(machine, list(part)))
-        return []
+            with np.errstate(all="ignore"):
+                machine = maker.made(self._root)
+        except (RuleError, TypeError, ValueError, AttributeError, ArithmeticError):
+            for row in rows:  # its formulas are those of one machine
+                self._bind(np.array([row]), words, numbers, found)
+            return
+        found.failures.update({int(rows[row]): _joined(faults) for row, faults in maker.failures().items()})
+        for places in _structures(machine, ~maker.broken):
+            lot = changed(machine, lambda values, at=places: _column(values[at]), {})  # type: ignore[misc]
+            found.lots.append(Lot(lot, rows[places].tolist()))
 
-    def _made(self, given: Sequence[Any]) -> Machine:
-        """Return the machine with these values in the slots; raises Unbound with all that is wrong."""
-        anew: dict[int, Any] = {}
+    def _alone(self, rows: Indices, values: dict[_Place, Any], found: Bound) -> None:
+        """Make the one machine of these rows."""
         reading = Reading()
         reading.alike = self._reading.alike
-        with suppress(StopReading):
-            for step in self._steps:
-                anew[id(step.birth.born)] = _born(step, given, anew, reading)
+        try:
+            machine = _Maker(reading, self._anew, self._formed(values)).made(self._root)
+        except StopReading:
+            machine = REFUSED
         if reading.faults:
-            raise Unbound(_told(reading.faults))
-        machine: Machine = anew[id(self._steps[-1].birth.born)] if self._steps else self.machine
-        return machine
+            found.failures.update(dict.fromkeys(rows.tolist(), _joined(reading.faults)))
+        else:
+            found.lots.append(Lot(machine, rows.tolist()))
+
+    def _formed(self, values: Mapping[_Place, Any]) -> dict[_Place, Any]:
+        """Return numbers as what their forms make of them."""
+        forms = {place: self._slots[place].form for place in values}
+        return {
+            place: forms[place].of_numbers(one) if isinstance(one, (float, np.ndarray)) else one
+            for place, one in values.items()
+        }
 
 
-def _born(step: _Step, given: Sequence[Any], anew: dict[int, Any], reading: Reading) -> Any:
-    """Return the record of a step, or REFUSED after noting its faults; anew: what came of records of earlier steps."""
-    birth = step.birth
-    values = birth.values | {name: given[number] for number, name in step.own}
-    for key in step.inner:
-        parts = [anew.get(id(part), part) for part in _parts(values[key])]
-        if any(part is REFUSED for part in parts):
-            return REFUSED
-        values[key] = tuple(parts) if isinstance(values[key], tuple) else parts[0]
+class CasesBinder:
+    """Binders of the load cases of a file; the first of the keys is `case`, and its texts are their names."""
+
+    def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str]) -> None:
+        self._origin, self._keys, self._start = origin, keys[1:], start[1:]
+        self._binders: dict[str, Binder] = {}
+        first = self._of(start[0])
+        self.machine, self.kinds = first.machine, ["", *first.kinds]
+
+    def _of(self, name: str) -> Binder:
+        if name not in self._binders:
+            self._binders[name] = Binder(self._origin._replace(case=name), self._keys, self._start)
+        return self._binders[name]
+
+    def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
+        """Return the machines of rows of texts, case by case; see `Binder.bound`."""
+        found = Bound([], {})
+        for name in dict.fromkeys(row[0] for row in rows):
+            places = [place for place, row in enumerate(rows) if row[0] == name]
+            own = self._of(name).bound([rows[place][1:] for place in places])
+            found.lots.extend(Lot(lot.machine, [places[row] for row in lot.rows]) for lot in own.lots)
+            found.failures.update({places[row]: why for row, why in own.failures.items()})
+        return found
+
+
+class _Maker(Maker):
+    """Makes records again in which something is read anew; of many machines, their numbers arrays (count,)."""
+
+    def __init__(self, reading: Reading, anew: set[int], values: Mapping[_Place, Any], count: int = 1) -> None:
+        super().__init__(reading)
+        self._anew, self._values, self._count = anew, values, count
+        self.broken: Flags = np.zeros(count, dtype=bool)
+        self._rules: list[tuple[Given, Any, Rule]] = []
+
+    def made(self, value: Any, path: Path = ()) -> Any:
+        """Return the record, as it is where nothing in it is read anew."""
+        if isinstance(value, Given) and id(value) not in self._anew:
+            return value.made
+        return self._record(value) if isinstance(value, Given) else super().made(value, path)
+
+    def _record(self, given: Given) -> Any:
+        values = {name: self._values.get((id(given), name), one) for name, one in given.values.items()}
+        other = Given(given.form, given.mapping, given.path, values)
+        if self._count == 1:
+            return super()._record(other)
+        values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
+        record = given.form.load().of_keys(**values)
+        rules = [*given.form.load().rules_of_keys(values)]
+        if isinstance(record, Described):
+            rules += [*record.rules(), Rule((), too_extreme(record, values), TOO_EXTREME)]
+        before = self.broken.copy()  # what a part breaks is not told of the whole
+        for rule in rules:
+            rows = np.broadcast_to(rule.broken, self._count) & ~before
+            if rows.any():
+                self._rules.append((given, record, rule._replace(broken=rows)))
+                self.broken |= rows
+        return record
+
+    def failures(self) -> dict[int, list[Fault]]:
+        """Return what each row breaks."""
+        found: dict[int, list[Fault]] = {}
+        for given, record, rule in self._rules:
+            for row in np.flatnonzero(rule.broken).tolist():
+                faults = given.form.flattened(RuleError(rule.fault(record, row)), given.mapping).faults
+                found.setdefault(row, []).extend(one.below(given.path) for one in faults)
+        return {row: _as_read(faults) for row, faults in found.items()}
+
+
+def _as_read(faults: Sequence[Fault]) -> list[Fault]:
+    """Return faults as a reading notes them, which stops where there are too many."""
+    reading = Reading()
     try:
-        return birth.form.born(values)
-    except RuleError as error:
-        return reading.refuse(birth.path, birth.form.flattened(error, birth.mapping))
+        for fault in faults:
+            reading.note(fault)
+    except StopReading:
+        pass
+    return reading.faults
 
 
-def _of_one_sort(read: _Part) -> list[_Part]:
-    """Return the rows with their values in parts that differ in numbers only."""
-    parts: dict[Any, _Part] = {}
-    for row, values in read.items():
-        parts.setdefault(sort_of(values), {})[row] = values
-    return list(parts.values())
+def _structures(machine: Machine, fit: Flags) -> Iterator[Indices]:
+    """Yield the places of machines, of those that are fit, in which the same numbers are 0, or infinite."""
+    codes: list[Array] = []
+
+    def coded(numbers: Array) -> Array:
+        code = (numbers == 0) + 2.0 * np.isinf(numbers)
+        if (code != code[0]).any():
+            codes.append(code)
+        return numbers
+
+    changed(machine, coded, {})
+    places = np.flatnonzero(fit)
+    if not codes or not len(places):
+        yield from (places,) if len(places) else ()
+        return
+    kinds = np.unique(np.stack(codes)[:, places], axis=1, return_inverse=True)[1].ravel()
+    for kind in range(kinds.max() + 1):
+        yield places[kinds == kind]
+
+
+def _column(values: Array) -> Any:
+    """Return numbers of many machines, or the one that all of them have."""
+    bits = values.view(np.int64)  # 0 and −0 are two
+    return values if (bits != bits[0]).any() else values[0].item()
+
+
+def _grouped(columns: Sequence[Sequence[Any]], rows: Indices) -> list[Indices]:
+    """Return the rows with the same values in all columns together."""
+    if not columns:
+        return [rows] if len(rows) else []
+    groups: dict[tuple[int, ...], list[int]] = {}
+    for row in rows.tolist():
+        groups.setdefault(tuple(id(column[row]) for column in columns), []).append(row)
+    return [np.array(group) for group in groups.values()]
+
+
+def _every(value: Any) -> Iterator[Given]:
+    """Yield what was read of every mapping, those inside others first."""
+    if isinstance(value, Given):
+        for one in value.values.values():
+            yield from _every(one)
+        yield value
+    elif isinstance(value, tuple):
+        for one in value:
+            yield from _every(one)
+
+
+def _around(inner: Given, every: Sequence[Given]) -> Iterator[Given]:
+    """Yield what was read of a mapping, and of those around it."""
+    for one in every:
+        if inner in _every(one):
+            yield one
 
 
 def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
@@ -238,29 +355,22 @@ def _meant(tree: Tree, key: str) -> str:
     return did_you_mean(by_numbers(tree, key), tuple(map(dotted, paths)))
 
 
-def _owner(path: Path, births: list[Birth]) -> tuple[Birth, str]:
-    """Return the record that reads a key itself, the innermost one, and the name of its own key on the way there."""
+def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str]:
+    """Return what reads a key itself, the innermost one, and the name of its own key on the way there."""
     fitting = [
-        birth
-        for birth in births
-        if len(birth.path) < len(path)
-        and birth.path == path[: len(birth.path)]
-        and _reads(birth, path[len(birth.path)])
+        one
+        for one in every
+        if len(one.path) < len(path) and one.path == path[: len(one.path)] and _reads(one, path[len(one.path)])
     ]
     if not fitting:
         raise UsageError(f"--vary {path_text(path)}: no value stands under this key that could be varied")
-    birth = max(fitting, key=lambda one: len(one.path))
-    return birth, str(path[len(birth.path)])
+    owner = max(fitting, key=lambda one: len(one.path))
+    return owner, str(path[len(owner.path)])
 
 
-def _reads(birth: Birth, name: Step) -> bool:
+def _reads(given: Given, name: Step) -> bool:
     """Return whether a record reads the value of a key itself."""
-    return name in birth.values and name in birth.form.keys
-
-
-def _parts(value: Any) -> tuple[Any, ...]:
-    """Return the items of a list, as what it was read into, or the value itself."""
-    return value if isinstance(value, tuple) else (value,)
+    return name in given.values and name in given.form.keys
 
 
 def _with(tree: Any, path: Path, value: Any) -> Any:
@@ -275,6 +385,6 @@ def _with(tree: Any, path: Path, value: Any) -> Any:
         raise Unbound(f"{path_text(path)}: no value stands there") from None
 
 
-def _told(faults: Sequence[Fault]) -> str:
+def _joined(faults: Sequence[Fault]) -> str:
     texts = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in faults)
     return "; ".join(dict.fromkeys(texts))  # equal cylinders have one fault in common

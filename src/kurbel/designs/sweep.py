@@ -11,13 +11,14 @@ from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Values, answers_of, is_slow
-from kurbel.designs.binding import Binder, written_texts
+from kurbel.designs.binding import Binder, CasesBinder, written_texts
 from kurbel.designs.columns import Answer, asked_answers
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine.variants import Lot
+from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
 from kurbel.solver.case import Case
 
@@ -36,8 +37,8 @@ class Spec(NamedTuple):
     """All that a sweep is made of, in texts, so that any process can make it anew.
 
     vary: `KEY=…` each, or several that go together; given: inputs beside these. columns: ids or symbols; with_angles:
-    beside extremes the angle where each stands; system: of units; most: rows, None for any number; the others: see
-    `Plan`.
+    beside extremes the angle where each stands; system: of units; most: rows, None for any number; cases: of every load
+    case of the file; the others: see `Plan`.
     """
 
     origin: Origin
@@ -51,6 +52,7 @@ class Spec(NamedTuple):
     system: str = "si"
     given: tuple[Input, ...] = ()
     most: int | None = None
+    cases: bool = False
 
 
 class Head(NamedTuple):
@@ -100,7 +102,8 @@ class Sweep:
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
-        axes = [*map(read_axis, spec.vary), *((one,) for one in spec.given)]
+        cases = [(Input("case", case_names(spec.origin)),)] if spec.cases else []
+        axes = [*cases, *map(read_axis, spec.vary), *((one,) for one in spec.given)]
         self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
         self.rows = self.plan.rows
         if spec.most and self.rows > spec.most:
@@ -110,7 +113,7 @@ class Sweep:
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Row.text` tells them."""
 
-    def _started(self) -> tuple[Binder, tuple[Answer, ...], tuple["_Limit", ...]]:
+    def _started(self) -> tuple[Binder | CasesBinder, tuple[Answer, ...], tuple["_Limit", ...]]:
         """Return what binds texts, starting from the first row whose machine tells what it answers, and who answers.
 
         That is what is asked for, and what limits are for, with their bounds.
@@ -119,7 +122,7 @@ class Sweep:
         failed: list[KurbelError] = []
         for texts in self._starts(keys):
             try:
-                binder = Binder(self.spec.origin, keys, texts)
+                binder = (CasesBinder if self.spec.cases else Binder)(self.spec.origin, keys, texts)
                 asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
                 return binder, asked, tuple(_limit_answers(binder.machine))
             except (MachineFileError, NoSolutionError) as error:

@@ -1,157 +1,143 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.errors import refused
+from kurbel.declared.forms import Choice
+from kurbel.declared.record import Record, Rule, alternative, field
 
-_WEIGHT_KEYS: Keys = {
-    "product": not_negative(
+
+def _product(given: Mapping[str, Any]) -> dict[str, Any]:
+    return {"product": given["mass"] * given["radius"]}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class _Weight(Record):
+    """A weight that turns with a shaft: u = m r."""
+
+    product: float = field(
         "unbalance",
         "Its mass times the radius of its centre of gravity; or give both",
         "u",
+        least=0,
         required=True,
         example="0.12 kg m",
-    ),
-    "mass": not_negative("mass", "Mass of the counterweight", "m_g", instead="product", needs="radius"),
-    "radius": positive("length", "From the axis of the shaft to its centre of gravity", "r_g", needs="mass"),
-    "axial_position": Key(Physical("length"), "Its place along the shaft", "z", absent="that of its cylinder"),
-}
-
-
-def _product(keys: dict[str, Any]) -> float:
-    """Take product, or mass and radius, out of the keys, and return the product in kg m."""
-    mass, radius = keys.pop("mass", None), keys.pop("radius", None)
-    product: float = keys.pop("product") if mass is None else mass * radius
-    return product
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Counterweight(Described):
-    """A weight that turns with the crank: mass times radius in kg m, its direction and its place.
-
-    angle: degrees from the throw, in the sense of rotation; axial_position: place along the shaft in m, None for that
-    of the cylinder, and not known for a weight of the whole machine.
-    """
-
-    product: float
-    angle: float = 180.0
-    axial_position: float | None = None
-
-    KEYS: ClassVar[Keys] = _WEIGHT_KEYS | {
-        "angle": Key(
-            Physical("angle", least=-360, most=360),
-            "Its direction from the throw of its cylinder, or of crank 1, in the sense of rotation",
-            "α",
-            absent="180 deg, opposite the throw",
-        )
-    }
-
-    @classmethod
-    def of_keys(cls, **keys: Any) -> "Counterweight":
-        """Return the counterweight that these keys of a machine file describe."""
-        return cls(_product(keys), **keys)
+    )
+    _mass = alternative(
+        "mass",
+        "Mass of the counterweight",
+        "m_g",
+        least=0,
+        instead="product",
+        needs="radius",
+        gives=_product,
+        key="mass",
+    )
+    _radius = alternative(
+        "length",
+        "From the axis of the shaft to its centre of gravity",
+        "r_g",
+        above=0,
+        needs="mass",
+        key="radius",
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SharedCounterweights(Described):
+class Counterweight(_Weight):
+    """A weight that turns with the crank; without a place it stands at its cylinder, one of the machine nowhere."""
+
+    angle: float = field(
+        "angle",
+        "Its direction from the throw of its cylinder, or of crank 1, in the sense of rotation",
+        "α",
+        default=180.0,
+        least=-360,
+        most=360,
+        absent="180 deg, opposite the throw",
+    )
+    axial_position: float | None = field("length", "Its place along the shaft", "z", absent="that of its cylinder")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SharedCounterweights(Record):
     """Counterweights opposite each throw, for what turns with it and a share of what goes to and fro.
 
     planes: two places along the shaft in m between which those of every throw are divided as by a lever, so that they
     have its force and its moment; empty: each stands at its own throw.
     """
 
-    share: float
-    planes: tuple[float, ...] = ()
+    share: float = field(
+        "ratio",
+        "Share of the reciprocating mass that is balanced, beside all of the rotating mass",
+        "c",
+        least=0,
+        most=1,
+        required=True,
+        example="0.5",
+    )
+    planes: tuple[float, ...] = field(
+        ["length"],
+        "Two places along the shaft where all of them stand, such as the wheels of a locomotive",
+        default=(),
+        absent="each opposite its own throw",
+    )
 
-    KEYS: ClassVar[Keys] = {
-        "share": Key(
-            Number(least=0, most=1),
-            "Share of the reciprocating mass that is balanced, beside all of the rotating mass",
-            "c",
-            required=True,
-            example="0.5",
-        ),
-        "planes": Key(
-            Listing(Physical("length")),
-            "Two places along the shaft where all of them stand, such as the wheels of a locomotive",
-            absent="each opposite its own throw",
-        ),
-    }
-
-    def __post_init__(self) -> None:
-        if self.planes and (len(self.planes) != 2 or self.planes[0] == self.planes[1]):
-            message = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
-            refused(f"{len(self.planes)} of them, {len(set(self.planes))} different; {message}", "planes")
+    def rules(self) -> Iterator[Rule]:
+        count = len(self.planes)
+        same = count == 2 and self.planes[0] == self.planes[1]
+        message = "give two different places, such as '[-750 mm, 750 mm]', or leave it out"
+        different = count if count != 2 else 1
+        yield Rule("planes", count not in (0, 2) or same, f"{count} of them, {different} different; {message}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class BalanceShaft(Described):
-    """A shaft with a weight of mass times radius in kg m that turns `order` times in a turn of the crank.
+class BalanceShaft(_Weight):
+    """A shaft with a weight that turns `order` times in a turn of the crank, with it or against it."""
 
-    against: whether it turns against the crank; angle: degrees of the weight from the stroke line of cylinder 1, in the
-    sense of rotation of the crank, while crank 1 is in its inner dead centre; axial_position: in m, None: not known.
-    """
-
-    product: float
-    order: int
+    _against = alternative(
+        Choice(
+            ("with", "against"),
+            {"same": "with", "forward": "with", "+": "with", "opposite": "against", "backward": "against"},
+        ),
+        "Whether it turns with the crank or against it",
+        required=True,
+        gives=lambda given: {"against": given["sense"] == "against"},
+        key="sense",
+    )
+    order: int = field(int, "Its turns in one turn of the crank", "n", least=1, most=8, required=True, example="2")
     against: bool = False
-    angle: float = 180.0
-    axial_position: float | None = None
-
-    KEYS: ClassVar[Keys] = _WEIGHT_KEYS | {
-        "order": Key(Count(least=1, most=8), "Its turns in one turn of the crank", "n", required=True, example="2"),
-        "sense": Key(
-            Choice(
-                ("with", "against"),
-                {"same": "with", "forward": "with", "+": "with", "opposite": "against", "backward": "against"},
-            ),
-            "Whether it turns with the crank or against it",
-            required=True,
-        ),
-        "axial_position": Key(Physical("length"), "Its place along the shaft", "z", absent="moments left out"),
-        "angle": Key(
-            Physical("angle", least=-360, most=360),
-            "Direction of its weight from the stroke line of cylinder 1, in the sense of rotation of the crank, while "
-            "crank 1 is in its inner dead centre",
-            "α",
-            absent="180 deg, away from the cylinder",
-        ),
-    }
-
-    @classmethod
-    def of_keys(cls, sense: str, **keys: Any) -> "BalanceShaft":
-        """Return the shaft that these keys of a machine file describe."""
-        return cls(_product(keys), against=sense == "against", **keys)
+    angle: float = field(
+        "angle",
+        "Direction of its weight from the stroke line of cylinder 1, in the sense of rotation of the crank, while "
+        "crank 1 is in its inner dead centre",
+        "α",
+        default=180.0,
+        least=-360,
+        most=360,
+        absent="180 deg, away from the cylinder",
+    )
+    axial_position: float | None = field("length", "Its place along the shaft", "z", absent="moments left out")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Locomotive(Described):
-    """The driven wheels of a locomotive, in which its counterweights stand: lengths in m, forces in N.
+class Locomotive(Record):
+    """The driven wheels of a locomotive, in which its counterweights stand; the cylinders are in their middle."""
 
-    wheel_distance: between the planes of the counterweights in the left and the right wheel, in the middle of which
-    the cylinders stand; hammer_limit: what the variation of the load of a wheel by its counterweight may be.
-    """
-
-    wheel_distance: float
-    wheel_diameter: float | None = None
-    wheel_load: float | None = None
-    hammer_limit: float | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "wheel_distance": positive(
-            "length", "Between the counterweights of the left and of the right wheel", required=True
-        ),
-        "wheel_diameter": positive("length", "Diameter of the driven wheels", "D", absent="speed of the shaft alone"),
-        "wheel_load": positive(
-            "force",
-            "Load of one driven wheel on its rail, at rest",
-            "Q",
-            absent="not told at which speed a wheel lifts",
-        ),
-        "hammer_limit": positive(
-            "force", "Largest allowed hammer blow of a wheel", absent="not told which share may be balanced"
-        ),
-    }
+    wheel_distance: float = field(
+        "length", "Between the counterweights of the left and of the right wheel", above=0, required=True
+    )
+    wheel_diameter: float | None = field(
+        "length", "Diameter of the driven wheels", "D", above=0, absent="speed of the shaft alone"
+    )
+    wheel_load: float | None = field(
+        "force",
+        "Load of one driven wheel on its rail, at rest",
+        "Q",
+        above=0,
+        absent="not told at which speed a wheel lifts",
+    )
+    hammer_limit: float | None = field(
+        "force", "Largest allowed hammer blow of a wheel", above=0, absent="not told which share may be balanced"
+    )

@@ -17,7 +17,6 @@ from kurbel.machine import Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine.variants import Chambers, Lot, one_of, record_of, values_of, varies
-from kurbel.numerics.varied import Varied
 from kurbel.traces.correct import Trace
 
 _MECHANISMS = ("slider-crank", "yoke-frame", "scotch-yoke")
@@ -39,7 +38,7 @@ class Structures:
         self._known: dict[int, tuple[Any, Any]] = {}
 
     def of(self, machine: Machine) -> Hashable | None:
-        """Return the structure of a machine, whose numbers may be `Varied`; None where it must be computed alone."""
+        """Return the structure of a machine, or of several that share it; None where it must be computed alone."""
         try:
             parts = {name: one for name, one in values_of(machine).items() if name not in _SAID}
             return (*(self._part(one) for one in parts.values()), _arrangement(machine))
@@ -49,8 +48,9 @@ class Structures:
     def _part(self, value: Any) -> Any:
         if value is None or isinstance(value, (str, bool, int)):
             return value
-        if isinstance(value, (float, Varied)):
-            return "0" if value == 0 else "inf" if value == math.inf else "number"
+        if isinstance(value, (float, np.ndarray)):
+            first = value if isinstance(value, float) else value[0]
+            return "0" if first == 0 else "inf" if first == math.inf else "number"
         if id(value) not in self._known:  # beside it, so that no other takes its place in memory
             self._known[id(value)] = value, self._looked_at(value)
         return self._known[id(value)][1]
@@ -88,9 +88,8 @@ def _arrangement(machine: Machine) -> Hashable:
 
 
 def _same(one: Any, other: Any) -> bool:
-    one, other = (value.values if isinstance(value, Varied) else value for value in (one, other))
     apart = np.abs(one - other)
-    near = np.minimum(apart, np.abs(apart - 360.0)) < 1e-9
+    near = np.asarray(np.minimum(apart, np.abs(apart - 360.0)) < 1e-9)
     if near.any() != near.all():
         raise _Alone
     return bool(near.all())
@@ -128,7 +127,7 @@ class _Stack:
 
     def _join(self, column: Sequence[Any]) -> Any:
         first = column[0]
-        if isinstance(first, (float, int, Varied)) and not isinstance(first, bool):
+        if isinstance(first, (float, int, np.ndarray)) and not isinstance(first, bool):
             return self._numbers(column)
         if isinstance(first, tuple) and not hasattr(first, "_fields"):
             return tuple(self.of(parts) for parts in zip(*column))
@@ -141,11 +140,11 @@ class _Stack:
         return first
 
     def _numbers(self, column: Sequence[Any]) -> Any:
-        if not any(isinstance(one, Varied) or one != column[0] for one in column):
+        if not any(isinstance(one, np.ndarray) or one != column[0] for one in column):
             return column[0]
         return np.concatenate(
             [
-                one.values[places] if isinstance(one, Varied) else np.full(len(places), one)
+                one[places] if isinstance(one, np.ndarray) else np.full(len(places), one)
                 for one, (_, places) in zip(column, self._lots)
             ]
         )

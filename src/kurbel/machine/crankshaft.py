@@ -2,125 +2,147 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Physical, Truth, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse
+import numpy as np
+
+from kurbel.declared.record import Record, Rule, field
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
 
 
-def _length(text: str, symbol: str, required: bool = True, absent: str = "") -> Key:
-    return positive("length", text, symbol, required=required, absent=absent)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class Crankshaft(Described):
+class Crankshaft(Record):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 
     a, b: from the middle of the pin to A and B; web_distance: from there to the middle of each web; flywheel_position:
-    from B, positive outward, negative between the bearings; flywheel_mass in kg; allowable stresses in Pa or None.
-    Without the journals' diameter they are not examined. overhung: the pin stands outside of A, on one web beside it.
+    from B, positive outward, negative between the bearings. Without the journals' diameter they are not examined.
+    overhung: the pin stands outside of A, on one web beside it.
     """
 
-    a: float
-    b: float
-    web_distance: float
-    web_thickness: float
-    web_width: float
-    pin_diameter: float
-    pin_length: float
-    journal_diameter: float | None = None
-    journal_length: float | None = None
-    flywheel_mass: float = 0.0
-    flywheel_position: float = 0.0
-    allowable_bending: float | None = None
-    allowable_torsion: float | None = None
-    overhung: bool = False
+    a: float = field(
+        "length", "From the middle of the crank pin to bearing A, away from the flywheel", "a", above=0, required=True
+    )
+    b: float = field(
+        "length", "From the middle of the crank pin to bearing B, beside the flywheel", "b", above=0, required=True
+    )
+    web_distance: float = field(
+        "length", "From the middle of the crank pin to the middle of a web", "e", above=0, required=True
+    )
+    web_thickness: float = field("length", "Thickness of a web along the shaft", "t", above=0, required=True)
+    web_width: float = field("length", "Width of a web across its arm", "w", above=0, required=True)
+    pin_diameter: float = field("length", "Diameter of the crank pin", "d_z", above=0, required=True)
+    pin_length: float = field("length", "Length of the crank pin", "l_z", above=0, required=True)
+    journal_diameter: float | None = field(
+        "length", "Diameter of the journals", "d_j", above=0, absent="journals not examined"
+    )
+    journal_length: float | None = field("length", "Length of a journal", "l_j", above=0, absent="no journal pressure")
+    flywheel_mass: float = field(
+        "mass",
+        "Mass of the flywheel",
+        "m_s",
+        default=0.0,
+        least=0,
+        absent="no flywheel",
+        needs="flywheel_position",
+    )
+    flywheel_position: float = field(
+        "length",
+        "Middle of the flywheel from bearing B, positive outward",
+        default=0.0,
+        absent="no flywheel",
+        needs="flywheel_mass",
+    )
+    allowable_bending: float | None = field(
+        "stress", "Allowable stress in bending", "k_b", above=0, absent="no safety figures"
+    )
+    allowable_torsion: float | None = field(
+        "stress", "Allowable stress in torsion", "k_d", above=0, absent="no safety figures"
+    )
+    overhung: bool = field(
+        bool,
+        "Whether the pin stands outside of bearing A, at the end of the shaft",
+        default=False,
+        absent="false",
+    )
 
-    KEYS: ClassVar[Keys] = {
-        "a": _length("From the middle of the crank pin to bearing A, away from the flywheel", "a"),
-        "b": _length("From the middle of the crank pin to bearing B, beside the flywheel", "b"),
-        "web_distance": _length("From the middle of the crank pin to the middle of a web", "e"),
-        "web_thickness": _length("Thickness of a web along the shaft", "t"),
-        "web_width": _length("Width of a web across its arm", "w"),
-        "pin_diameter": _length("Diameter of the crank pin", "d_z"),
-        "pin_length": _length("Length of the crank pin", "l_z"),
-        "journal_diameter": _length("Diameter of the journals", "d_j", False, "journals not examined"),
-        "journal_length": _length("Length of a journal", "l_j", False, "no journal pressure"),
-        "flywheel_mass": not_negative(
-            "mass", "Mass of the flywheel", "m_s", absent="no flywheel", needs="flywheel_position"
-        ),
-        "flywheel_position": Key(
-            Physical("length"),
-            "Middle of the flywheel from bearing B, positive outward",
-            absent="no flywheel",
-            needs="flywheel_mass",
-        ),
-        "allowable_bending": positive("stress", "Allowable stress in bending", "k_b", absent="no safety figures"),
-        "allowable_torsion": positive("stress", "Allowable stress in torsion", "k_d", absent="no safety figures"),
-        "overhung": Key(
-            Truth(), "Whether the pin stands outside of bearing A, at the end of the shaft", absent="false"
-        ),
-    }
+    def rules(self) -> Iterator[Rule]:
+        beside = "beside the web" if self.overhung else "between the webs"
+        numbers = {"end": self._web_end, "span": self.span, "gap": 2 * self.web_distance - self.web_thickness}
+        yield Rule(
+            "web_thickness",
+            self.web_thickness >= self.web_width,
+            "{web_thickness} is not less than the width ({web_width}); the thickness lies along the shaft",
+        )
+        yield Rule(
+            "web_distance",
+            self.web_distance <= self.web_thickness / 2,
+            f"{{web_distance}} leaves no pin {beside}; it must be more than half the thickness ({{web_thickness}})",
+        )
+        for name, place in (("a", self.a), ("b", self.b)):
+            inside = "puts the bearing inside the web ({end:length} from the pin); measure to the middle of the bearing"
+            yield Rule(name, place <= self._web_end, f"{{{name}}} {inside}", numbers)
+        yield from self._flywheel_rules(numbers)
+        yield Rule(
+            "pin_length",
+            (self.pin_length > _ROUNDED * numbers["gap"]) & (numbers["gap"] > 0),
+            f"{{pin_length}} does not fit {beside}, which leave{'s' * self.overhung} {{gap:length}}: twice "
+            "web_distance less web_thickness",
+            numbers,
+        )
+        yield from self._journal_rules()
 
-    def __post_init__(self) -> None:
-        refuse(*self._web_faults(), *self._place_faults(), *self._length_faults())
-
-    def _wrong(self, name: str, message: str, part: str = "") -> Fault:
-        return Fault((name,), f"{part}{show(getattr(self, name), 'length')} {message}")
-
-    def _web_faults(self) -> Iterator[Fault]:
-        thickness, width = show(self.web_thickness, "length"), show(self.web_width, "length")
-        if self.web_thickness >= self.web_width:
-            yield self._wrong(
-                "web_thickness", f"is not less than the width ({width}); the thickness lies along the shaft"
+    def _flywheel_rules(self, numbers: dict[str, float]) -> Iterator[Rule]:
+        position = self.flywheel_position
+        beyond: Any = position <= -self.span
+        if self.overhung:
+            before = self.b <= self.a
+            sentence = "{b} puts B before bearing A ({a}); an overhung pin lies beyond A"
+            yield Rule("b", before, sentence)
+            beyond = beyond & ~np.asarray(before)
+        yield Rule(
+            "flywheel_position",
+            beyond,
+            "{flywheel_position} lies beyond bearing A; A is the bearing away from the flywheel, {span:length} from B",
+            numbers,
+        )
+        if not self.overhung:
+            room = self._web_end - self.b
+            yield Rule(
+                "flywheel_position",
+                ~np.asarray(beyond) & (position <= room) & (room < 0),
+                "{flywheel_position} is not between web and bearing B, which leave {room:length}; "
+                "B is the bearing beside the flywheel",
+                {"room": -room},
             )
-        if self.web_distance <= self.web_thickness / 2:
-            more = f"it must be more than half the thickness ({thickness})"
-            yield self._wrong("web_distance", f"leaves no pin {self._beside_pin}; {more}")
 
-    def _place_faults(self) -> Iterator[Fault]:
-        end = show(self._web_end, "length")
-        for name in ("a", "b"):
-            if getattr(self, name) <= self._web_end:
-                inside = f"puts the bearing inside the web ({end} from the pin)"
-                yield self._wrong(name, f"{inside}; measure to the middle of the bearing")
-        if self.overhung and self.b <= self.a:
-            yield self._wrong("b", f"puts B before bearing A ({show(self.a, 'length')}); an overhung pin lies beyond A")
-        elif self.flywheel_position <= -self.span:
-            beyond = "lies beyond bearing A; A is the bearing away from the flywheel"
-            yield self._wrong("flywheel_position", f"{beyond}, {show(self.span, 'length')} from B")
-        elif not self.overhung and self.flywheel_position <= self._web_end - self.b < 0:
-            room = f"is not between web and bearing B, which leave {show(self.b - self._web_end, 'length')}"
-            yield self._wrong("flywheel_position", f"{room}; B is the bearing beside the flywheel")
-
-    def _length_faults(self) -> Iterator[Fault]:
-        """Yield what is wrong with the lengths of pin and journals, beside faults of the places themselves."""
-        gap = 2 * self.web_distance - self.web_thickness
-        if self.pin_length > _ROUNDED * gap > 0:
-            leave = f"does not fit {self._beside_pin}, which leave{'s' * self.overhung} {show(gap, 'length')}"
-            yield self._wrong("pin_length", f"{leave}: twice web_distance less web_thickness")
-        room, what = min(self._rooms)
-        if self.journal_length and self.journal_length / 2 > _ROUNDED * room > 0:
-            leave = f"does not fit between {what}, which leave {show(room, 'length')}"
-            yield self._wrong(
-                "journal_length", f"{leave}; 'a', 'b' and 'flywheel_position' go to the middle of a bearing", "half of "
+    def _journal_rules(self) -> Iterator[Rule]:
+        """Yield the rule of the journal in each room, broken where that is the shortest one."""
+        if self.journal_length is None:
+            return
+        rooms = list(self._rooms)
+        shortest = rooms[0][0]
+        for room, _ in rooms[1:]:
+            shortest = np.minimum(shortest, room)
+        for room, what in rooms:
+            sentence = (
+                f"half of {{journal_length}} does not fit between {what}, which leave {{room:length}}; "
+                "'a', 'b' and 'flywheel_position' go to the middle of a bearing"
             )
+            short = (self.journal_length / 2 > _ROUNDED * room) & (room > 0) & (room == shortest)
+            yield Rule("journal_length", short, sentence, {"room": room})
 
     @property
-    def _rooms(self) -> Iterator[tuple[float, str]]:
+    def _rooms(self) -> Iterator[tuple[Any, str]]:
         """Lengths in m beside the middles of the bearings, with what stands at both ends."""
         yield self.a - self._web_end, "the middle of bearing A and web A"
         if self.overhung:
             yield self.span / 2, "the middle of bearing A and half the way to B"
         else:
             yield self.b - self._web_end, "the middle of bearing B and web B"
-        if self.flywheel_mass and self.flywheel_position:
-            yield abs(self.flywheel_position), "the middles of bearing B and flywheel"
+        stands = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
+        yield np.where(stands, abs(self.flywheel_position), np.inf), "the middles of bearing B and flywheel"
 
     @property
     def place_A(self) -> float:
@@ -131,10 +153,6 @@ class Crankshaft(Described):
     def span(self) -> float:
         """Distance in m from bearing A to bearing B."""
         return self.b - self.place_A
-
-    @property
-    def _beside_pin(self) -> str:
-        return "beside the web" if self.overhung else "between the webs"
 
     @property
     def _web_end(self) -> float:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
+
+import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Choice, Inline, Listing, OneOf, Physical, Record, Text, Variant
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse, refused
+from kurbel.declared.forms import Inline, Listing, OneOf, Variant
+from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.friction import Friction
 from kurbel.machine.masses import ConnectingRod, Masses
@@ -37,19 +39,18 @@ _OTHER_NAMES = {
 """What people call a mechanism -> the word of the machine file."""
 
 
-COUNTERWEIGHTS = Key(
-    OneOf(
-        Record(SharedCounterweights),
-        Listing(Record(Counterweight)),
-    ),
-    "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
-    absent="none",
-)
-"""Of a cylinder beside its throw, or of the whole machine."""
+def counterweights() -> Any:
+    """Return the field of counterweights of a cylinder beside its throw, or of the whole machine."""
+    return field(
+        OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
+        "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
+        default=(),
+        absent="none",
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Cylinder(Described):
+class Cylinder(Record):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
@@ -60,108 +61,107 @@ class Cylinder(Described):
     RuleError for parts that the mechanism cannot have.
     """
 
-    mechanism: Mechanism
-    name: str = "cylinder 1"
+    mechanism: Mechanism = field(
+        Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
+        "Kind of crank mechanism",
+        default=dataclasses.MISSING,
+        absent="slider-crank",
+    )
+    name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
+    _like = alternative(
+        str, "Name of a cylinder above, which this one equals but for what stands here", absent="none", key="like"
+    )
+    _piston = alternative(Inline(RecordForm(Piston)), "The cylinder's own piston", key="piston")
+    _tandem = alternative(
+        [RecordForm(Piston, inline_too=True)],
+        "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
+        absent="none",
+        key="tandem",
+    )
     pistons: tuple[Piston, ...] = ()
-    masses: Masses | None = None
-    friction: Friction | None = None
-    inclination: float | None = None
-    crank_position: float = 0.0
-    bank_angle: float = 0.0
-    axial_position: float | None = None
-    counterweights: SharedCounterweights | tuple[Counterweight, ...] = ()
-    ram_force: RamForce | None = None
-    moment: Moment | None = None
-    cycle: str | None = None
-    point: RodPoint | None = None
+    masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")
+    friction: Friction | None = field(
+        Friction, "Friction of crosshead, piston rings, pins and journals, or a force", absent="no friction"
+    )
+    inclination: float | None = field(
+        "angle",
+        "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
+        least=-180,
+        most=180,
+        absent="weight left out",
+    )
+    crank_position: float = field(
+        "angle",
+        "Angle by which this crank follows crank 1",
+        default=0.0,
+        absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
+    )
+    bank_angle: float = field(
+        "angle",
+        "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
+        "γ",
+        default=0.0,
+        least=-360,
+        most=360,
+        absent="0 deg",
+    )
+    axial_position: float | None = field("length", "Place along the shaft", "z", absent="free moments left out")
+    counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
+    ram_force: RamForce | None = field(
+        RamForce, "Force on a ram against its motion, constant on each stroke", absent="none"
+    )
+    moment: Moment | None = field(
+        Moment, "Moment against the motion of a mechanism whose output only swings or turns", absent="none"
+    )
+    cycle: str | None = field(
+        tuple(CYCLES), "Working cycle of this cylinder, among others", absent="that of the machine"
+    )
+    point: RodPoint | None = field(
+        RodPoint,
+        "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
+        absent="none",
+    )
 
-    KEYS: ClassVar[Keys] = {
-        "name": Key(Text(), "Name of the cylinder", absent="cylinder 1, cylinder 2, …"),
-        "like": Key(Text(), "Name of a cylinder above, which this one equals but for what stands here", absent="none"),
-        "mechanism": Key(
-            Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
-            "Kind of crank mechanism",
-            absent="slider-crank",
-        ),
-        "inclination": Key(
-            Physical("angle", least=-180, most=180),
-            "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
-            absent="weight left out",
-        ),
-        "piston": Key(Inline(Record(Piston)), "The cylinder's own piston"),
-        "tandem": Key(
-            Listing(Record(Piston, inline_too=True)),
-            "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
-            absent="none",
-        ),
-        "masses": Key(Record(Masses), "Masses of the moving parts", absent="no inertia"),
-        "friction": Key(
-            Record(Friction),
-            "Friction of crosshead, piston rings, pins and journals, or a force",
-            absent="no friction",
-        ),
-        "crank_position": Key(
-            Physical("angle"),
-            "Angle by which this crank follows crank 1",
-            absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
-        ),
-        "bank_angle": Key(
-            Physical("angle", least=-360, most=360),
-            "Angle from the stroke line of cylinder 1 to this one, in the sense of rotation",
-            "γ",
-            absent="0 deg",
-        ),
-        "axial_position": Key(Physical("length"), "Place along the shaft", "z", absent="free moments left out"),
-        "counterweights": COUNTERWEIGHTS,
-        "ram_force": Key(
-            Record(RamForce),
-            "Force on a ram against its motion, constant on each stroke",
-            absent="none",
-        ),
-        "moment": Key(
-            Record(Moment),
-            "Moment against the motion of a mechanism whose output only swings or turns",
-            absent="none",
-        ),
-        "point": Key(
-            Record(RodPoint),
-            "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
-            absent="none",
-        ),
-        "cycle": Key(
-            Choice(tuple(CYCLES)), "Working cycle of this cylinder, among others", absent="that of the machine"
-        ),
-    }
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        like = "'like' stands in a list of 'cylinders', which has another one above"
+        yield Rule("like", bool(given.get("like")), like)
+        alone = "a tandem piston stands beside the cylinder's own one; give its 'bore'"
+        yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 
     @classmethod
     def of_keys(
         cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), like: str = "", **keys: Any
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
-        if like:
-            refused("'like' stands in a list of 'cylinders', which has another one above", "like")
-        if tandem and piston is None:
-            refused("a tandem piston stands beside the cylinder's own one; give its 'bore'", "tandem")
-        return cls(pistons=() if piston is None else (piston, *tandem), **{"name": "", "crank_position": None, **keys})
+        pistons = () if piston is None else (piston, *tandem)
+        return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
 
-    def __post_init__(self) -> None:
-        at_point = self.point.faults_on(self.mechanism) if self.point else ()
-        refuse(*(fault.below(("point",)) for fault in at_point))
-        refuse(*_of_output(self), *(_of_rod(self) if self.mechanism.slides else ()))
+    def rules(self) -> Iterator[Rule]:
+        """Yield which parts do not fit the mechanism."""
+        at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
+        yield from at_point
+        if not any(rule.broken for rule in at_point):
+            yield from map(Rule.of, _of_output(self))
+            yield from _of_rod(self) if self.mechanism.slides else ()
 
 
-def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Fault]:
-    """Yield a fault for every cylinder that stands where another one does, on one stroke line and at one place."""
-    first: dict[tuple[float, float], str] = {}
+def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
+    """Yield the rule that no cylinder stands where another one does, on one stroke line and at one place."""
+    message = "stands where '{other}' does, {place:length} along the shaft, on the same stroke line; give another"
     for index, one in enumerate(cylinders):
-        if one.axial_position is None:
-            continue
-        where = round(one.axial_position, 9), round(one.bank_angle % 360.0, 6) % 360.0
-        if where in first:
-            place = f"{show(one.axial_position, 'length')} along the shaft, on the same stroke line"
-            message = f"stands where '{first[where]}' does, {place}; give another 'axial_position' or 'bank_angle'"
-            yield Fault(("cylinders", index, "axial_position"), message)
-        first.setdefault(where, one.name)
+        if one.axial_position is not None:
+            yield from first_of(_apart(index, one, other, message) for other in cylinders[:index])
+
+
+def _apart(index: int, one: Cylinder, other: Cylinder, message: str) -> Rule:
+    place = ("cylinders", index, "axial_position")
+    if one.axial_position is None or other.axial_position is None:
+        return Rule(place, False, "")
+    same = np.abs(one.axial_position - other.axial_position) < 1e-9
+    same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
+    numbers = {"other": other.name, "place": one.axial_position}
+    return Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
 
 
 def may_lock(cylinder: Cylinder) -> bool:
@@ -193,31 +193,32 @@ _INSTEAD = {
 """What else to do where nothing slides that could have this key."""
 
 
-def _of_rod(cylinder: Cylinder) -> Iterator[Fault]:
+def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
     """Friction of a crosshead needs a side force N and a guide for it; the mass of a rod needs a rod."""
     mechanism, masses, friction = cylinder.mechanism, cylinder.masses, cylinder.friction
-    if friction and friction.rings and not cylinder.pistons:
-        yield Fault(("friction", "rings"), "rings rub on the bore; give the cylinder a 'bore'")
-    if friction is not None and friction.crosshead is not None and not (mechanism.has_rod and mechanism.guided):
-        reason = "crosshead guide" if mechanism.has_rod else "connecting rod to press a crosshead on its guide"
-        yield Fault(("friction", "crosshead"), f"a {mechanism.name} has no {reason}; leave 'crosshead' out")
-    for key in friction.of_pins if friction and not mechanism.has_rod else ():
-        yield Fault(("friction", key), f"a {mechanism.name} has no connecting rod; leave '{key}' out")
-    if masses is not None and masses.connecting_rod is not None and not mechanism.has_rod:
-        message = f"a {mechanism.name} has no connecting rod; give what goes to and fro as 'other'"
-        yield Fault(("masses", "connecting_rod"), message)
-    elif masses is not None and masses.connecting_rod and (message := _off_rod(masses.connecting_rod, mechanism)):
-        yield Fault(("masses", "connecting_rod", "center_of_gravity"), message)
+    kind, has_rod = mechanism.name, mechanism.has_rod
+    if friction is not None:
+        on_bore = friction.rings is not None and not cylinder.pistons
+        yield Rule(("friction", "rings"), on_bore, "rings rub on the bore; give the cylinder a 'bore'")
+        reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
+        unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
+        yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+        for key in friction.of_pins:
+            yield Rule(("friction", key), not has_rod, f"a {kind} has no connecting rod; leave '{key}' out")
+    rod = masses.connecting_rod if masses else None
+    if rod is not None:
+        message = f"a {kind} has no connecting rod; give what goes to and fro as 'other'"
+        yield Rule(("masses", "connecting_rod"), not has_rod, message)
+        if has_rod and rod.center_of_gravity is not None:
+            yield from _on_rod(rod, mechanism.rod_length)
 
 
-def _off_rod(rod: ConnectingRod, mechanism: Mechanism) -> str:
-    """Return what is wrong with the place of the centre of gravity of a rod, or an empty text."""
-    if rod.center_of_gravity is None:
-        return ""
-    if math.isinf(mechanism.rod_length):
-        return "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+def _on_rod(rod: ConnectingRod, length: Any) -> Iterator[Rule]:
+    """Yield the rules of the place of the centre of gravity of a rod of this length in m."""
+    place = ("masses", "connecting_rod", "center_of_gravity")
+    endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+    yield Rule(place, np.isinf(length), endless)
     # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
-    if rod.center_of_gravity > mechanism.rod_length:
-        place, length = show(rod.center_of_gravity, "length"), show(mechanism.rod_length, "length")
-        return f"{place} from the crosshead pin is beyond the crank pin: the rod is {length} long"
-    return ""
+    beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
+    numbers = {"at": rod.center_of_gravity, "length": length}
+    yield Rule(place, rod.center_of_gravity > length, beyond, numbers)

@@ -1,25 +1,18 @@
 """Cards as the indicator drew them: millimetres on the paper, by the length of the card and the scale of its spring."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Described, Keys
 from kurbel.declared.kinds import Factor
+from kurbel.declared.record import Record, field
 from kurbel.machine.rectangle import Rectangle
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Drawn(Described):
-    """The paper of a card: its length in m, and the scale of the spring in m/Pa."""
+class Drawn(Record):
+    """The paper of a card: its length, and the scale of the spring in m/Pa."""
 
-    length: float
-    spring: float
-
-    KEYS: ClassVar[Keys] = {
-        "length": positive("length", "Length of the card on the paper", "l", required=True),
-        "spring": positive("spring", "Scale of the spring: height on the paper over pressure", required=True),
-    }
+    length: float = field("length", "Length of the card on the paper", "l", above=0, required=True)
+    spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0, required=True)
 
     @property
     def unit(self) -> Factor:

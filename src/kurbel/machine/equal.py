@@ -1,88 +1,82 @@
 """Equal cylinders described at once, and where the cranks of several cylinders stand."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Count, FiringOrder, Listing, Physical, Record, not_negative
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.forms import FiringOrder
+from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.kinds import MOST_ITEMS
+from kurbel.declared.reading import REFUSED
+from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
 from kurbel.machine.firing import in_even_turns
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EqualCylinders(Described):
+class EqualCylinders(Record):
     """Cylinders that differ in name, crank position and place only.
 
     cylinders: with bank angle γ in degrees and place along the shaft in m; firing_order: their numbers, from 1; placed:
     their crank positions are given; shared: every bank has one cylinder, so that all can stand on one crank pin.
     """
 
-    cylinders: tuple[Cylinder, ...]
-    firing_order: tuple[int, ...] | None
-    placed: bool
-    shared: bool
-
-    KEYS: ClassVar[Keys] = {
-        "count": Key(Count(most=MOST_ITEMS), "Number of cylinders", required=True, example="4"),
-        "firing_order": Key(
-            FiringOrder(),
-            "Order in which they fire, at equal intervals over the cycle",
-            absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
-        ),
-        "crank_positions": Key(
-            Listing(Physical("angle")),
-            "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if "
-            "all are less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
-            absent="from the firing order",
-            instead="firing_order",
-            example="[0 deg, 120 deg, 240 deg]",
-        ),
-        "spacing": not_negative(
-            "length",
-            "From one cylinder of a bank to the next along the shaft; 0 mm: two rods on one pin",
-            absent="free moments left out",
-        ),
-        "bank_angles": Key(
-            Listing(Physical("angle", least=-360, most=360)),
-            "Angles of the stroke lines in the sense of rotation: one for each cylinder, or for the cylinders in turn "
-            "(1, 2, 1, 2, …)",
-            "γ",
-            absent="in line",
-        ),
-        "each": Key(Record(Cylinder, inline_too=True), "The keys of one cylinder", required=True),
-    }
+    _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4", key="count")
+    firing_order: tuple[int, ...] | None = field(
+        FiringOrder(),
+        "Order in which they fire, at equal intervals over the cycle",
+        absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
+    )
+    _crank_positions = alternative(
+        ["angle"],
+        "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if "
+        "all are less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
+        absent="from the firing order",
+        instead="firing_order",
+        example="[0 deg, 120 deg, 240 deg]",
+        key="crank_positions",
+    )
+    _spacing = alternative(
+        "length",
+        "From one cylinder of a bank to the next along the shaft; 0 mm: two rods on one pin",
+        least=0,
+        absent="free moments left out",
+        key="spacing",
+    )
+    _bank_angles = alternative(
+        ["angle"],
+        "Angles of the stroke lines in the sense of rotation: one for each cylinder, or for the cylinders in turn "
+        "(1, 2, 1, 2, …)",
+        "γ",
+        least=-360,
+        most=360,
+        absent="in line",
+        key="bank_angles",
+    )
+    _each = alternative(
+        RecordForm(Cylinder, inline_too=True),
+        "The keys of one cylinder",
+        required=True,
+        gives=lambda given: _equal(**given),
+        key="each",
+    )
+    cylinders: tuple[Cylinder, ...] = ()
+    placed: bool = False
+    shared: bool = False
 
     @classmethod
-    def of_keys(
-        cls,
-        count: int,
-        each: Cylinder,
-        firing_order: tuple[int, ...] | None = None,
-        crank_positions: tuple[float, ...] | None = None,
-        spacing: float | None = None,
-        bank_angles: tuple[float, ...] = (0.0,),
-    ) -> "EqualCylinders":
-        """Return the cylinders that these keys of a machine file describe; raises RuleError."""
-        if count % len(bank_angles):
-            message = f"{len(bank_angles)} angles for {count} cylinders; give one for each bank or for each cylinder"
-            refused(message, "bank_angles")
-        if crank_positions and len(crank_positions) != count:
-            message = f"{len(crank_positions)} angles for {count} cylinders; give one for each"
-            refused(message, "crank_positions")
-        if crank_positions and each.crank_position is not None:
-            refused("'crank_positions' sets it; leave it out", "each", "crank_position")
-        angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
-        places = [None if spacing is None else spacing * angles[:index].count(one) for index, one in enumerate(angles)]
-        cylinders = (_standing(each, angle - angles[0], place) for angle, place in zip(angles, places))
-        positions = crank_positions or (each.crank_position,) * count
-        named = tuple(
-            replace(one, name=f"{each.name or 'cylinder'} {i}", crank_position=position)
-            for i, (one, position) in enumerate(zip(cylinders, positions), 1)
-        )
-        return cls(named, firing_order, crank_positions is not None, len(set(angles)) == count)
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        if REFUSED in given.values():
+            return
+        count, banks = given["count"], given.get("bank_angles", (0.0,))
+        number = f"{len(banks)} angles for {count} cylinders; give one for each bank or for each cylinder"
+        yield Rule("bank_angles", count % len(banks) != 0, number)
+        if positions := given.get("crank_positions"):
+            number = f"{len(positions)} angles for {count} cylinders; give one for each"
+            yield Rule("crank_positions", len(positions) != count, number)
+            twice = given["each"].crank_position is not None
+            yield Rule(("each", "crank_position"), twice, "'crank_positions' sets it; leave it out")
 
     def standing(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
         """Return the cylinders with their crank positions; order: of the machine; cycle: of the machine."""
@@ -104,6 +98,26 @@ class EqualCylinders(Described):
         # on one pin each dead centre follows by the angle between the stroke lines
         on_pin = [replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in self.cylinders]
         return in_even_turns(on_pin, [True] * len(on_pin), cycle)
+
+
+def _equal(
+    count: int,
+    each: Cylinder,
+    crank_positions: tuple[float, ...] | None = None,
+    spacing: float | None = None,
+    bank_angles: tuple[float, ...] = (0.0,),
+    **more: Any,
+) -> dict[str, Any]:
+    """Return the cylinders that these keys of a machine file describe, and how they stand."""
+    angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
+    places = [None if spacing is None else spacing * angles[:index].count(one) for index, one in enumerate(angles)]
+    cylinders = (_standing(each, angle - angles[0], place) for angle, place in zip(angles, places))
+    positions = crank_positions or (each.crank_position,) * count
+    named = tuple(
+        replace(one, name=f"{each.name or 'cylinder'} {i}", crank_position=position)
+        for i, (one, position) in enumerate(zip(cylinders, positions), 1)
+    )
+    return {"cylinders": named, "placed": crank_positions is not None, "shared": len(set(angles)) == count}
 
 
 def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:

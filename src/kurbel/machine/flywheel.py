@@ -1,82 +1,88 @@
 """The flywheel, and the rim that is to be built for it."""
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Number, Record, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
+from kurbel.declared.record import Record, Rule, alternative, field
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
 
 
+def _between(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return D = (D_a + D_i)/2 and h = (D_a − D_i)/2."""
+    outer, inner = given["outer_diameter"], given["inner_diameter"]
+    return {"mean_diameter": (outer + inner) / 2, "depth": (outer - inner) / 2}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Rim(Described):
-    """The rim of a flywheel: mean diameter in m, density in kg/m³, and the tension in Pa that it may bear or None.
+class Rim(Record):
+    """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
-    depth: of its section along the radius in m, 0 where it is not known; width: of its section along the shaft in m;
-    mass in kg. Width or mass, beside a depth, tell its moment of inertia.
-    """
-
-    mean_diameter: float
-    density: float = CAST_IRON
-    allowable_tension: float | None = None
-    depth: float = 0.0
-    width: float | None = None
-    mass: float | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "mean_diameter": positive("length", "Mean diameter of the rim", "D", required=True, example="3 m"),
-        "outer_diameter": positive(
-            "length", "Outer diameter of the rim", "D_a", instead="mean_diameter", needs="inner_diameter"
-        ),
-        "inner_diameter": not_negative(
-            "length", "Inner diameter of the rim, 0 of a disc", "D_i", needs="outer_diameter"
-        ),
-        "depth": positive(
-            "length",
-            "Depth of its section along the radius",
-            "h",
-            absent="a thin rim",
-            instead="inner_diameter",
-            needs="mean_diameter",
-        ),
-        "width": positive(
-            "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b"
-        ),
-        "mass": positive(
-            "mass", "Mass of the rim, which tells its moment of inertia as the width does", "m", instead="width"
-        ),
-        "density": positive(
-            "density", "Density of its material", "ρ", absent="7250 kg/m³, cast iron", also=("material",)
-        ),
-        "allowable_tension": positive(
-            "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z"
-        ),
-    }
+    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
+    _outer = alternative(
+        "length",
+        "Outer diameter of the rim",
+        "D_a",
+        above=0,
+        instead="mean_diameter",
+        needs="inner_diameter",
+        gives=_between,
+        key="outer_diameter",
+    )
+    _inner = alternative(
+        "length",
+        "Inner diameter of the rim, 0 of a disc",
+        "D_i",
+        least=0,
+        needs="outer_diameter",
+        key="inner_diameter",
+    )
+    depth: float = field(
+        "length",
+        "Depth of its section along the radius",
+        "h",
+        default=0.0,
+        above=0,
+        absent="a thin rim",
+        instead="inner_diameter",
+        needs="mean_diameter",
+    )
+    width: float | None = field(
+        "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b", above=0
+    )
+    mass: float | None = field(
+        "mass", "Mass of the rim, which tells its moment of inertia as the width does", "m", above=0, instead="width"
+    )
+    density: float = field(
+        "density",
+        "Density of its material",
+        "ρ",
+        default=CAST_IRON,
+        above=0,
+        absent="7250 kg/m³, cast iron",
+        also=("material",),
+    )
+    allowable_tension: float | None = field(
+        "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z", above=0
+    )
 
     @classmethod
-    def of_keys(
-        cls, outer_diameter: float | None = None, inner_diameter: float = 0.0, depth: float = 0.0, **keys: Any
-    ) -> "Rim":
-        """Return the rim with D = (D_a + D_i)/2 and h = (D_a − D_i)/2; raises RuleError."""
-        if outer_diameter is None:
-            return cls(depth=depth, **keys)
-        if inner_diameter >= outer_diameter:
-            outer, inner = show(outer_diameter, "length"), show(inner_diameter, "length")
-            refused(f"{inner} leaves no rim inside of the outer diameter ({outer})", "inner_diameter")
-        return cls((outer_diameter + inner_diameter) / 2, depth=(outer_diameter - inner_diameter) / 2, **keys)
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        if "outer_diameter" in given and "inner_diameter" in given:
+            inner, outer = given["inner_diameter"], given["outer_diameter"]
+            sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
+            yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})
 
-    def __post_init__(self) -> None:
-        if self.depth > self.mean_diameter:
-            depth, mean = show(self.depth, "length"), show(self.mean_diameter, "length")
-            refused(f"{depth} is more than the mean diameter ({mean}), that of a disc", "depth")
-        if self.sized_by and not self.depth:
+    def rules(self) -> Iterator[Rule]:
+        beyond = self.depth > self.mean_diameter
+        yield Rule("depth", beyond, "{depth} is more than the mean diameter ({mean_diameter}), that of a disc")
+        if self.sized_by:
             message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
-            refused(f"tells no moment of inertia without the depth of the rim; {message}", self.sized_by)
+            without = f"tells no moment of inertia without the depth of the rim; {message}"
+            yield Rule(self.sized_by, self.depth == 0, without)
 
     @property
     def sized_by(self) -> str:
@@ -109,64 +115,69 @@ class Rim(Described):
         return self.density * self.speed(omega) ** 2
 
 
+def _of_rim(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the moment of inertia of a rim whose sizes are given."""
+    rim = given["rim"]
+    return {"rim": rim} | ({"inertia": rim.inertia} if rim.sized_by else {})
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Flywheel(Described):
-    """A flywheel: its moment of inertia J in kg m², the wanted coefficient of fluctuation δ, and the rim to be built.
+class Flywheel(Record):
+    """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
-    Any of them may be None, but not both of the first two.
-    """
-
-    inertia: float | None = None
-    fluctuation: float | None = None
+    inertia: float | None = field("inertia", "Moment of inertia; or give `gd2`", "J", least=0)
+    _gd2 = alternative(
+        "gd2",
+        "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
+        "GD²",
+        least=0,
+        instead="inertia",
+        gives=lambda given: {"inertia": given["gd2"] / 4},
+        key="gd2",
+    )
+    _mass = alternative(
+        "mass",
+        "Mass, with the radius of gyration another form of the moment of inertia m k²",
+        "m",
+        least=0,
+        instead="inertia",
+        needs="radius_of_gyration",
+        gives=lambda given: {"inertia": given["mass"] * given["radius_of_gyration"] ** 2},
+        key="mass",
+    )
+    _gyration = alternative(
+        "length",
+        "Radius of gyration",
+        "k",
+        above=0,
+        instead="gd2",
+        needs="mass",
+        key="radius_of_gyration",
+    )
+    fluctuation: float | None = field(
+        "ratio",
+        "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
+        "δ",
+        above=0,
+        below=2,
+        example="1/80",
+    )
+    _rim = alternative(
+        Rim,
+        "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
+        absent="no section",
+        gives=_of_rim,
+        key="rim",
+    )
     rim: Rim | None = None
 
-    KEYS: ClassVar[Keys] = {
-        "inertia": not_negative("inertia", "Moment of inertia; or give `gd2`", "J"),
-        "gd2": not_negative(
-            "gd2",
-            "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
-            "GD²",
-            instead="inertia",
-        ),
-        "mass": not_negative(
-            "mass",
-            "Mass, with the radius of gyration another form of the moment of inertia m k²",
-            "m",
-            instead="inertia",
-            needs="radius_of_gyration",
-        ),
-        "radius_of_gyration": positive("length", "Radius of gyration", "k", instead="gd2", needs="mass"),
-        "fluctuation": Key(
-            Number(above=0, below=2),
-            "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
-            "δ",
-            example="1/80",
-        ),
-        "rim": Key(
-            Record(Rim),
-            "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
-            absent="no section",
-        ),
-    }
-
     @classmethod
-    def of_keys(cls, **keys: Any) -> "Flywheel":
-        """Return the flywheel with J = inertia, GD²/4, m k², or that of its rim; raises RuleError."""
-        mass, radius, gd2 = (keys.pop(name, None) for name in ("mass", "radius_of_gyration", "gd2"))
-        if gd2 is not None:
-            keys["inertia"] = gd2 / 4
-        if mass is not None:
-            keys["inertia"] = mass * radius**2
-        rim = keys.get("rim")
-        if rim and rim.sized_by:
-            if "inertia" in keys:
-                message = (
-                    "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
-                )
-                refused(message, "rim", rim.sized_by)
-            keys["inertia"] = rim.inertia
-        return cls(**keys)
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        rim = given.get("rim")
+        if isinstance(rim, Rim) and rim.sized_by:
+            message = "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
+            yield Rule(("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message)
 
-    def __post_init__(self) -> None:
-        if self.inertia is None and self.fluctuation is None:
-            refused("a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'")
+    def rules(self) -> Iterator[Rule]:
+        needed = "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
+        yield Rule((), self.inertia is None and self.fluctuation is None, needed)

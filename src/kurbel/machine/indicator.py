@@ -1,14 +1,15 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
-from kurbel.declared.forms import Choice, Keyed, OneOf, Physical, Points, Record, UnitName, not_negative
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.forms import Choice, Keyed, OneOf, Points, UnitName
+from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.kinds import Factor, Point, size_faults
-from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.declared.reading import REFUSED
+from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.errors import Fault, refuse
 from kurbel.machine.drawn import Drawn
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
 from kurbel.machine.rectangle import Rectangle, Rectangular
@@ -24,8 +25,8 @@ class Chamber(Protocol):
         """The working cycles that it can be part of."""
         ...
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa); or ''."""
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
         ...
 
 
@@ -46,39 +47,58 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
+def _line_of(name: str, text: str) -> Any:
+    return alternative(_POINTS, text, key=name)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Card(Described):
+class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
     the stroke volume. `notes` tells what was tidied up; drawn: whether its points count from an atmospheric line.
     """
 
-    lines: tuple[Line, ...]
-    interpolate: str = "linear"
-    clearance: float | None = None
+    _unit = alternative(
+        UnitName("pressure"),
+        "Unit of the pressures; or give `drawn`",
+        required=True,
+        example="bar",
+        key="unit",
+    )
+    _drawn = alternative(
+        Drawn,
+        "The paper of the card: all points are then millimetres, from the card's own dead centre and from the "
+        "atmospheric line",
+        instead="unit",
+        key="drawn",
+    )
+    _area = alternative(
+        "area",
+        "Area by planimeter, instead of the lines of a drawn card",
+        least=0,
+        needs="drawn",
+        key="area",
+    )
+    _mean_height = alternative(
+        "length",
+        "Mean height by planimeter, instead of the lines of a drawn card",
+        least=0,
+        instead="area",
+        needs="drawn",
+        key="mean_height",
+    )
+    _expansion = _line_of("expansion", "Line while the burnt or admitted gas expands")
+    _compression = _line_of("compression", "Line while the chamber is compressed or empties")
+    _intake = _line_of("intake", "Suction line of a four-stroke cycle")
+    _exhaust = _line_of("exhaust", "Exhaust line of a four-stroke cycle")
+    lines: tuple[Line, ...] = ()
+    interpolate: str = field(("linear", "polytropic"), "How points are joined", default="linear", absent="linear")
+    clearance: float | None = field(
+        CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"
+    )
     notes: tuple[str, ...] = ()
     drawn: bool = False
-
-    KEYS: ClassVar[Keys] = {
-        "unit": Key(UnitName("pressure"), "Unit of the pressures; or give `drawn`", required=True, example="bar"),
-        "drawn": Key(
-            Record(Drawn),
-            "The paper of the card: all points are then millimetres, from the card's own dead centre and from the "
-            "atmospheric line",
-            instead="unit",
-        ),
-        "area": not_negative("area", "Area by planimeter, instead of the lines of a drawn card", needs="drawn"),
-        "mean_height": not_negative(
-            "length", "Mean height by planimeter, instead of the lines of a drawn card", instead="area", needs="drawn"
-        ),
-        "expansion": Key(_POINTS, "Line while the burnt or admitted gas expands"),
-        "compression": Key(_POINTS, "Line while the chamber is compressed or empties"),
-        "intake": Key(_POINTS, "Suction line of a four-stroke cycle"),
-        "exhaust": Key(_POINTS, "Exhaust line of a four-stroke cycle"),
-        "interpolate": Key(Choice(("linear", "polytropic")), "How points are joined", absent="linear"),
-        "clearance": Key(CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"),
-    }
 
     @classmethod
     def of_keys(
@@ -110,9 +130,11 @@ class Card(Described):
         )
         return cls(lines, interpolate, clearance, notes, drawn is not None)
 
-    @staticmethod
-    def faults_of_keys(values: Mapping[str, Any]) -> list[Fault]:
+    @classmethod
+    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
         """Return what is wrong with the lines that could be read, where others could not be."""
+        if REFUSED not in values.values():
+            return []
         lines = {name: value for name, value in values.items() if isinstance(value, list)}
         return [] if "drawn" in values else _all_line_faults(lines, 1.0)
 
@@ -121,17 +143,19 @@ class Card(Described):
         """The one cycle that has so many lines."""
         return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or what no polytropic line can be drawn through; or ''."""
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine, or what no polytropic line can be drawn through."""
         wanted = STROKES[cycle]
-        if len(self.lines) != len(wanted):
-            return f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
+        yield Rule((), len(self.lines) != len(wanted), lines)
         lowest = min(pressure for line in self.lines for pressure in line.pressures)
-        if self.interpolate == "polytropic" and lowest + lift <= 0:
-            return f"{show(lowest, 'pressure')} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
-        if lowest + lift < 0:
-            return f"{show(lowest, 'pressure')} is below the vacuum, which is at {show(0.0 - lift, 'pressure')}"
-        return ""
+        numbers = {"lowest": lowest, "vacuum": 0.0 - lift}
+        if self.interpolate == "polytropic":
+            above = "{lowest:pressure} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
+            yield Rule((), lowest + lift <= 0, above, numbers)
+        else:
+            below = "{lowest:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            yield Rule((), lowest + lift < 0, below, numbers)
 
 
 def _cycle_of(given: Iterable[str]) -> str:
@@ -197,16 +221,15 @@ def _order_faults(name: str, points: list[Point], whole: float) -> list[Fault]:
     return []
 
 
-class Constant(Described):
+@dataclass(frozen=True, eq=False, repr=False)
+class Constant(Record):
     """Constant pressure on each stroke: an ideal pump."""
 
-    KEYS: ClassVar[Keys] = {
-        "expansion": Key(Physical("pressure"), "Pressure while the chamber grows: suction", required=True),
-        "compression": Key(Physical("pressure"), "Pressure while the chamber shrinks: delivery", required=True),
-    }
+    expansion: float = field("pressure", "Pressure while the chamber grows: suction", required=True)
+    compression: float = field("pressure", "Pressure while the chamber shrinks: delivery", required=True)
 
-    @staticmethod
-    def of_keys(expansion: float, compression: float) -> Card:
+    @classmethod
+    def of_keys(cls, expansion: float, compression: float) -> Card:
         """Return the card with two horizontal lines."""
         return Card(
             (
@@ -219,59 +242,53 @@ class Constant(Described):
 _CHAMBER = Keyed(
     cases={
         "mean_pressure": Rectangular("mean"),
-        "constant": Record(Constant),
-        "trace": Record("kurbel.machine_file.trace:Measured"),
-        "steam": Record(Steam),
-        "compressor": Record(Compressor),
-        "otto": Record(Otto),
-        "diesel": Record(Diesel),
+        "constant": RecordForm(Constant),
+        "trace": RecordForm("kurbel.machine_file.trace:Measured"),
+        "steam": RecordForm(Steam),
+        "compressor": RecordForm(Compressor),
+        "otto": RecordForm(Otto),
+        "diesel": RecordForm(Diesel),
     },
-    otherwise=Record(Card),
+    otherwise=RecordForm(Card),
 )
 _ONE_PRESSURE = Rectangular("level")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Indicator(Described):
+class Indicator(Record):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 
     absolute: the pressures of both ends are absolute, not gauge.
     """
 
-    head_end: Chamber | None = None
-    crank_end: Chamber | None = None
+    _pressures = alternative(
+        ("gauge", "absolute"),
+        "What the pressures count from, also where `p_head`, `p_crank` and `p_max` are shown, asked for or limited",
+        absent="gauge",
+        gives=lambda given: {"absolute": given["pressures"] == "absolute"},
+        key="pressures",
+    )
+    head_end: Chamber | None = field(
+        OneOf(_ONE_PRESSURE, _CHAMBER),
+        "Pressure at the head end: one for all strokes, or a card",
+        absent="open to the ambient",
+    )
+    crank_end: Chamber | None = field(
+        OneOf(Choice(("mirrored",)), _ONE_PRESSURE, _CHAMBER),
+        "Pressure at the crank end, a card counted from its own dead centre, the outer one; or `mirrored`: the "
+        "head end's card, so counted",
+        absent="open to the ambient",
+        # each chamber's fractions count from its own dead centre, so that it is the same card
+        gives=lambda given: {"crank_end": given.get("head_end")} if given["crank_end"] == "mirrored" else {},
+    )
     absolute: bool = False
 
-    KEYS: ClassVar[Keys] = {
-        "pressures": Key(
-            Choice(("gauge", "absolute")),
-            "What the pressures count from, also where `p_head`, `p_crank` and `p_max` are shown, asked for or limited",
-            absent="gauge",
-        ),
-        "head_end": Key(
-            OneOf(_ONE_PRESSURE, _CHAMBER),
-            "Pressure at the head end: one for all strokes, or a card",
-            absent="open to the ambient",
-        ),
-        "crank_end": Key(
-            OneOf(Choice(("mirrored",)), _ONE_PRESSURE, _CHAMBER),
-            "Pressure at the crank end, a card counted from its own dead centre, the outer one; or `mirrored`: the "
-            "head end's card, so counted",
-            absent="open to the ambient",
-        ),
-    }
-
     @classmethod
-    def of_keys(
-        cls, pressures: str = "gauge", head_end: Chamber | None = None, crank_end: Chamber | str | None = None
-    ) -> "Indicator":
-        """Return the indicator that these keys of a machine file describe; raises RuleError."""
-        if head_end is None and crank_end in (None, "mirrored"):
-            path: Path = () if crank_end is None else ("crank_end",)
-            refused("the indicator shows no pressure; give 'head_end'", *path)
-        for end, chamber in (("head_end", head_end), ("crank_end", crank_end)):
-            if pressures == "absolute" and getattr(chamber, "drawn", False):
-                refused("a drawn card counts from the atmospheric line; write 'pressures: gauge'", end, "drawn")
-        # a mirrored card is the same card: each chamber's fractions count from its own dead centre
-        other = head_end if isinstance(crank_end, str) else crank_end
-        return cls(head_end, other, pressures == "absolute")
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        mirrored = given.get("crank_end") == "mirrored"
+        none = "head_end" not in given and (mirrored or "crank_end" not in given)
+        yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")
+        for end in ("head_end", "crank_end"):
+            drawn = given.get("pressures") == "absolute" and getattr(given.get(end), "drawn", False)
+            message = "a drawn card counts from the atmospheric line; write 'pressures: gauge'"
+            yield Rule((end, "drawn"), drawn, message)

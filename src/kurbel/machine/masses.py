@@ -1,48 +1,37 @@
 """Masses of the moving parts."""
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Listing, Number, OneOf, Physical, Record, not_negative
-from kurbel.declared.keys import Described, Form, Key, Keys, check
-from kurbel.errors import refused
+from kurbel.declared.forms import Listing, OneOf, Physical
+from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.keys import Form
+from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.numerics.arithmetic import total
-
-_ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
-
-
-def _part(text: str) -> Key:
-    return Key(_ONE_OR_MORE, text, instead="reciprocating")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConnectingRod(Described):
-    """The connecting rod's mass in kg and how it moves.
+class ConnectingRod(Record):
+    """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
-    share: the part of it that counts as reciprocating; or, exactly, center_of_gravity: its distance
-    in m from the crosshead pin, with inertia: moment of inertia in kg m² about the centre of gravity.
-    """
+    mass: float = field("mass", "Mass of the rod", least=0, required=True)
+    share: float = field("ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2")
+    center_of_gravity: float | None = field(
+        "length",
+        "Distance of its centre of gravity from the crosshead pin",
+        "a",
+        least=0,
+        instead="share",
+        needs="inertia",
+    )
+    inertia: float | None = field(
+        "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
+    )
 
-    mass: float
-    share: float = 0.5
-    center_of_gravity: float | None = None
-    inertia: float | None = None
-
-    KEYS: ClassVar[Keys] = {
-        "mass": not_negative("mass", "Mass of the rod", required=True),
-        "share": Key(Number(least=0, most=1), "Reciprocating share of the mass", absent="1/2"),
-        "center_of_gravity": not_negative(
-            "length", "Distance of its centre of gravity from the crosshead pin", "a", instead="share", needs="inertia"
-        ),
-        "inertia": not_negative(
-            "inertia", "Moment of inertia about the centre of gravity", "I_r", needs="center_of_gravity"
-        ),
-    }
-
-    def __post_init__(self) -> None:
-        # its default stands beside a centre of gravity, and is then not used
-        check(self.KEYS, {**vars(self), "share": None if self.exact else self.share})
+    def rules(self) -> Iterator[Rule]:
+        yield from self.contradictions()
 
     @property
     def exact(self) -> bool:
@@ -72,55 +61,77 @@ class ConnectingRod(Described):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Masses(Described):
-    """Moving masses in kg: the sum of piston, piston rod, crosshead and others, the connecting rod, and what turns.
+_ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
+_PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
 
-    rotating: at the radius of the crank pin, beside what of the connecting rod turns with it; crosshead: what of the
-    sum is the crosshead's, None where that is not known; undivided: the sum was given as one and has the connecting
-    rod's share in it.
+
+def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
+    each = {name: given[name] for name in _PARTS if given.get(name) is not None}
+    sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
+    return {
+        "parts": total(*sums.values()),
+        "crosshead": sums.get("crosshead"),
+        "undivided": "reciprocating" in sums,
+    }
+
+
+def _rod(given: Mapping[str, Any]) -> dict[str, Any]:
+    rod = given["connecting_rod"]
+    return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
+
+
+def _part(text: str, key: str) -> Any:
+    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum, key=key)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Masses(Record):
+    """Moving masses in kg: what reciprocates besides the connecting rod, the connecting rod, and what turns.
+
+    parts: the sum of piston, piston rod, crosshead and others; rotating: at the radius of the crank pin, beside what of
+    the connecting rod turns with it; crosshead: what of the sum is the crosshead's, None where that is not known;
+    undivided: the sum was given as one and includes the connecting rod's share.
     """
 
-    parts: float
+    _sum_given = alternative(
+        "mass",
+        "All that goes to and fro, with its share of the connecting rod; instead of the parts",
+        "m",
+        least=0,
+        gives=_sum,
+        key="reciprocating",
+    )
+    _piston = _part("Piston, or a list of pistons", "piston")
+    _piston_rod = _part("Piston rod", "piston_rod")
+    _crosshead = _part("Crosshead", "crosshead")
+    _other = _part("Whatever else goes to and fro", "other")
+    _connecting_rod = alternative(
+        OneOf(Physical("mass", least=0), RecordForm(ConnectingRod)),
+        "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
+        instead="reciprocating",
+        also=("con_rod", "conrod"),
+        gives=_rod,
+        key="connecting_rod",
+    )
+
+    parts: float = 0.0
     connecting_rod: ConnectingRod | None = None
-    rotating: float = 0.0
+    rotating: float = field(
+        "mass",
+        "Unbalanced mass of the crank, as one at its pin, without the connecting rod",
+        "m_rot",
+        default=0.0,
+        least=0,
+        absent="0",
+    )
     crosshead: float | None = None
     undivided: bool = False
 
-    KEYS: ClassVar[Keys] = {
-        "reciprocating": not_negative(
-            "mass", "All that goes to and fro, with its share of the connecting rod; instead of the parts", "m"
-        ),
-        "piston": _part("Piston, or a list of pistons"),
-        "piston_rod": _part("Piston rod"),
-        "crosshead": _part("Crosshead"),
-        "other": _part("Whatever else goes to and fro"),
-        "connecting_rod": Key(
-            OneOf(Physical("mass", least=0), Record(ConnectingRod)),
-            "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
-            instead="reciprocating",
-            also=("con_rod", "conrod"),
-        ),
-        "rotating": not_negative(
-            "mass", "Unbalanced mass of the crank, as one at its pin, without the connecting rod", "m_rot", absent="0"
-        ),
-    }
-
     @classmethod
-    def of_keys(
-        cls,
-        connecting_rod: float | ConnectingRod | None = None,
-        rotating: float | None = None,
-        **parts: float | tuple[float, ...],
-    ) -> "Masses":
-        """Return the masses that these keys of a machine file describe."""
-        sums = {name: total(*part) if isinstance(part, tuple) else part for name, part in parts.items()}
-        if not sums and connecting_rod is None and rotating is None:
-            refused("no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …")
-        if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
-            connecting_rod = ConnectingRod(connecting_rod)
-        crosshead, undivided = sums.get("crosshead"), "reciprocating" in sums
-        return cls(total(*sums.values()), connecting_rod, rotating or 0.0, crosshead, undivided)
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
+        yield Rule((), not given, none)
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""

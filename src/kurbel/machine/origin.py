@@ -14,7 +14,8 @@ _LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a l
 class Origin(NamedTuple):
     """A machine file: the name that messages show, its text, the folder that paths in it are relative to, its bytes.
 
-    overrides: what is set over it, `KEY=VALUE` each; varied: what a row of a sweep sets over both.
+    case: the name of its load case; overrides: what is set over that, `KEY=VALUE` each; varied: what a row of a sweep
+    sets over both.
     """
 
     name: str
@@ -22,6 +23,7 @@ class Origin(NamedTuple):
     folder: str = ""
     content: bytes = b""
     overrides: tuple[str, ...] = ()
+    case: str = ""
     varied: tuple[str, ...] = ()
 
     def set_over(self, overrides: Iterable[str]) -> "Origin":

@@ -1,49 +1,36 @@
 """A piston with the pressures on its two sides."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any
 
-from kurbel.declared.forms import Record, Text, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, refuse
+from kurbel.declared.record import Record, Rule, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Piston(Described):
-    """A piston: bore and rod diameters in m, and what the indicator shows on its two sides."""
+class Piston(Record):
+    """A piston: bore and rods, and what the indicator shows on its two sides."""
 
-    bore: float
-    head_end_rod: float = 0.0
-    crank_end_rod: float = 0.0
-    indicator: Indicator | None = None
-    name: str = "piston"
+    bore: float = field("length", "Diameter of the cylinder", "d", above=0, required=True)
+    head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0, absent="0")
+    crank_end_rod: float = field(
+        "length",
+        "Diameter of the rod through the crank end",
+        default=0.0,
+        least=0,
+        absent="0",
+        also=("piston_rod", "rod_diameter"),
+    )
+    indicator: Indicator | None = field(
+        Indicator, "Pressures on the two sides", absent="no gas force", also=("pressure", "card", "trace")
+    )
+    name: str = field(str, "Name of the piston", default="piston", absent="piston")
 
-    KEYS: ClassVar[Keys] = {
-        "name": Key(Text(), "Name of the piston", absent="piston"),
-        "bore": positive("length", "Diameter of the cylinder", "d", required=True),
-        "head_end_rod": not_negative("length", "Diameter of the rod through the head end", absent="0"),
-        "crank_end_rod": not_negative(
-            "length", "Diameter of the rod through the crank end", absent="0", also=("piston_rod", "rod_diameter")
-        ),
-        "indicator": Key(
-            Record(Indicator),
-            "Pressures on the two sides",
-            absent="no gas force",
-            also=("pressure", "card", "trace"),
-        ),
-    }
-
-    def __post_init__(self) -> None:
-        refuse(
-            *(
-                Fault((key,), f"{show(rod, 'length')} is no thinner than the bore ({show(self.bore, 'length')})")
-                for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod))
-                if rod >= self.bore
-            )
-        )
+    def rules(self) -> Iterator[Rule]:
+        for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod)):
+            yield Rule(key, rod >= self.bore, f"{{{key}}} is no thinner than the bore ({{bore}})")
 
     @property
     def head_area(self) -> float:
@@ -70,11 +57,8 @@ class Piston(Described):
         fits = all(cycle in each for each in given)
         return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
 
-    def indicator_faults(self, cycle: str, ambient: float, path: Path) -> list[Fault]:
-        """Return what of the indicator does not fit the cycle of the machine or the ambient pressure in Pa."""
+    def indicator_rules(self, cycle: str, ambient: Any) -> Iterator[Rule]:
+        """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
-        return [
-            Fault((*path, "indicator", end), message)
-            for end, chamber in self.chambers.items()
-            if (message := chamber.fault_in(cycle, lift))
-        ]
+        for end, chamber in self.chambers.items():
+            yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))

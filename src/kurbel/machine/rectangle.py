@@ -1,10 +1,11 @@
 """Rectangular cards: one pressure on every stroke, or an indicated mean pressure and nothing more."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from kurbel.declared.forms import Physical
+from kurbel.declared.keys import Rule
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import show
@@ -35,11 +36,11 @@ class Rectangle:
             "work and power hold, forces over the angle do not",
         )
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what is below the vacuum; lift makes the pressure absolute, in Pa; or an empty text."""
-        if self.level is None or self.level + lift >= 0:
-            return ""
-        return f"{show(self.level, 'pressure')} is below the vacuum, which is at {show(0.0 - lift, 'pressure')}"
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what is below the vacuum; lift makes the pressure absolute, in Pa."""
+        if self.level is not None:
+            below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
 
 
 class Rectangular(Physical):
@@ -55,5 +56,6 @@ class Rectangular(Physical):
             refused(f"expected {self.expected()}, or a card below it, got '{shown(text)}'")
         return Rectangle(**{self.field: super().parse(text, folder)})
 
-    def numbers(self, texts: Sequence[str]) -> None:
-        """Return nothing: each becomes a card."""
+    def of_numbers(self, numbers: Any) -> Rectangle:
+        """Return the card of many machines, of their pressures (machines,)."""
+        return Rectangle(**{self.field: numbers})

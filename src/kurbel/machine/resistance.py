@@ -1,41 +1,41 @@
 """What the output of a mechanism works against: the ram of a shaper or a press, the rocker of a four-bar."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any
 
-from kurbel.declared.forms import not_negative
-from kurbel.declared.keys import Described, Keys, check
-from kurbel.errors import refused
+from kurbel.declared.record import Record, Rule, field
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class RamForce(Described):
-    """A force in N on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
+class RamForce(Record):
+    """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
-    work: float = 0.0
-    back: float = 0.0
-
-    KEYS: ClassVar[Keys] = {
-        "work": not_negative("force", "Force against the motion on the working stroke", "P_a", absent="0"),
-        "return": not_negative("force", "Force against the motion on the return stroke", "P_r", absent="0"),
-    }
-
-    def __post_init__(self) -> None:
-        check(self.KEYS, {"work": self.work, "return": self.back})
+    work: float = field(
+        "force", "Force against the motion on the working stroke", "P_a", default=0.0, least=0, absent="0"
+    )
+    back: float = field(
+        "force", "Force against the motion on the return stroke", "P_r", default=0.0, least=0, absent="0", key="return"
+    )
 
     @classmethod
-    def of_keys(cls, work: float | None = None, **others: float) -> "RamForce":
-        """Return the resistance that these keys of a machine file describe; raises RuleError where it has none."""
-        if work is None and not others:
-            refused("give 'work', the force on the working stroke, or 'return', or both")
-        return cls(work or 0.0, others.get("return", 0.0))
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Moment(RamForce):
-    """A moment in N m on a member that swings or turns, opposing its motion; what turns has no return stroke."""
+    """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
-    KEYS: ClassVar[Keys] = {
-        "work": not_negative("torque", "Moment against the motion on the working stroke", "M_a", absent="0"),
-        "return": not_negative("torque", "Moment against the motion on the return stroke", "M_r", absent="0"),
-    }
+    work: float = field(
+        "torque", "Moment against the motion on the working stroke", "M_a", default=0.0, least=0, absent="0"
+    )
+    back: float = field(
+        "torque",
+        "Moment against the motion on the return stroke",
+        "M_r",
+        default=0.0,
+        least=0,
+        absent="0",
+        key="return",
+    )

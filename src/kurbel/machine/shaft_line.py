@@ -7,12 +7,10 @@ of the cranks.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
-from kurbel.declared.forms import Listing, Number, OneOf, Text, Truth, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, refuse
+from kurbel.declared.forms import Listing, OneOf, Text
+from kurbel.declared.record import Record, Rule, field
 
 STEEL = 82e9
 """Shear modulus of steel in Pa."""
@@ -24,85 +22,77 @@ _OF_PIECE = ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_f
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ShaftPart(Described):
+class ShaftPart(Record):
     """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None."""
 
-    name: str | None = None
-    inertia: float | None = None
-    cylinder: tuple[str, ...] | None = None
-    load: bool | None = None
-    stiffness: float | None = None
-    diameter: float | None = None
-    length: float | None = None
-    bore: float | None = None
-    shear_modulus: float | None = None
-    loss_factor: float | None = None
-    damping: float | None = None
-    gear: float | None = None
+    name: str | None = field(str, "What the table calls it", absent="the cylinder, or mass 1, mass 2, …")
+    inertia: float | None = field(
+        "inertia",
+        "Moment of inertia of a mass; beside a cylinder, of what turns there besides its moving parts",
+        "J",
+        above=0,
+    )
+    cylinder: tuple[str, ...] | None = field(
+        OneOf(Text(), Listing(Text())),
+        "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
+        "of their reduced inertia over the turn",
+        gives=lambda given: {"cylinder": (one,) if isinstance(one := given["cylinder"], str) else one},
+    )
+    load: bool | None = field(
+        bool, "Whether this mass takes the load", absent="the last; the first if cranks stand at the last"
+    )
+    stiffness: float | None = field("stiffness", "Stiffness of a piece; or give `diameter` and `length`", "k", above=0)
+    diameter: float | None = field(
+        "length", "Diameter of a piece; beside a stiffness it serves the stress alone", "d", above=0
+    )
+    length: float | None = field("length", "Length of a piece", "l", above=0, instead="stiffness", needs="diameter")
+    bore: float | None = field("length", "Bore of a hollow piece", "d_i", least=0, absent="0", needs="diameter")
+    shear_modulus: float | None = field(
+        "stress", "Shear modulus of a piece", "G", above=0, absent="82 GPa, steel", needs="length"
+    )
+    loss_factor: float | None = field(
+        "ratio",
+        "Loss factor of a piece, energy lost over 2π times that stored",
+        "η",
+        least=0,
+        most=2,
+        absent="0",
+    )
+    damping: float | None = field(
+        "damping",
+        "Torque per speed of vibration: of a mass against uniform rotation, of a piece per speed of twist",
+        "c, d",
+        least=0,
+        absent="0",
+    )
+    gear: float | None = field(
+        "ratio", "Speed of what follows in the list over the speed of what stands before it", "u", above=0
+    )
 
-    KEYS: ClassVar[Keys] = {
-        "name": Key(Text(), "What the table calls it", absent="the cylinder, or mass 1, mass 2, …"),
-        "inertia": positive(
-            "inertia",
-            "Moment of inertia of a mass; beside a cylinder, of what turns there besides its moving parts",
-            "J",
-        ),
-        "cylinder": Key(
-            OneOf(Text(), Listing(Text())),
-            "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
-            "of their reduced inertia over the turn",
-        ),
-        "load": Key(
-            Truth(), "Whether this mass takes the load", absent="the last; the first if cranks stand at the last"
-        ),
-        "stiffness": positive("stiffness", "Stiffness of a piece; or give `diameter` and `length`", "k"),
-        "diameter": positive("length", "Diameter of a piece; beside a stiffness it serves the stress alone", "d"),
-        "length": positive("length", "Length of a piece", "l", instead="stiffness", needs="diameter"),
-        "bore": not_negative("length", "Bore of a hollow piece", "d_i", absent="0", needs="diameter"),
-        "shear_modulus": positive("stress", "Shear modulus of a piece", "G", absent="82 GPa, steel", needs="length"),
-        "loss_factor": Key(
-            Number(least=0, most=2), "Loss factor of a piece, energy lost over 2π times that stored", "η", absent="0"
-        ),
-        "damping": not_negative(
-            "damping",
-            "Torque per speed of vibration: of a mass against uniform rotation, of a piece per speed of twist",
-            "c, d",
-            absent="0",
-        ),
-        "gear": Key(Number(above=0), "Speed of what follows in the list over the speed of what stands before it", "u"),
-    }
-
-    @classmethod
-    def of_keys(cls, cylinder: str | tuple[str, ...] | None = None, **keys: object) -> "ShaftPart":
-        """Return the item that these keys of a machine file describe; raises RuleError."""
-        names = (cylinder,) if isinstance(cylinder, str) else cylinder
-        return cls(cylinder=names, **keys)  # type: ignore[arg-type]
-
-    def __post_init__(self) -> None:
-        refuse(*self._faults())
-
-    def _faults(self) -> Iterator[Fault]:
+    def rules(self) -> Iterator[Rule]:
         kinds = {"a mass": _OF_MASS, "a piece of shaft": _OF_PIECE, "a gear": ("gear",)}
         each = [(kind, self._given(keys)) for kind, keys in kinds.items()]
         found = [(kind, keys) for kind, keys in each if keys]
         if len(found) > 1:
             (one, first), (other, second), *_ = found
-            yield Fault((second[0],), f"'{first[0]}' is of {one}, '{second[0]}' of {other}; make two items of them")
+            message = f"'{first[0]}' is of {one}, '{second[0]}' of {other}; make two items of them"
+            yield Rule(second[0], True, message)
         elif not found:
             piece = "'stiffness', or 'diameter' and 'length', of a piece of shaft"
-            yield Fault((), f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")
-        elif self.is_piece and self.stiffness is None and self.length is None:
-            yield Fault((), "the piece has no stiffness: give 'stiffness', or 'diameter' and 'length'")
-        elif self.is_mass and self.inertia is None and self.cylinder is None:
-            yield Fault(("load",), "the mass has no inertia: give 'inertia' or 'cylinder'")
-        if self.gear is not None and self.damping is not None:
-            yield Fault(("damping",), "belongs to a mass or a piece of shaft; a gear has none here")
-        if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
-            bore, diameter = show(self.bore, "length"), show(self.diameter, "length")
-            yield Fault(("bore",), f"{bore} leaves nothing of the diameter ({diameter})")
+            yield Rule((), True, f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")
+        elif self.is_piece:
+            none = self.stiffness is None and self.length is None
+            yield Rule((), none, "the piece has no stiffness: give 'stiffness', or 'diameter' and 'length'")
+        elif self.is_mass:
+            none = self.inertia is None and self.cylinder is None
+            yield Rule("load", none, "the mass has no inertia: give 'inertia' or 'cylinder'")
+        both = self.gear is not None and self.damping is not None
+        yield Rule("damping", both, "belongs to a mass or a piece of shaft; a gear has none here")
+        if self.bore is not None and self.diameter is not None:
+            yield Rule("bore", self.bore >= self.diameter, "{bore} leaves nothing of the diameter ({diameter})")
 
     def _given(self, keys: Sequence[str]) -> list[str]:
-        return [key for key in keys if getattr(self, key) is not None]
+        return [key for key in keys if vars(self)[key] is not None]
 
     @property
     def is_mass(self) -> bool:

@@ -1,20 +1,14 @@
 """What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from kurbel.declared.forms import Number, Points, UnitName, not_negative, positive
-from kurbel.declared.keys import Described, Key, Keys
+from kurbel.declared.forms import Points, UnitName
 from kurbel.declared.kinds import Factor, Point, size_faults
-from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import CYCLES
-
-_TORQUE_KEYS: Keys = {
-    "unit": Key(UnitName("torque"), "Unit of the torques", needs="points"),
-    "points": Key(
-        Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
-    ),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,36 +61,34 @@ class Harmonics:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Load(Described):
+class Load(Record):
     """The resistance at the shaft, in exactly one of three forms.
 
     power: k of a torque ∝ ω^k that equals the mean effort at the nominal speed; slip: s of a torque
     mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn.
     """
 
-    power: float | None = None
-    slip: float | None = None
+    power: float | None = field("ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law")
+    slip: float | None = field(
+        "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
+    )
+    _unit = alternative(UnitName("torque"), "Unit of the torques", needs="points", key="unit")
+    _points = alternative(
+        Points("deg", "torque"),
+        "Torque over the crank angle; two points at one angle are a jump",
+        "M",
+        needs="unit",
+        gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
+        key="points",
+    )
     diagram: Effort | None = None
 
-    KEYS: ClassVar[Keys] = {
-        "power_law": Key(Number(), "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k"),
-        "slip": Key(Number(above=0), "Slip of a grid-tied generator at mean torque; stiff for small slip", "s"),
-        **_TORQUE_KEYS,
-    }
-
-    @classmethod
-    def of_keys(cls, power_law: float | None = None, slip: float | None = None, **points: Any) -> "Load":
-        """Return the load that these keys of a machine file describe; raises RuleError."""
-        return cls(power_law, slip, Effort.of_points(**points) if points else None)
-
-    def __post_init__(self) -> None:
+    def rules(self) -> Iterator[Rule]:
         forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
         given = [name for name, value in forms.items() if value is not None]
-        if not given:
-            refused("give one of 'power_law', 'slip' or 'points'; or write 'load: constant'")
-        if len(given) > 1:
-            names = " and ".join(f"'{name}'" for name in given)
-            refused(f"{names} are different loads; keep one of them", given[1])
+        yield Rule((), not given, "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'")
+        names = " and ".join(f"'{name}'" for name in given)
+        yield Rule((given[1:] or ("",))[0], len(given) > 1, f"{names} are different loads; keep one of them")
 
     def cycle_fault(self, cycle: str) -> str:
         """Return what does not fit the cycle of the machine, or an empty text."""
@@ -104,18 +96,12 @@ class Load(Described):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Coupling(Described):
-    """An elastic coupling: stiffness in N m/rad, damping in N m s/rad, and the driven moment of inertia in kg m²."""
+class Coupling(Record):
+    """An elastic coupling and what it drives."""
 
-    stiffness: float
-    inertia: float
-    damping: float = 0.0
-
-    KEYS: ClassVar[Keys] = {
-        "stiffness": positive("stiffness", "Torque per angle of twist", "k", required=True),
-        "damping": not_negative("damping", "Torque per speed of twist", "d", absent="0"),
-        "inertia": positive("inertia", "Moment of inertia of what is driven", "J_2", required=True),
-    }
+    stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
+    inertia: float = field("inertia", "Moment of inertia of what is driven", "J_2", above=0, required=True)
+    damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0, absent="0")
 
 
 def _angle_faults(points: list[Point], path: Path) -> list[Fault]:

@@ -1,13 +1,12 @@
-"""Records of many machines: numbers that differ among them are `Varied` or, for the solver, arrays (machines,)."""
+"""Records of many machines: numbers that differ among them are arrays (machines,)."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.arrays import Indices
-from kurbel.numerics.varied import Varied, varied
+from kurbel.arrays import Array, Indices, Indivisible
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Lot:
-    """Machines of one kind in one record, with `Varied` for numbers that differ; rows: the row number of each."""
+    """Machines of one structure in one record, with arrays (machines,) for numbers that differ; rows: of each."""
 
     machine: "Machine"
     rows: Sequence[int]
@@ -27,62 +26,27 @@ class Lot:
 
 def values_of(record: Any) -> dict[str, Any]:
     """Return the values of a record by the names of its fields."""
-    return {one.name: getattr(record, one.name) for one in fields(record)}
-
-
-def sort_of(value: Any) -> Hashable:
-    """Return a key that is equal for values that differ in numbers only, and so can be joined."""
-    if type(value) in (float, int):
-        return type(value).__name__
-    if isinstance(value, (tuple, list)):
-        return (type(value), *map(sort_of, value))
-    if is_dataclass(value):
-        return (type(value), *map(sort_of, values_of(value).values()))
-    return value if isinstance(value, str) else id(value)
-
-
-def joined(values: Sequence[Any]) -> Any:
-    """Return values of one sort as one value of many machines; numbers that differ are `Varied`."""
-    first = values[0]
-    if all(one is first for one in values):
-        return first
-    if isinstance(first, (float, int)):
-        return varied(values)
-    if isinstance(first, (tuple, list)):
-        parts = map(joined, zip(*values))
-        return type(first)(*parts) if hasattr(first, "_fields") else type(first)(parts)
-    if is_dataclass(first):
-        return _like(first, {name: joined([vars(one)[name] for one in values]) for name in values_of(first)})
-    return first
+    known = vars(record)
+    return {one.name: known[one.name] for one in fields(record)}
 
 
 def one_of(record: Any, place: int) -> Any:
     """Return the record of one of many machines."""
-    return changed(record, lambda numbers: numbers.values[place].item(), {})
+    return changed(record, lambda numbers: numbers[place].item(), {})
 
 
-def one_kind(record: Any) -> None:
-    """Raise Parted where a number is 0, or infinite, for some machines only: formulas distinguish these."""
-    changed(record, Varied.alike, {})
-
-
-def varies(record: Any, known: dict[int, Any]) -> bool:
-    """Return whether anything differs among the machines of a record; known: cache, by id."""
-    return changed(record, lambda numbers: None, known) is not record
-
-
-def changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
-    """Return a record with every `Varied` changed; an object in several places stays one; known: cache, by id."""
-    if isinstance(record, Varied):
+def changed(record: Any, change: Callable[[Array], Any], known: dict[int, Any]) -> Any:
+    """Return a record with every array (machines,) changed; an object in several places stays one; known: by id."""
+    if isinstance(record, np.ndarray):
         return change(record)
-    if not (isinstance(record, tuple) or is_dataclass(record)):
+    if isinstance(record, Indivisible) or not (isinstance(record, tuple) or is_dataclass(record)):
         return record
     if id(record) not in known:
-        known[id(record)] = _changed(record, change, known)
-    return known[id(record)]
+        known[id(record)] = record, _changed(record, change, known)  # with it, so that no other takes its place
+    return known[id(record)][1]
 
 
-def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]) -> Any:
+def _changed(record: Any, change: Callable[[Array], Any], known: dict[int, Any]) -> Any:
     if isinstance(record, tuple):
         parts = [changed(one, change, known) for one in record]
         if all(one is other for one, other in zip(parts, record)):
@@ -91,6 +55,11 @@ def _changed(record: Any, change: Callable[[Varied], Any], known: dict[int, Any]
     held = values_of(record)
     found = {name: changed(one, change, known) for name, one in held.items()}
     return record if all(one is held[name] for name, one in found.items()) else _like(record, found)
+
+
+def varies(record: Any, known: dict[int, Any]) -> bool:
+    """Return whether anything differs among the machines of a record; known: cache, by id."""
+    return changed(record, lambda numbers: None, known) is not record
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from kurbel.declared.reading import Reading, Tree
-from kurbel.errors import Path, path_text
+from kurbel.errors import Path, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.reader import set_over
@@ -46,3 +46,12 @@ def _short(value: Any) -> str:
     if len(shown) > _MOST:
         return f"[{', '.join(shown[:3])}, …, {shown[-1]}] ({len(shown)} in all)"
     return f"[{', '.join(shown)}]"
+
+
+def case_names(origin: Origin) -> tuple[str, ...]:
+    """Return the names of the load cases of a file; raises UsageError where it has none."""
+    cases = tree_of(origin).get("cases")
+    names = [one.get("name") for one in cases if isinstance(one, dict)] if isinstance(cases, list) else []
+    if not names:
+        raise UsageError("--cases: the file has no 'cases'")
+    return tuple(map(str, names))

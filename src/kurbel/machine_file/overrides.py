@@ -1,13 +1,14 @@
 """Values set from outside over those of a machine file: `KEY=VALUE`, the key dotted, the value as in the file."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, NoReturn
 
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
+from kurbel.near_words import did_you_mean
 
 _NUMBER = "[0-9]{1,9}"
 _FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", re.DOTALL)
@@ -15,18 +16,22 @@ _FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", 
 
 
 class Override(NamedTuple):
-    """One value in place of that of the file: as it was given, where it belongs, and what stands there."""
+    """One value in place of that of the file: as it was given, where it belongs, and what stands there.
+
+    place: where in the file it is given itself, () for one from outside.
+    """
 
     given: str
     path: Path
     value: Any
+    place: Path = ()
 
 
 def read_override(text: str, option: str = "--set") -> Override:
     """Return the override that a text `cylinders.0.bore=450 mm` of an option is; raises UsageError.
 
     >>> read_override("cylinders.0.bore=450 mm")
-    Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm')
+    Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm', place=())
     """
     given = f"{option} {shown(text)}"
     key, equals, value = text.partition("=")
@@ -43,6 +48,19 @@ def read_override(text: str, option: str = "--set") -> Override:
     if reading.faults:
         _refused(given, reading.faults[0].message)
     return Override(given, path, tree)
+
+
+def overrides_of_case(tree: Tree, name: str) -> Iterator[Override]:
+    """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
+    cases: Any = tree.get("cases")
+    listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
+    named = {str(one.get("name")): index for index, one in enumerate(listed)}
+    if name not in named:
+        there = f"there are {', '.join(map(shown, named))}" if named else "the file has no 'cases'"
+        raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
+    values = listed[named[name]].get("set")
+    for key, value in values.items() if isinstance(values, dict) else ():
+        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
 
 
 def _bytes(argument: str) -> bytes:
@@ -141,11 +159,18 @@ def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]
     beside = f" (with {', '.join(one.given for one in overrides)})"
     return [
         next(
-            (fault._replace(override=one.given) for one in overrides if _is_of(fault, one)),
+            (_said_of(fault, one) for one in overrides if _is_of(fault, one)),
             fault._replace(message=fault.message + beside),
         )
         for fault in faults
     ]
+
+
+def _said_of(fault: Fault, one: Override) -> Fault:
+    """Return a fault of an override where that is given."""
+    if one.place:
+        return fault._replace(path=(*one.place, *fault.path[len(one.path) :]))
+    return fault._replace(override=one.given)
 
 
 def _is_of(fault: Fault, one: Override) -> bool:

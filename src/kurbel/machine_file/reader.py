@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of
+from kurbel.declared.forms.records import Maker
+from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of
 from kurbel.errors import Fault
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -23,13 +24,14 @@ ROOT = Record(Machine)
 """The form of a whole machine file."""
 
 
-def load(path: str | os.PathLike[str], overrides: Iterable[str] = ()) -> Machine:
+def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), case: str = "") -> Machine:
     """Return the machine that a file describes; "-" is standard input.
 
-    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`. Raises UsageError for one that
+    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`; case: the name of one of its
+    load cases, over which they are set. Raises UsageError for one that
     cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
     """
-    return read_machine(source.read(path).set_over(overrides))
+    return read_machine(source.read(path)._replace(case=case).set_over(overrides))
 
 
 def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:
@@ -54,34 +56,46 @@ def key_values() -> Mapping[str, Quantity]:
     return by_id(*every_quantity().all_key_values)
 
 
-def read_machine(origin: Origin, reading: Reading | None = None) -> Machine:
-    """Return the machine that a file describes; errors: see `load`; reading: see `reading_of`."""
-    reading = reading or reading_of(origin)
+def read_machine(origin: Origin) -> Machine:
+    """Return the machine that a file describes; errors: see `load`."""
+    machine: Machine = read_values(origin, reading_of(origin)).made
+    name = f"{machine.name}, {origin.case}" if origin.case else machine.name
+    return replace(machine, name=name, origin=origin)
+
+
+def read_values(origin: Origin, reading: Reading) -> Given:
+    """Return what a file says, with the records that were made of it; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
     overrides = set_over(tree, origin)
-    machine = REFUSED if tree is REFUSED else _machine(reading, tree, origin.stem)
+    given = REFUSED if tree is REFUSED else _given(reading, tree, origin.stem)
     if reading.faults:
         raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], overrides))
-    assert isinstance(machine, Machine)
-    return replace(machine, origin=origin)
+    assert isinstance(given, Given)
+    return given
 
 
 def set_over(tree: Any, origin: Origin) -> "list[Override]":
     """Put the overrides of a file into its tree, and return them."""
-    if not (origin.overrides or origin.varied) or not isinstance(tree, dict):
+    if not (origin.case or origin.overrides or origin.varied) or not isinstance(tree, dict):
         return []
-    from kurbel.machine_file.overrides import overridden, read_override
+    from kurbel.machine_file.overrides import overridden, overrides_of_case, read_override
 
-    read = [*map(read_override, origin.overrides), *(read_override(one, "--vary") for one in origin.varied)]
+    read = [
+        *(overrides_of_case(tree, origin.case) if origin.case else ()),
+        *map(read_override, origin.overrides),
+        *(read_override(one, "--vary") for one in origin.varied),
+    ]
     overridden(tree, read)
     return read
 
 
-def _machine(reading: Reading, tree: Any, stem: str) -> Any:
+def _given(reading: Reading, tree: Any, stem: str) -> Any:
     try:
         if isinstance(tree, dict):
-            return ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
+            given = ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
+            Maker(reading).made(given)
+            return given
         if isinstance(tree, Plain) and not tree:
             return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
         return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")

@@ -5,7 +5,7 @@ crank angle has. `Mechanism` lists what a new one must supply.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial, reduce
 from operator import mul
@@ -15,8 +15,8 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Described, Keys
-from kurbel.errors import Fault, UsageError, refuse
+from kurbel.declared.keys import Described, Rule
+from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
@@ -150,8 +150,8 @@ class Sketch:
 class Mechanism(Described):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
-    1. `name`, the word in the machine file, `KEYS`, its keys there, and its geometric rules, raised as RuleError at
-       birth; `crank`, the radius that T is referred to;
+    1. `name`, the word in the machine file, fields that are its keys there, and its geometric rules;
+       `crank`, the radius that T is referred to;
     2. `coordinate`, `slope`, `curvature`: q, dq/dφ and d²q/dφ² at a crank angle, pointwise, so that c = q′ω, b = q″ω²
        and torque = P q′. q is a length in m where the output `slides`, an angle in radians where it only swings. It
        rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`, in the same unit;
@@ -164,7 +164,6 @@ class Mechanism(Described):
     mechanism.
     """
 
-    KEYS: ClassVar[Keys]
     name: ClassVar[str]
     OFFERS: ClassVar[tuple[Offer, ...]] = ()
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = ()
@@ -198,9 +197,10 @@ class Mechanism(Described):
     """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
 
     def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
         own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
         given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
-        required = ("name", "KEYS", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
+        required = ("name", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
         missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
@@ -321,10 +321,12 @@ class Mechanism(Described):
         return ()
 
 
-def check_lengths(**lengths: float | None) -> None:
-    """Raise RuleError for every length that is not positive and finite; None is one that is not given."""
-    wrong = [name for name, value in lengths.items() if value is not None and not 0 < value < math.inf]
-    refuse(*(Fault((name,), "must be a positive, finite length") for name in wrong))
+def finite(record: Described, *names: str) -> Iterator[Rule]:
+    """Yield the rule that these lengths are finite; what is not given is None."""
+    for name in names:
+        value = vars(record)[name]
+        if value is not None:
+            yield Rule(name, np.logical_not(np.isfinite(value)), "must be finite")
 
 
 def on_circle(radius: Any, cos: Any, sin: Any, centre: Point = (0.0, 0.0)) -> Point:

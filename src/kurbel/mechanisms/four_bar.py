@@ -1,15 +1,14 @@
 """Four-bar linkage: the crank-rocker (Bogenschubkurbel), R ch. 14 A, and the drag link, whose rocker turns too."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Keys
+from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
 from kurbel.mechanisms import (
     PIN,
     SHAFT,
@@ -18,7 +17,7 @@ from kurbel.mechanisms import (
     Offer,
     Sketch,
     Turning,
-    check_lengths,
+    finite,
     on_circle,
     on_request,
 )
@@ -119,10 +118,10 @@ class FourBar(Mechanism):
     shorter than the other two (Grashof): no other crank turns fully.
     """
 
-    crank: float
-    coupler: float
-    rocker: float
-    frame: float
+    crank: float = field("length", "Crank radius", "a", above=0, required=True)
+    coupler: float = field("length", "Length of the coupler", "b", above=0, required=True)
+    rocker: float = field("length", "Length of the rocker", "c", above=0, required=True)
+    frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0, required=True)
 
     name: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
@@ -133,18 +132,14 @@ class FourBar(Mechanism):
         _transmission("max", "Largest", 180.0),
     )
     far_pin: ClassVar[str] = "rocker_pin"
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Crank radius", "a", required=True),
-        "coupler": positive("length", "Length of the coupler", "b", required=True),
-        "rocker": positive("length", "Length of the rocker", "c", required=True),
-        "frame": positive("length", "Distance of the rocker's pivot from the shaft", "d", required=True),
-    }
 
-    def __post_init__(self) -> None:
+    def rules(self) -> Iterator[Rule]:
+        yield from finite(self, "crank", "coupler", "rocker", "frame")
         # among equals the crank comes first
-        links = {name: float(getattr(self, name)) for name in ("crank", "frame", "coupler", "rocker")}
-        check_lengths(**links)
-        shortest, *others, longest = sorted(links, key=lambda name: links[name])
+        links = {"crank": self.crank, "frame": self.frame, "coupler": self.coupler, "rocker": self.rocker}
+        if not all(map(math.isfinite, links.values())):
+            return
+        shortest, *others, longest = sorted(links, key=links.__getitem__)
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
         rounding = 2 * math.ulp(links[longest])
@@ -164,7 +159,7 @@ class FourBar(Mechanism):
             message = f"{flat}: {ends} = {pair}"
         else:
             message = f"it cannot turn fully: {ends} is more than {pair} (Grashof)"
-        refused(message, "crank")
+        yield Rule("crank", True, message)
 
     @property
     def turns(self) -> bool:

@@ -3,9 +3,8 @@
 from typing import Any
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Keys, check
-from kurbel.mechanisms import KeyOffer, Offer, check_lengths, own_force, own_motion
+from kurbel.declared.record import field
+from kurbel.mechanisms import KeyOffer, Offer, own_force, own_motion
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity
 
@@ -76,26 +75,21 @@ F_COUPLER = Offer(
 )
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
 
-PIN_KEYS: Keys = {
-    "pin_diameter": positive(
-        "length", "Diameter of the crank pin; needs `pin_length`", "d_z", absent="no pin pressure", needs="pin_length"
-    ),
-    "pin_length": positive(
-        "length",
-        "Length of the crank pin in its block; needs `pin_diameter`",
-        "l_z",
-        absent="same",
-        needs="pin_diameter",
-    ),
-}
+
+def pin_diameter() -> Any:
+    """Return the field of the diameter of the crank pin."""
+    text = "Diameter of the crank pin; needs `pin_length`"
+    return field("length", text, "d_z", above=0, absent="no pin pressure", needs="pin_length")
+
+
+def pin_length() -> Any:
+    """Return the field of the length of the crank pin."""
+    text = "Length of the crank pin in its block; needs `pin_diameter`"
+    return field("length", text, "l_z", above=0, absent="same", needs="pin_diameter")
+
+
 NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 """What a mechanism with a block lacks without its pin, and why."""
-
-
-def check_pin(diameter: float | None, length: float | None) -> None:
-    """Raise RuleError where only one of both is given, or one is not positive and finite."""
-    check(PIN_KEYS, {"pin_diameter": diameter, "pin_length": length})
-    check_lengths(pin_diameter=diameter, pin_length=length)
 
 
 BLOCK_OFFERS = (

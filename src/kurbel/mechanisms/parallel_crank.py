@@ -1,12 +1,12 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import not_negative, positive
-from kurbel.declared.keys import Keys, check
+from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
     PIN,
     SHAFT,
@@ -15,7 +15,7 @@ from kurbel.mechanisms import (
     Offer,
     Sketch,
     Turning,
-    check_lengths,
+    finite,
     on_circle,
     own_motion,
 )
@@ -94,9 +94,9 @@ class ParallelCrank(Mechanism):
     RuleError for lengths that are not positive.
     """
 
-    crank: float
-    frame: float
-    coupler_mass: float | None = None
+    crank: float = field("length", "Radius of both cranks", "R", above=0, required=True)
+    frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0, required=True)
+    coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
 
     name: ClassVar[str] = "parallel-crank"
     slides: ClassVar[bool] = False
@@ -105,20 +105,13 @@ class ParallelCrank(Mechanism):
     swing: ClassVar[None] = None
     OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, *COUPLER_VALUES)
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Radius of both cranks", "R", required=True),
-        "frame": positive("length", "Distance of the shafts; the coupler is as long", "d", required=True),
-        "coupler_mass": not_negative("mass", "Mass of the coupler", "m", absent="no inertia of the coupler"),
-    }
-
     notes: ClassVar[tuple[str, ...]] = (
         "At 0 and 180 deg cranks and coupler lie in one line: one pair alone passes on no torque there and leaves "
         "the motion undetermined; a second pair of cranks at 90 deg to the first carries it through.",
     )
 
-    def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame)
-        check(self.KEYS, {"coupler_mass": self.coupler_mass})
+    def rules(self) -> Iterator[Rule]:
+        return finite(self, "crank", "frame")
 
     def dead_centres(self) -> tuple[float, float]:
         """Return 0° and 180°, where cranks and coupler lie in one line and the motion is undetermined."""

@@ -1,5 +1,6 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -7,11 +8,10 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Keys
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, Sketch, check_lengths, own_force
-from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, PIN_KEYS, check_pin, pin_pressure
-from kurbel.mechanisms.slider_crank import CRANK_KEYS, yoke_sketch
+from kurbel.declared.record import Rule, field
+from kurbel.mechanisms import KeyOffer, Mechanism, Offer, Sketch, finite, own_force
+from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, pin_diameter, pin_length, pin_pressure
+from kurbel.mechanisms.slider_crank import crank_field, stroke_instead, yoke_sketch
 from kurbel.numerics.extreme import Extreme
 
 _N_PAIR = own_force(
@@ -33,23 +33,20 @@ class ScotchYoke(Mechanism):
     Raises RuleError for lengths that are not positive.
     """
 
-    crank: float
-    guide_length: float | None = None
-    pin_diameter: float | None = None
-    pin_length: float | None = None
+    crank: float = crank_field()
+    _stroke = stroke_instead(lambda given: {"crank": given["stroke"] / 2})
+    guide_length: float | None = field(
+        "length",
+        "Distance along the stroke of the two guides that keep the yoke from tilting",
+        "l_g",
+        above=0,
+        absent="no force on the guides",
+    )
+    pin_diameter: float | None = pin_diameter()
+    pin_length: float | None = pin_length()
 
     name: ClassVar[str] = "scotch-yoke"
     known_across: ClassVar[bool] = True
-    KEYS: ClassVar[Keys] = {
-        **CRANK_KEYS,
-        "guide_length": positive(
-            "length",
-            "Distance along the stroke of the two guides that keep the yoke from tilting",
-            "l_g",
-            absent="no force on the guides",
-        ),
-        **PIN_KEYS,
-    }
     OFFERS: ClassVar[tuple[Offer, ...]] = (
         *BLOCK_OFFERS,
         Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), force=lambda state: state.along_rod),
@@ -57,18 +54,13 @@ class ScotchYoke(Mechanism):
     # R p. 615: up to 200 kgf/cm²
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
 
-    @classmethod
-    def of_keys(cls, crank: float | None = None, stroke: float = 0.0, **others: float) -> "ScotchYoke":
-        """Return the Scotch yoke that these keys of a machine file describe; raises RuleError."""
-        return cls(stroke / 2 if crank is None else crank, **others)
-
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block in the yoke."""
         return yoke_sketch(self.crank, angle)
 
-    def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, guide_length=self.guide_length)
-        check_pin(self.pin_diameter, self.pin_length)
+    def rules(self) -> Iterator[Rule]:
+        yield from self.contradictions()
+        yield from finite(self, "crank", "guide_length", "pin_diameter", "pin_length")
 
     @property
     def stroke(self) -> float:

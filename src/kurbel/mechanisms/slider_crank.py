@@ -1,7 +1,7 @@
 """Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -11,20 +11,23 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Number, Physical, positive
-from kurbel.declared.keys import Key, Keys
-from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
+from kurbel.declared.reading import REFUSED
+from kurbel.declared.record import Rule, alternative, field
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 from kurbel.numerics.extreme import Extreme
 
 _INFINITE = (("infinite", math.inf),)
-CRANK_KEYS: Keys = {
-    "crank": positive("length", "Crank radius; or give `stroke`", "R", required=True, example="400 mm"),
-    "stroke": positive("length", "Stroke; or give `crank`", "s", instead="crank"),
-}
-"""The size of the crank, shared by the mechanisms that can be given by their stroke."""
+
+
+def crank_field() -> Any:
+    """Return the field of the crank radius of a mechanism that can be given by its stroke."""
+    return field("length", "Crank radius; or give `stroke`", "R", above=0, required=True, example="400 mm")
+
+
+def stroke_instead(gives: Callable[[Mapping[str, Any]], dict[str, Any]]) -> Any:
+    """Return the entry of the stroke that stands for the crank; gives: the crank, from all values by key."""
+    return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
 
 def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
@@ -62,64 +65,73 @@ class SliderCrank(Mechanism):
     L > R + |e|. Raises RuleError otherwise.
     """
 
-    crank: float
-    rod: float
-    offset: float = 0.0
+    crank: float = crank_field()
+    _stroke = stroke_instead(lambda given: {"crank": _crank_of_stroke(given)})
+    rod: float = field(
+        "length",
+        "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
+        "L",
+        above=0,
+        words=_INFINITE,
+        required=True,
+        also=("con_rod", "conrod", "connecting_rod"),
+    )
+    _rod_ratio = alternative(
+        "ratio",
+        "L/R; or give `rod`",
+        "L/R",
+        above=1,
+        words=_INFINITE,
+        instead="rod",
+        example="5",
+        gives=lambda given: {"rod": given["crank"] * given["rod_ratio"]},
+        key="rod_ratio",
+    )
+    offset: float = field(
+        "length",
+        "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
+        "e",
+        default=0.0,
+        absent="0",
+    )
 
     name: ClassVar[str] = "slider-crank"
     has_rod: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
-    KEYS: ClassVar[Keys] = {
-        **CRANK_KEYS,
-        "rod": Key(
-            Physical("length", above=0, words=_INFINITE),
-            "Length of the connecting rod, or `infinite`; or give `rod_ratio`",
-            "L",
-            required=True,
-            also=("con_rod", "conrod", "connecting_rod"),
-        ),
-        "rod_ratio": Key(Number(above=1, words=_INFINITE), "L/R; or give `rod`", "L/R", instead="rod", example="5"),
-        "offset": Key(
-            Physical("length"),
-            "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
-            "e",
-            absent="0",
-        ),
-    }
 
     @classmethod
-    def of_keys(
-        cls,
-        crank: float | None = None,
-        stroke: float | None = None,
-        rod: float | None = None,
-        rod_ratio: float | None = None,
-        offset: float = 0.0,
-        **others: float,
-    ) -> "SliderCrank":
-        """Return the slider-crank that these keys of a machine file describe; raises RuleError."""
-        if crank is None:
-            assert stroke is not None
-            crank = _crank_of_stroke(stroke, rod, rod_ratio, offset)
-        return cls(crank, rod if rod is not None else crank * (rod_ratio or math.inf), offset, **others)
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
+        if stroke is None or offset is None or REFUSED in (stroke, rod, k, offset):
+            return
+        numbers = {"rod": rod, "offset": offset}
+        if rod is not None:
+            short = np.not_equal(offset, 0) & ((rod - stroke / 2) * (rod + stroke / 2) <= offset * offset)
+            yield Rule("rod", short, "{rod:length} is too short for this stroke and offset", numbers)
+        elif k is not None:
+            square = k * k
+            large = (square - 1) ** 2 < 4 * square * (2 * offset / stroke) ** 2
+            yield Rule("offset", large, "{offset:length} is too large for this stroke and rod_ratio", numbers)
 
-    def __post_init__(self) -> None:
-        if not (0 < self.crank < math.inf and self.rod > 0 and abs(self.offset) < math.inf):
-            refused("crank and rod must be positive, crank and offset finite", "crank")
-        if self.rod != math.inf and total(self.rod, -self.crank, -abs(self.offset)) <= self._rounding:
-            refused(self._too_short(), "rod")
+    def rules(self) -> Iterator[Rule]:
+        crank, rod, offset = self.crank, self.rod, abs(self.offset)
+        apart = np.isfinite(crank) & (rod > 0) & np.isfinite(offset)
+        yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
+        if not np.any(apart):
+            return
+        short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= self._rounding)
+        numbers = {"reach": offset}
+        reach = "{rod} does not reach: it must be longer than crank and offset together ({crank} + {reach:length})"
+        yield Rule("rod", short & np.not_equal(offset, 0), reach, numbers)
+        straight = short & np.equal(offset, 0)
+        fully = "the crank ({crank}); the crank turns fully only with a longer rod"
+        yield Rule("rod", straight & (rod == crank), f"{{rod}} is no longer than {fully}")
+        yield Rule("rod", straight & (rod < crank), f"{{rod}} is shorter than {fully}")
 
     @property
     def _rounding(self) -> float:
         """How far three lengths that add up as people write them may miss each other as floats; two miss by nothing."""
         return ulp(self.rod) + ulp(abs(self.offset)) / 2 if self.offset else 0.0
-
-    def _too_short(self) -> str:
-        rod, crank, offset = (show(value, "length") for value in (self.rod, self.crank, abs(self.offset)))
-        if self.offset:
-            return f"{rod} does not reach: it must be longer than crank and offset together ({crank} + {offset})"
-        relation = "is no longer than" if self.rod == self.crank else "is shorter than"
-        return f"{rod} {relation} the crank ({crank}); the crank turns fully only with a longer rod"
 
     @property
     def rod_length(self) -> float:
@@ -332,20 +344,20 @@ def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:
     return where(cos >= 0, small, large), where(cos >= 0, large, small)
 
 
-def _crank_of_stroke(stroke: float, rod: float | None, rod_ratio: float | None, offset: float) -> Any:
-    """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR."""
-    half = stroke / 2
-    if offset == 0 or math.inf in (rod, rod_ratio):
+def _crank_of_stroke(given: Mapping[str, Any]) -> Any:
+    """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
+    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset", 0.0)
+    length: Any = rod if k is None else k
+    straight = np.equal(offset, 0) | np.isinf(length)
+    if np.all(straight):
         return half
-    if rod is not None:
-        span = (rod - half) * (rod + half)
-        if span <= offset * offset:
-            refused(f"{show(rod, 'length')} is too short for this stroke and offset", "rod")
-        return half * sqrt(1 - offset * offset / span)
-    assert rod_ratio is not None
-    # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
-    square, eps2 = rod_ratio * rod_ratio, (offset / half) ** 2
-    root = (square - 1) ** 2 - 4 * square * eps2
-    if root < 0:
-        refused(f"{show(offset, 'length')} is too large for this stroke and rod_ratio", "offset")
-    return half * sqrt((1 + square + sqrt(root)) / (2 * square))
+    with np.errstate(all="ignore"):
+        if k is None:
+            share = np.sqrt(1 - offset * offset / ((rod - half) * (rod + half)))
+        else:
+            # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
+            square = k * k
+            root = (square - 1) ** 2 - 4 * square * (offset / half) ** 2
+            share = np.sqrt((1 + square + np.sqrt(root)) / (2 * square))
+    crank = np.where(straight, half, half * share)
+    return crank if crank.ndim else float(crank)

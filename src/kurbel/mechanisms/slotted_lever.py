@@ -1,17 +1,24 @@
 """Slotted lever (schwingende Kurbelschleife): the quick return of shapers, R p. 615, and Whitworth's rotating lever."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical, positive
-from kurbel.declared.keys import Key, Keys
+from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
-from kurbel.errors import refused
-from kurbel.mechanisms import PIN, SHAFT, KeyOffer, Mechanism, Offer, Sketch, Turning, check_lengths, on_circle
-from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, PIN_KEYS, SWING_OFFERS, SWING_VALUES, check_pin, pin_pressure
+from kurbel.mechanisms import PIN, SHAFT, KeyOffer, Mechanism, Offer, Sketch, Turning, finite, on_circle
+from kurbel.mechanisms.offers import (
+    BLOCK_OFFERS,
+    NO_PIN,
+    SWING_OFFERS,
+    SWING_VALUES,
+    pin_diameter,
+    pin_length,
+    pin_pressure,
+)
 from kurbel.numerics.arithmetic import bearing, sqrt, where
 from kurbel.numerics.extreme import Extreme
 
@@ -51,54 +58,50 @@ class SlottedLever(Mechanism):
     Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
     """
 
-    crank: float
-    frame: float
-    lever: float | None = None
-    link: float = math.inf
-    ram_height: float | None = None
-    pin_diameter: float | None = None
-    pin_length: float | None = None
+    crank: float = field("length", "Crank radius", "r", above=0, required=True)
+    frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0, required=True)
+    lever: float | None = field(
+        "length", "Length of the lever, pivot to end", "R_l", above=0, absent="angles and times only: no ram"
+    )
+    link: float = field(
+        "length",
+        "Length of the connecting link from the lever's end to the ram",
+        "l",
+        default=math.inf,
+        above=0,
+        words=(("infinite", math.inf),),
+        absent="fork head sliding along the ram",
+    )
+    ram_height: float | None = field(
+        "length",
+        "Height of the ram's line above the lever's pivot; needs `link`",
+        "h",
+        absent="half-way between the highest and the lowest point of the lever's end",
+    )
+    pin_diameter: float | None = pin_diameter()
+    pin_length: float | None = pin_length()
 
     name: ClassVar[str] = "slotted-lever"
     OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *BLOCK_OFFERS)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
     quick_return: ClassVar[bool] = True
-    KEYS: ClassVar[Keys] = {
-        "crank": positive("length", "Crank radius", "r", required=True),
-        "frame": positive("length", "Distance of the lever's pivot from the shaft", "e", required=True),
-        "lever": positive("length", "Length of the lever, pivot to end", "R_l", absent="angles and times only: no ram"),
-        "link": Key(
-            Physical("length", above=0, words=(("infinite", math.inf),)),
-            "Length of the connecting link from the lever's end to the ram",
-            "l",
-            absent="fork head sliding along the ram",
-        ),
-        "ram_height": Key(
-            Physical("length"),
-            "Height of the ram's line above the lever's pivot; needs `link`",
-            "h",
-            absent="half-way between the highest and the lowest point of the lever's end",
-        ),
-        **PIN_KEYS,
-    }
 
-    def __post_init__(self) -> None:
-        check_lengths(crank=self.crank, frame=self.frame, lever=self.lever)
+    def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)
-        if not (self.slides or forked):
-            refused("has no lever's end to hang on; give 'lever' with it", "link")
-        check_pin(self.pin_diameter, self.pin_length)
-        if self.crank == self.frame:
-            same = show(self.crank, "length")
-            refused(f"{same} is also the crank: the pin would pass through the lever's pivot", "frame")
-        if forked and self.ram_height is not None:
-            refused("has no meaning for a fork head; give 'link' with it", "ram_height")
-        if not math.isfinite(self._height):
-            refused("must be finite", "ram_height")
-        if not forked:
-            check_lengths(link=self.link)
-            if fault := self._link_fault():
-                refused(f"{show(self.link, 'length')} {fault}", "link")
+        yield from finite(self, "crank", "frame", "lever")
+        yield from self.contradictions()
+        hanging = not (self.slides or forked)
+        yield Rule("link", hanging, "has no lever's end to hang on; give 'lever' with it")
+        yield from finite(self, "pin_diameter", "pin_length")
+        same = "{frame} is also the crank: the pin would pass through the lever's pivot"
+        yield Rule("frame", self.crank == self.frame, same)
+        fork = forked and self.ram_height is not None
+        yield Rule("ram_height", fork, "has no meaning for a fork head; give 'link' with it")
+        yield from finite(self, "ram_height")
+        lengths = (self.crank, self.frame, self.lever or 0.0, self.ram_height or 0.0)
+        if not hanging and all(map(math.isfinite, lengths)) and self.crank != self.frame:
+            fault = "" if forked else self._link_fault()
+            yield Rule("link", bool(fault), f"{{link}} {fault}")
 
     def _link_fault(self) -> str:
         """Return why the link cannot follow the lever, or an empty text."""

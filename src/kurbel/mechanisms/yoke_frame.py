@@ -4,13 +4,13 @@ Steam and pump piston rod lie in one line, joined by a frame in which rod and cr
 slider-crank; the side force N of the rod finds no guide and bends the piston rod.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import positive
-from kurbel.declared.keys import Keys
-from kurbel.mechanisms import Offer, check_lengths, own_force
+from kurbel.declared.record import Rule, field
+from kurbel.mechanisms import Offer, finite, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 
 _M_BEND = own_force(
@@ -30,7 +30,13 @@ class YokeFrame(SliderCrank):
     None leaves the bending out. Raises RuleError as SliderCrank does, and for a gland that is not positive.
     """
 
-    gland: float | None = None
+    gland: float | None = field(
+        "length",
+        "Distance from the stuffing box to the crosshead pin at the inner dead centre",
+        "l_g",
+        above=0,
+        absent="no bending of the piston rod",
+    )
 
     name: ClassVar[str] = "yoke-frame"
     guided: ClassVar[bool] = False
@@ -41,19 +47,10 @@ class YokeFrame(SliderCrank):
     notes: ClassVar[tuple[str, ...]] = (
         "There is no crosshead guide: the side force N bends the piston rod (R p. 614).",
     )
-    KEYS: ClassVar[Keys] = {
-        **SliderCrank.KEYS,
-        "gland": positive(
-            "length",
-            "Distance from the stuffing box to the crosshead pin at the inner dead centre",
-            "l_g",
-            absent="no bending of the piston rod",
-        ),
-    }
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_lengths(gland=self.gland)
+    def rules(self) -> Iterator[Rule]:
+        yield from super().rules()
+        yield from finite(self, "gland")
 
     def bending_arm(self, angle: CrankAngle) -> Any | None:
         """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.

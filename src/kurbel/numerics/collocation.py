@@ -23,9 +23,9 @@ _NARROWEST = 1e-10
 _FEWEST = 11
 """Nodes of a piece, where its torques need less: what follows a kink needs them."""
 _ROUNDS, _MOST_PIECES = 60, 20_000
-_TAMEST = 12
-"""Hundredfolds of the kinetic energy that are tried for a first solution."""
-_STEP, _SHORTEST, _MOST_STEPS = 0.1, 0.998, 60
+_ENDLESS = 1e24
+"""Times the kinetic energy: with so much any load is followed."""
+_STEP, _SHORTEST, _MOST_STEPS = 1e-4, 0.998, 80
 """Largest and smallest cut of that energy on the way back, and number of cuts."""
 _STANDING = 0.05
 """Of the kinetic energy at y = 0: less than this counts as standing still where the way back ends."""
@@ -275,9 +275,9 @@ class _System:
     def step(self, jump: Array, lack: Array, stiffness: Array) -> Array:
         """Return Newton's step of y: in a piece δ = response + gain δ_start, its last node starts the next one."""
         response, gain = self.inside(lack, stiffness)
-        unit, nothing = np.eye(len(jump)), np.zeros(len(jump))
-        ends, more = self.padded(gain[-1], unit), self.padded(response[-1] + jump[:, self.after].T, nothing)
-        start = around_the_cycle(-ends, np.broadcast_to(unit, ends.shape), more)[self._row, self._place]
+        ends, more = gain[-1], response[-1] + jump[:, self.after].T
+        start = around_the_cycle(self.padded(ends, np.eye(len(jump))), self.padded(more, np.zeros(len(jump))))
+        start = start[self._row, self._place]
         inside = response + (gain @ start[:, :, None])[..., 0]
         return np.asarray(np.concatenate((start[None], inside)).transpose(2, 0, 1))
 
@@ -314,42 +314,35 @@ def _solved(systems: Array, sides: Array) -> Array:
         return np.concatenate([_solved(systems[k : k + 1], sides[k : k + 1]) for k in range(len(systems))])
 
 
-def around_the_cycle(before: Array, after: Array, sides: Array) -> Array:
-    """Return x (n, k, m) with before_i x_i + after_i x_{i+1} = sides_i, x_k being x_0; matrices (n, k, m, m).
+def around_the_cycle(gain: Array, more: Array) -> Array:
+    """Return x (n, k, m) with x_{i+1} = gain_i x_i + more_i, x_k being x_0; gain (n, k, m, m), more (n, k, m).
 
-    Every second x is eliminated by rotations, which hold whether a solution grows or decays along the cycle, until one
-    is left. What the equations leave open there is taken as small as can be. Of what is not finite it is not a number.
+    A single unknown that grows along the cycle is followed backward, where it decays. What the equations leave open is
+    taken as small as can be. Of what is not finite it is not a number.
     """
-    finite = np.asarray(np.isfinite(before).all(axis=(1, 2, 3)) & np.isfinite(sides).all(axis=(1, 2)))
-    given = (np.where(finite.reshape(-1, *(1,) * (one.ndim - 1)), one, 0) for one in (before, after, sides))
-    return np.where(finite[:, None, None], _eliminated(*given), np.nan)
+    finite = np.asarray(np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2)))[:, None, None]
+    gain, more = np.where(finite[..., None], gain, 0.0), np.where(finite, more, 0.0)
+    if more.shape[2] > 1:
+        return np.where(finite, _paired(gain, more), np.nan)
+    grows = (np.log(np.maximum(np.abs(gain[..., 0]), 1e-300)).sum(axis=1) > 0)[:, None]
+    back = 1 / np.where(grows, gain[:, ::-1, :, 0], 1.0)
+    found = _paired(np.where(grows, back, gain[..., 0])[..., None], np.where(grows, -more[:, ::-1] * back, more))
+    return np.where(finite, np.where(grows, np.roll(found[:, ::-1], 1, axis=1), found), np.nan)
 
 
-def _eliminated(before: Array, after: Array, sides: Array) -> Array:
-    count, size = sides.shape[1:]
+def _paired(gain: Array, more: Array) -> Array:
+    """Return the same, forward: pieces are joined in pairs until one is left, whose start is its end."""
+    count, size = more.shape[1:]
     if count == 1:
-        return np.asarray(np.linalg.pinv(before[:, 0] + after[:, 0], rcond=_OPEN) @ sides[..., None][:, 0])[
-            :, None, :, 0
-        ]
-    even, odd = np.s_[:, 0 : count - 1 : 2], np.s_[:, 1:count:2]
-    turn, upper = np.linalg.qr(np.concatenate((after[even], before[odd]), axis=2), mode="complete")
-    rows = np.zeros((*turn.shape[:2], 2 * size, 2 * size + 1))
-    rows[:, :, :size, :size], rows[:, :, :size, -1] = before[even], sides[even]
-    rows[:, :, size:, size:-1], rows[:, :, size:, -1] = after[odd], sides[odd]
-    rows = np.swapaxes(turn, 2, 3) @ rows
-    parts = rows[:, :, size:, :size], rows[:, :, size:, size:-1], rows[:, :, size:, -1]
-    left = [
-        np.concatenate((part, one[:, 2 * part.shape[1] :]), axis=1) for part, one in zip(parts, (before, after, sides))
-    ]
-    found = np.empty_like(sides)
-    found[:, ::2] = _eliminated(*left)
-    following = np.roll(found[:, ::2], -1, axis=1)[:, : turn.shape[1]]
-    ends = np.concatenate((found[even], following), axis=2)
-    rest = rows[:, :, :size, -1:] - rows[:, :, :size, :-1] @ ends[..., None]
-    found[odd] = _solved(upper[:, :, :size].reshape(-1, size, size), rest.reshape(-1, size, 1)).reshape(
-        found[odd].shape
-    )
-    return found
+        closed = np.linalg.pinv(np.eye(size) - gain[:, 0], rcond=_OPEN)
+        return np.asarray(closed @ more[:, 0, :, None])[:, None, :, 0]
+    if count % 2:  # a piece on which nothing changes
+        unit = np.broadcast_to(np.eye(size), gain[:, :1].shape)
+        gain, more = np.concatenate((gain, unit), axis=1), np.concatenate((more, 0 * more[:, :1]), axis=1)
+    (first, second), (early, late) = (gain[:, ::2], gain[:, 1::2]), (more[:, ::2], more[:, 1::2])
+    starts = _paired(second @ first, (second @ early[..., None])[..., 0] + late)
+    middles = (first @ starts[..., None])[..., 0] + early
+    return np.stack((starts, middles), axis=2).reshape(more.shape)[:, :count]
 
 
 def _newton(system: _System, y: Array) -> tuple[Array, Flags]:
@@ -397,27 +390,20 @@ def _newton(system: _System, y: Array) -> tuple[Array, Flags]:
 
 
 def _followed(equation: Equation, start: _Solution) -> tuple[_Solution, Flags, Array]:
-    """Follow the solutions of these machines from a large kinetic energy down to their own.
+    """Follow the solutions of these machines from an endless kinetic energy down to their own.
 
     Returned with them: which machines have settled, and how much more energy the others needed last.
     """
     none = np.zeros(start.pieces.count)
     own = np.maximum(_largest(start.pieces, _System(equation, start.pieces, none).height), 0.0)
-    found, energy, factor = start, np.full_like(own, np.nan), np.full_like(own, _STEP)
-    tame = running = np.isfinite(own) & (own > 0)
-    for hundredfolds in range(1, _TAMEST + 1):
-        if not tame.any():
-            break
-        large = own * 100.0**hundredfolds
-        finer, good = _settled(equation, start.of(tame), np.where(tame, large - own, 0.0))
-        found, energy, tame = found.replaced(finer, good), np.where(good, large, energy), tame & ~good
-    running = running & np.isfinite(energy)
+    running = np.isfinite(own) & (own > 0)
+    found, energy, target, share = start, np.full_like(own, np.nan), own * _ENDLESS, np.full_like(own, _STEP)
     for _ in range(_MOST_STEPS):
-        running &= (energy > own) & (factor <= _SHORTEST)
+        running = running & ~(energy <= own) & (share <= _SHORTEST)
         if not running.any():
             break
-        nearer = np.maximum(energy * factor, own)
-        finer, good = _settled(equation, found.of(running), np.where(running, nearer - own, 0.0))
-        found, energy = found.replaced(finer, good), np.where(good, nearer, energy)
-        factor = np.where(good, np.maximum(factor**1.5, _STEP), np.where(running, np.sqrt(factor), factor))
+        finer, good = _settled(equation, found.of(running), np.where(running, target - own, 0.0))
+        found, energy = found.replaced(finer, good), np.where(good, target, energy)
+        share = np.where(good, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share))
+        target = np.maximum(energy * share, own)
     return found, energy <= own, energy - own

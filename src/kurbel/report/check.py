@@ -58,11 +58,15 @@ def _content(section: Section) -> Hashable:
     return section.cylinder or section.title, entries
 
 
-def checked(case: Case) -> Checked:
-    """Return the check of a machine; key values are computed only as far as it needs."""
+def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
+    """Return the check of a machine, and of its limits in its load cases, computed only as far as it needs."""
     machine = case.machine
-    found = list(judged(case))
-    entries = [one for one in found if isinstance(one, Entry)]
+    found, entries = [], []
+    for one in (case, *cases):
+        own = list(judged(one))
+        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
+        found += own
+        entries += [entry._replace(what=entry.what + of_case) for entry in own if isinstance(entry, Entry)]
     notes = machine_notes(case)
     sections = (
         Section("Machine", tuple(_machine_entries(machine))),

@@ -94,10 +94,9 @@ class Reading:
 
     def _slope(self, after: Array) -> Array:
         """Return dz/dφ of the stroke fraction, so many degrees after the chamber's dead centre."""
-        mechanism, head = self.setting.mechanism, self.setting.head_end
-        inner, outer = mechanism.dead_centres()
-        slope = mechanism.slope(CrankAngle.of(after + (inner if head else outer))) / mechanism.stroke
-        return np.asarray(slope if head else -slope)
+        mechanism = self.setting.mechanism
+        slope = mechanism.slope(CrankAngle.of(after + self.setting.own_dead_centre)) / mechanism.stroke
+        return np.asarray(slope if self.setting.head_end else -slope)
 
     def then(self, corrected: float) -> str:
         """Return p_i as corrected, in Pa, and as it is."""
@@ -317,7 +316,9 @@ def _unit(reading: Reading) -> str:
     factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
-    what = f"{1 / factor:.3g} times too large" if factor < 1 else f"{factor:.3g} times too small"
+    times = max(factor, 1 / factor)
+    what = f"{times:.3g}" if times < 1000 else f"{times:.0f}"
+    what += " times too large" if factor < 1 else " times too small"
     power = math.log10(factor)
     scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (

@@ -6,14 +6,16 @@ p V^n = const of compression and expansion follow.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Flags, Indivisible
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.keys import Rule
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
@@ -36,7 +38,7 @@ class KnownLevel:
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class Trace(Indivisible):
     """A measured trace over one whole cycle, or over many.
 
     angles (n,) in degrees as the trace counts them, rising over 360 or 720; samples (m, n) in Pa, of m laps one after
@@ -101,13 +103,11 @@ class Trace:
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
         return tuple(cycle for cycle, turns in TURNS.items() if 360.0 * turns in joins)
 
-    def fault_in(self, cycle: str, lift: float) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        if cycle in self.cycles:
-            return ""
+    def rules_in(self, cycle: str, lift: float) -> Iterator[Rule]:
+        """Yield what does not fit the cycle of the machine."""
         other = next(name for name in TURNS if name != cycle)
         covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * TURNS[cycle]:g} deg"
-        return f"{covers}; write 'cycle: {other}' at the top"
+        yield Rule((), cycle not in self.cycles, f"{covers}; write 'cycle: {other}' at the top")
 
     def over(self, period: float) -> "Trace":
         """Return it with laps that are cycles of these degrees; a last turn that has no other is left out."""
@@ -153,6 +153,12 @@ class Setting(NamedTuple):
         """What the chamber's figures plus this are absolute pressures, in Pa."""
         return 0.0 if self.absolute else self.ambient
 
+    @property
+    def own_dead_centre(self) -> float:
+        """Crank angle in degrees at which the chamber is smallest."""
+        inner, outer = self.mechanism.dead_centres()
+        return inner if self.head_end else outer
+
     def shift(self, trace: Trace) -> float:
         """Return what is added to an angle of a trace to make it a crank angle, in degrees."""
         inner, outer = self.mechanism.dead_centres()
@@ -160,14 +166,12 @@ class Setting(NamedTuple):
 
     def from_dead_centre(self, trace: Trace) -> Array:
         """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
-        inner, outer = self.mechanism.dead_centres()
-        after = trace.angles + self.shift(trace) - (inner if self.head_end else outer)
+        after = trace.angles + self.shift(trace) - self.own_dead_centre
         return np.asarray(np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2)
 
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
-        inner, outer = self.mechanism.dead_centres()
-        angle = CrankAngle.of(after + (inner if self.head_end else outer))
+        angle = CrankAngle.of(after + self.own_dead_centre)
         displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
         return np.asarray(displaced if self.head_end else 1 - displaced)
 

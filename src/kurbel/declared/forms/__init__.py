@@ -7,7 +7,7 @@ from kurbel.declared.forms.records import Record, Variant
 from kurbel.declared.forms.scalars import Choice, Count, Number, Physical, Truth, UnitName, not_negative, positive
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf
 from kurbel.declared.forms.texts import ColumnRange, FilePath, FiringOrder, Text
-from kurbel.declared.forms.uncertainties import Uncertainties
+from kurbel.declared.forms.uncertainties import Settings, Uncertainties
 
 __all__ = [
     "Alike",
@@ -26,6 +26,7 @@ __all__ = [
     "Physical",
     "Points",
     "Record",
+    "Settings",
     "Text",
     "Truth",
     "Uncertainties",

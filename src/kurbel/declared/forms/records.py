@@ -5,14 +5,17 @@ from collections.abc import Iterable, Iterator
 from importlib import import_module
 from typing import Any, NoReturn
 
+import numpy as np
+
+from kurbel.arrays import Indivisible
 from kurbel.declared.forms.scalars import Choice, reference
 from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
-from kurbel.declared.reading import REFUSED, Birth, Plain, Reading, Tree, glued_hint, kind_of
+from kurbel.declared.reading import REFUSED, Given, Plain, Reading, Tree, glued_hint, kind_of
 from kurbel.errors import Path, RuleError, refused
 from kurbel.near_words import near
 from kurbel.numerics.arithmetic import is_number
 
-_TOO_EXTREME = "these numbers are too large or too small to compute with"
+TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Record(Form):
@@ -97,13 +100,7 @@ class Record(Form):
                 beside = next((given for given in own if given in mapping), "") if inline else ""
                 where = (*path, beside) if beside else path
                 values[name] = reading.fault(where, _missing(name, key, beside), bool(beside))
-        try:
-            born = self._born(reading, values, path)
-        except RuleError as error:
-            return reading.refuse(path, self.flattened(error, mapping))
-        if reading.births is not None:
-            reading.births.append(Birth(self, mapping, path, values, born))
-        return born
+        return Given(self, mapping, path, values)
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the faults of the record as those of its mapping."""
@@ -112,23 +109,13 @@ class Record(Form):
             faults = tuple(key.form.flat(fault, mapping) for fault in faults)
         return RuleError(*faults)
 
-    def _born(self, reading: Reading, values: Tree, path: Path) -> Any:
-        """Make the record, or note what it has to say of single keys where others could not be read."""
-        if REFUSED in values.values():
-            told = {name: reading.partly.get((*path, name), value) for name, value in values.items()}
-            # what is there contradicts the rest whether it could be read or not
-            return reading.refuse(
-                path, RuleError(*contradictions(self.keys, values), *self.load().faults_of_keys(told))
-            )
-        return self.born(values)
-
     def born(self, values: Tree) -> Any:
         """Return the record of these values of its keys; raises RuleError."""
         try:
             born = self.load().from_keys(**values)
         except ArithmeticError:
-            refused(_TOO_EXTREME)
-        return born if _finite(born, values) else refused(_TOO_EXTREME)
+            refused(TOO_EXTREME)
+        return refused(TOO_EXTREME) if too_extreme(born, values) else born
 
     def _unknown(
         self, reading: Reading, mapping: Tree, unknown: list[str], known: tuple[str, ...], path: Path
@@ -215,14 +202,59 @@ def _unknown_message(name: str, meant: str, home: str) -> str:
     return f"does not belong here; {home}" if home else ""
 
 
-def _finite(born: Any, values: Tree) -> bool:
-    """Return whether every number of a record is finite, or infinite by a word of the file or by default."""
-    meant = any(value == math.inf for value in values.values() if is_number(value))
-    return all(
-        abs(value) < math.inf or (value == math.inf and (meant or getattr(type(born), name, 0) == math.inf))
-        for name, value in vars(born).items()
-        if is_number(value)
-    )
+def too_extreme(born: Any, values: Tree) -> Any:
+    """Return whether, or where, a number of a record is not finite, nor infinite by a word or by default."""
+    meant: Any = False
+    for value in values.values():
+        if is_number(value) or isinstance(value, np.ndarray):
+            meant = meant | (value == math.inf)
+    broken: Any = False
+    for name, value in vars(born).items():
+        if isinstance(value, np.ndarray) and not isinstance(born, Indivisible):
+            endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
+            broken = broken | np.logical_not(np.isfinite(value) | endless)
+        elif is_number(value) and not abs(value) < math.inf:
+            broken = broken | np.logical_not(value == math.inf and (meant | (vars(type(born)).get(name) == math.inf)))
+    return broken
+
+
+class Maker:
+    """The second pass: makes the records of what was read, and notes what is wrong with them."""
+
+    def __init__(self, reading: Reading) -> None:
+        self.reading = reading
+
+    def made(self, value: Any, path: Path = ()) -> Any:
+        """Return what a value that was read becomes; REFUSED after noting what is wrong with it."""
+        if isinstance(value, Given):
+            value.made = self._record(value)
+            return value.made
+        if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
+            items = tuple(self.made(one, (*path, index)) for index, one in enumerate(value))
+            if not any(one is REFUSED for one in items):
+                return items
+            self.reading.partly[path] = items
+            return REFUSED
+        return value
+
+    def _record(self, given: Given) -> Any:
+        path, form = given.path, given.form
+        values = {name: self.made(one, (*path, name)) for name, one in given.values.items()}
+        try:
+            if not any(one is REFUSED for one in values.values()):
+                return form.born(values)
+            # what is there contradicts the rest whether it could be read or not
+            partly = self.reading.partly
+            known = {name: self._partly(partly.get((*path, name), one)) for name, one in values.items()}
+            faults = (*contradictions(form.keys, values), *form.load().faults_of_keys(known))
+            return self.reading.refuse(path, RuleError(*faults))
+        except RuleError as error:
+            return self.reading.refuse(path, form.flattened(error, given.mapping))
+
+    def _partly(self, value: Any) -> Any:
+        """Return a list of which some items could not be read, the others made."""
+        items = value if isinstance(value, tuple) else ()
+        return tuple(self.made(one) if isinstance(one, Given) else one for one in items) or value
 
 
 class Variant(Choice):

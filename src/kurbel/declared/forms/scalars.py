@@ -1,11 +1,13 @@
 """Forms of one line: numbers, values with a unit, counts, words, texts."""
 
+import operator
 import re
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
-from operator import ge, gt, le, lt
 from typing import Any
+
+import numpy as np
 
 from kurbel.declared.keys import Form, Key, Schema
 from kurbel.declared.kinds import KINDS, out_of_size, range_of
@@ -87,17 +89,14 @@ class _Bounded(Scalar):
         wrong = self._wrong(value)
         return refused(f"{text} {wrong}") if wrong else value
 
+    @property
+    def is_number(self) -> bool:
+        return True
+
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
         """Return what texts become that are plain numbers within the bounds; None where one is not."""
         found = plain_quantities(texts, self.kind)
-        if found is None:
-            return None
-        from kurbel.numerics.varied import Parted, varied
-
-        try:
-            return None if self._wrong(varied(found)) else found
-        except Parted:
-            return None
+        return None if found is None or self._wrong(np.array(found)) else found
 
     def _wrong(self, value: Any) -> str:
         return self.out_of_bounds(value) or out_of_size(value, self.kind)
@@ -119,17 +118,19 @@ class _Bounded(Scalar):
         >>> Physical("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
-        if self.zero and value == 0:
-            return ""
-        for bound, holds, wrong in (
-            (self.above, gt, "is too small; it must be more than"),
-            (self.least, ge, "is too small; it must be at least"),
-            (self.below, lt, "is too large; it must be less than"),
-            (self.most, le, "is too large; it must be at most"),
+        return next((words for broken, words in self.bounds(value) if np.any(broken)), "")
+
+    def bounds(self, value: Any) -> Iterator[tuple[Any, str]]:
+        """Yield where a number, or each of many, is out of a bound, with the words for it."""
+        for bound, wrong, too, must in (
+            (self.above, operator.le, "small", "more than"),
+            (self.least, operator.lt, "small", "at least"),
+            (self.below, operator.ge, "large", "less than"),
+            (self.most, operator.gt, "large", "at most"),
         ):
-            if bound is not None and is_number(value) and not holds(value, bound):
-                return f"{wrong} {show(bound, self.kind) if bound else '0'}"
-        return ""
+            if bound is not None and (is_number(value) or isinstance(value, np.ndarray)):
+                broken = (wrong(value, bound) | (value != value)) & ((value != 0) | (not self.zero))
+                yield broken, f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
 
     def _or_words(self) -> str:
         return "".join(f" or '{word}'" for word, _ in self.words)
@@ -225,8 +226,9 @@ class Count(_Bounded):
             refused(f"{whole} is not supported; it must be {self.least}")
         return whole
 
-    def numbers(self, texts: Sequence[str]) -> None:
-        """Return nothing: what is no whole number must be told."""
+    @property
+    def is_number(self) -> bool:
+        return False
 
     def expected(self) -> str:
         return "a whole number"

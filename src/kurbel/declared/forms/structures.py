@@ -81,6 +81,13 @@ class OneOf(Form):
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
+    @property
+    def is_number(self) -> bool:
+        return any(form.is_number for form in self.forms)
+
+    def of_numbers(self, numbers: Any) -> Any:
+        return next(form for form in self.forms if form.is_number).of_numbers(numbers)
+
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
         return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
 

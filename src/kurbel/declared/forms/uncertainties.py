@@ -1,4 +1,4 @@
-"""The form of standard uncertainties: dotted keys of the machine file, each with what its value may be off by."""
+"""Forms of mappings by dotted keys of the machine file: standard uncertainties, and the values of a load case."""
 
 import re
 from typing import Any
@@ -37,6 +37,24 @@ class Uncertainties(Form):
                 return text
             value = shown(value)
         return reading.fault(path, f"expected a standard uncertainty above 0, such as {_EXAMPLE}, got {value!r}")
+
+
+class Settings(Form):
+    """A mapping from dotted keys to values that stand there instead; becomes pairs of key and value, as in the file."""
+
+    shape = dict
+
+    def expected(self) -> str:
+        return "a mapping of dotted keys to values, such as 'speed: 60 rpm' or 'cylinders.0.bore: 450 mm'"
+
+    def schema(self, definitions: Schema) -> Schema:
+        return {"type": "object", "minProperties": 1}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Take the values as they are: they are read with the case."""
+        if not isinstance(value, dict) or not value:
+            refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        return tuple(value.items())
 
 
 def spread_text(text: str) -> str:

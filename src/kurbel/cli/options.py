@@ -1,4 +1,4 @@
-"""Options shared by the commands that print a table, and what they mean."""
+"""Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
 import sys
@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from kurbel.cli import readings
-from kurbel.cli.completion import complete_columns, complete_cylinder, complete_override
+from kurbel.declared.numerals import parse_ratio
+from kurbel.declared.unit_systems import told_in
+from kurbel.declared.units import kinds, parse_quantity, written_unit
+from kurbel.errors import KurbelError, UnitError
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.report.tables import Report
 
@@ -19,8 +21,180 @@ if TYPE_CHECKING:
     from kurbel.report.frame import Frame
     from kurbel.solver.case import Case
 
+# --- how the text behind an option is read; what cannot be read is reported with the option
+
 Command = TypeVar("Command", bound=Callable[..., Any])
 Item = TypeVar("Item")
+Value = TypeVar("Value")
+_MOST_STEPS = 10_000
+
+
+def _told(read: Callable[[str], Value], text: str) -> Value:
+    """Return what is read; what the units refuse is told as click tells it."""
+    try:
+        return read(text)
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+def number(text: str | float) -> float:
+    """Return a finite number with a decimal point, also 10/3 or 75 %."""
+    if not isinstance(text, str):  # what stands for it where it is not given
+        return text
+    return _told(parse_ratio, text)
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
+    found = tuple(map(number, text.replace(":", ",").split(",")))
+    if ":" not in text:
+        return found
+    # 3 · 0.1 is written 0.3
+    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5"))
+
+
+def words(text: str) -> tuple[str, ...]:
+    """Return words separated by commas, in the order given, without those that are empty, one at least."""
+    found = tuple(word.strip() for word in text.split(",") if word.strip())
+    if not found:
+        raise click.BadParameter(f"'{text}' names no column; leave the option out, or name one")
+    return found
+
+
+def columns(text: str) -> tuple[str, ...]:
+    """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
+    from kurbel.quantities import every_quantity
+    from kurbel.quantity import ambiguity, called, joined
+
+    named = words(text)
+    known = [column for column in every_quantity().all_columns if column.commands]
+
+    def only(name: str) -> str:
+        found = called(name, known)
+        if wrong := ambiguity(name, found):
+            raise click.BadParameter(wrong)
+        return found[0] if found else name  # the report knows what this machine has
+
+    return tuple(map(only, joined(named, known)))
+
+
+def speeds(text: str) -> tuple[float, ...]:
+    """Return speeds in revolutions per second, in the order given.
+
+    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
+    """
+    each = text.replace(":", ",").split(",")
+    unit = written_unit(each[-1])
+    found = tuple(
+        _told(lambda one: parse_quantity(one, "speed"), one if written_unit(one) else f"{one} {unit}".strip())
+        for one in each
+    )
+    if ":" in text:
+        found = _stepped(found, text, "300:1500:10 rpm")
+    if not all(speed > 0 for speed in found):
+        raise click.BadParameter(f"'{text}': a speed is more than 0")
+    return found
+
+
+def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, ...]:
+    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
+        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
+    low, high, step = found
+    count = (high - low) / step
+    if count > _MOST_STEPS:
+        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
+    return tuple(low + step * index for index in range(int(count + 1e-9) + 1))
+
+
+def spread(text: str) -> tuple[str, str]:
+    """Return a dotted key with its standard uncertainty as a text."""
+    from kurbel.declared.forms.uncertainties import spread_text
+
+    key, _, size = text.partition("=")
+    if not (key.strip() and spread_text(size)):
+        raise click.UsageError(f"--uncertainty {text}: write KEY=SPREAD, above 0, such as bore='0.2 mm'.")
+    return key.strip(), spread_text(size)
+
+
+# --- what a shell completes, looked up when TAB is pressed
+
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+# a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
+_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
+
+
+def shipped() -> dict[str, str]:
+    """Return the machines that come with kurbel: the path of each file by its name."""
+    folder = next(filter(os.path.isdir, _PLACES))
+    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
+    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
+
+
+def _beginning(words: Iterable[str], begun: str, before: str = "") -> list[str]:
+    return [before + word for word in words if word.startswith(begun)]
+
+
+def complete_key(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the keys of the machine file that begin like this."""
+    from kurbel.report.keys import every_place
+
+    return _beginning(every_place(), incomplete)
+
+
+def complete_kind(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the kinds of quantities that begin like this."""
+    return _beginning(kinds(), incomplete)
+
+
+def complete_override(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the keys for `KEY=VALUE`, each with its equals sign; of a value nothing."""
+    return [] if "=" in incomplete else [f"{key}=" for key in complete_key(ctx, param, incomplete)]
+
+
+def complete_columns(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the columns of the command that may follow those named already."""
+    from kurbel.quantities import every_quantity
+
+    named, comma, begun = incomplete.rpartition(",")
+    known = [one for one in every_quantity().columns(ctx.info_name or "") if one not in named.split(",")]
+    return _beginning(known, begun, named + comma)
+
+
+def complete_example(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the shipped machines that begin like this."""
+    return _beginning(shipped(), incomplete)
+
+
+def complete_cylinder(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the cylinders of the machine file on the line; none where it cannot be read."""
+    machine = _machine_of(ctx)
+    return _beginning((one.name for one in machine.cylinders), incomplete) if machine else []
+
+
+def complete_case(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the load cases of the machine file on the line; none where it cannot be read."""
+    machine = _machine_of(ctx)
+    return _beginning((one.name for one in machine.cases), incomplete) if machine else []
+
+
+def _machine_of(ctx: click.Context) -> "Machine | None":
+    from kurbel.machine_file import load
+
+    file = next(iter(ctx.args), "")  # a line that ends in an option is not read to its end
+    try:
+        return load(file) if file and file != "-" else None
+    except KurbelError:
+        return None
+
+
+def complete_picture(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the pictures that begin like this."""
+    from kurbel.report.pictures import PICTURES
+
+    return _beginning((*(one.id for one in PICTURES), "all"), incomplete)
+
+
+# --- the options
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +222,14 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
     return decorate
 
 
+case_option = click.option(
+    "--case",
+    "case_name",
+    default="",
+    metavar="NAME",
+    shell_complete=complete_case,
+    help="This load case of FILE; --set sets values over those of the case.",
+)
 set_option = click.option(
     "--set",
     "overrides",
@@ -56,20 +238,22 @@ set_option = click.option(
     shell_complete=complete_override,
     help="This value instead of that of FILE, such as cylinders.0.bore='450 mm'; may be repeated.",
 )
-machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_option)
+set_options = stacked(case_option, set_option)
+"""Values over those of a file: those of a load case of it, and others over these."""
+machine_file = stacked(click.argument("file", metavar="FILE", type=click.Path(allow_dash=True)), set_options)
 """The machine file, or - for standard input, and values over those in it."""
 
 angle_options = stacked(
     click.option(
         "--step",
-        type=readings.number,
+        type=number,
         default=10.0,
         metavar="DEGREES",
         help="Step of the crank angle; 10 if not given.",
     ),
     click.option(
         "--angles",
-        type=readings.numbers,
+        type=numbers,
         metavar="A,B,...",
         help="These crank angles in degrees instead of a step; or FROM:TO:STEP.",
     ),
@@ -78,7 +262,7 @@ angle_options = stacked(
 
 columns_option = click.option(
     "--columns",
-    type=readings.columns,
+    type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=complete_columns,
@@ -131,12 +315,12 @@ _look_options = stacked(
 
 orders_option = click.option(
     "--orders",
-    type=readings.numbers,
+    type=numbers,
     metavar="A,B,...",
     help="Only these orders, periods per turn of the shaft, or FROM:TO:STEP; all up to 24 if not given.",
 )
 speeds_option = click.option(
-    "--speeds", type=readings.speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."
+    "--speeds", type=speeds, metavar="'A,B,... rpm'", help="Also at these speeds; or 'FROM:TO:STEP rpm'."
 )
 where_option = click.option(
     "--where", metavar="'COLUMN = VALUE'", help="Rows where a column has a value, such as 'b = 1/6 b_max'."
@@ -151,7 +335,7 @@ row_options = stacked(
 uncertainty_option = click.option(
     "--uncertainty",
     "spreads",
-    type=readings.spread,
+    type=spread,
     multiple=True,
     metavar="KEY=SPREAD",
     help="Standard uncertainty of a value of FILE, such as bore='0.2 mm' or '2 %'; may be repeated.",
@@ -214,15 +398,15 @@ def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts:
     return angles
 
 
-def loaded(file: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
-    """Read the machine, with these values over those of its file.
+def loaded(file: str, case_name: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
+    """Read the machine, with the values of a load case of its file, '' for none, and these values over them.
 
     Raises UsageError where an output would overwrite its file, or a trace that it names.
     """
     from kurbel.machine_file import load
     from kurbel.render.output import refuse_overwriting
 
-    machine = load(file, overrides)
+    machine = load(file, overrides, case_name)
     for output in outputs:
         refuse_overwriting(output, (file, *machine.trace_files))
     return machine
@@ -240,6 +424,7 @@ class Asked:
     """
 
     file: str
+    case_name: str
     overrides: tuple[str, ...]
     units: str
     cylinder: str | None
@@ -256,7 +441,7 @@ class Asked:
         """Read the machine and return it with its results, none of which is computed yet."""
         from kurbel.solver.case import Case
 
-        return Case(loaded(self.file, self.overrides, self.output.file_name))
+        return Case(loaded(self.file, self.case_name, self.overrides, self.output.file_name))
 
     def frame(self, command: str, end: float, parts: int = 1) -> "Frame":
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
@@ -312,8 +497,6 @@ def _with_asked(command: Callable[..., None]) -> Callable[..., None]:
     def with_asked(units: str | None, output: Output, **options: Any) -> None:
         system = units or ("si" if output.look.format in ("csv", "json") else "metric")
         own = {name: options.pop(name) for name in Asked.__annotations__ if name in options}
-        from kurbel.declared.unit_systems import told_in
-
         with told_in(units or "metric"):
             command(asked=Asked(units=system, output=output, **own), **options)
 

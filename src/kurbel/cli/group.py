@@ -1,0 +1,232 @@
+"""The group of commands, and the one place where errors become messages and exit statuses."""
+
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import StringIO
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from kurbel import __version__
+from kurbel.errors import KurbelError, MachineFileError
+from kurbel.near_words import did_you_mean
+
+if TYPE_CHECKING:
+    from kurbel.render.text import Charset
+
+# before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+SUMMARIES = {
+    "table": "Zusammenstellung 112 for any L/R; needs no machine file.",
+    "motion": "Displacement, velocity, acceleration of any mechanism.",
+    "forces": "Forces, work and friction loss of every cylinder.",
+    "flywheel": "Turning effort, flywheel and speed line of the machine.",
+    "stress": "Bearing forces and stresses of the crankshaft.",
+    "bearings": "Loads on pins and main bearings.",
+    "balance": "Free forces and moments, counterweights.",
+    "harmonics": "Orders of the turning effort, gas and inertia apart.",
+    "torsion": "Torsional vibration of the shaft line.",
+    "plot": "Pictures, in the terminal or as SVG, PNG, PDF.",
+    "report": "Everything on one page of HTML; two machines side by side.",
+    "sweep": "Key values of many designs of a machine.",
+    "accuracy": "Error against run time; stiff and extreme cases.",
+    "friction": "Body on an inclined plane; needs no machine file.",
+    "check": "Read and check a machine file and its limits.",
+    "example": "List the shipped machines, or print one.",
+    "keys": "The keys of the machine file, or one of them in full.",
+    "units": "The units of every kind of quantity.",
+    "schema": "JSON Schema of the machine file, for editors, or of the answers.",
+}
+"""The commands in the order in which `kurbel --help` lists them."""
+COMMANDS = tuple(SUMMARIES)
+
+_DEBUG = "KURBEL_DEBUG"
+
+DONE, BROKEN, WRONG, NO_SOLUTION, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
+
+_MEANINGS = {
+    DONE: "done",
+    BROKEN: "a limit is broken (check) or a case failed (accuracy --extremes)",
+    WRONG: "wrong usage or input, or the output cannot be written",
+    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance",
+    INTERNAL: "a fault in kurbel",
+    INTERRUPTED: "interrupted",
+}
+
+
+_OF_SOME = {
+    BROKEN: ("kurbel", "check", "accuracy"),
+    NO_SOLUTION: (
+        *("kurbel", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+        *("plot", "check", "accuracy"),
+    ),
+}
+"""Statuses that only some commands return."""
+
+
+def exit_statuses(command: str) -> str:
+    """Return the last sentence of the help of a command, or of `kurbel` itself."""
+    return "Exit status: " + "; ".join(
+        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if command in _OF_SOME.get(status, (command,))
+    )
+
+
+class Context(click.Context):
+    """The context of a command, which asks for the width of the terminal only where help or usage is written."""
+
+    def make_formatter(self) -> click.HelpFormatter:
+        # click itself fills no less than 50 columns
+        self.terminal_width = max(30, min(get_terminal_size().columns, 80))
+        return super().make_formatter()
+
+
+class _Kurbel(click.Group):
+    """The group, which ends every run with a message instead of a traceback."""
+
+    context_class = Context
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        name = args[0]
+        if name in COMMANDS or name.startswith("-"):
+            return super().resolve_command(ctx, args)
+        raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
+
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        with _silent_interrupt():
+            return super().make_context(*args, **extra)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        with _silent_interrupt():
+            return super().invoke(ctx)
+
+    def main(self, *args: Any, **extra: Any) -> NoReturn:
+        _prepare_streams()
+        warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
+        try:
+            status = super().main(*args, **(extra | {"standalone_mode": False}))
+        except click.ClickException as error:
+            status = _failed(_shown(error), error.exit_code)
+        except click.Abort:
+            status = INTERRUPTED
+        except SystemExit:  # click's answer to a reader of its help that leaves early
+            status = DONE
+        except KurbelError as error:
+            status = _failed(message_of(error), error.exit_status)
+        except (OverflowError, FloatingPointError, RuntimeWarning) as error:
+            beyond = f"these numbers lead beyond what can be computed with ({error})"
+            status = _failed(f"Error: {beyond}; check the sizes of what the file gives", KurbelError.exit_status)
+        except OSError as error:
+            status = _output_failed(error)
+        except Exception as error:
+            if os.environ.get(_DEBUG):
+                raise
+            status = _failed(
+                f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
+                f"Please report it; {_DEBUG}=1 shows where it happened.",
+                INTERNAL,
+            )
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+@contextmanager
+def _silent_interrupt() -> Iterator[None]:
+    """End with an interrupt before click answers it with an empty line, which may fail."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise click.Abort from None
+    except RuntimeError as error:
+        # what Python before 3.12 makes of one that comes while attributes of a class are named
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise click.Abort from None
+        raise
+
+
+def _prepare_streams() -> None:
+    """Let no message fail because standard error is closed or an encoding lacks one of its characters."""
+    sys.stderr = sys.stderr or StringIO()
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _shown(error: click.ClickException) -> str:
+    text = StringIO()
+    error.show(text)
+    return text.getvalue()
+
+
+def message_of(error: KurbelError) -> str:
+    """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
+    if not isinstance(error, MachineFileError):
+        return f"Error: {error}"
+    from kurbel.render.text import width
+
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
+
+
+def _stderr_charset() -> "Charset":
+    from kurbel.render.text import Charset
+
+    return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
+
+
+def _failed(message: str, status: int) -> int:
+    """Write what went wrong and return the status, which stays the same where standard error is full or closed."""
+    to_stderr(message)
+    return status
+
+
+def to_stderr(message: str) -> None:
+    """Write a message to standard error, in characters that it has; nothing where it is full or closed."""
+    try:
+        click.echo("\n".join(_stderr_charset().text(line) for line in message.splitlines()), err=True)
+    except (OSError, ValueError):
+        from kurbel.render.output import silence
+
+        silence(sys.stderr)
+
+
+def _output_failed(error: OSError) -> int:
+    from kurbel.render.output import silence
+
+    silence(sys.stdout)
+    named = f"{error.filename}: " if error.filename else ""
+    return _failed(f"Error: {named}{error.strerror or error}", WRONG)
+
+
+@click.group(
+    cls=_Kurbel,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=exit_statuses("kurbel"),
+)
+@click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
+def kurbel() -> None:
+    """Calculate crank drives: motion, forces, friction, flywheel and crankshaft of piston machines.
+
+    A machine is described in a YAML file, every value with its unit; kurbel answers in the tables and
+    symbols of the old machine-element books. Start with
+
+    \b
+      kurbel table                              the factors of any slider-crank
+      kurbel example                            the machines that come with kurbel
+      kurbel example waterworks > engine.yaml   take one as a pattern
+      kurbel check engine.yaml                  what will be computed, what is left out
+      kurbel motion engine.yaml                 displacement, velocity, acceleration
+      kurbel forces engine.yaml                 forces and key values
+      kurbel flywheel engine.yaml               turning effort, flywheel, speed
+      kurbel balance engine.yaml                free forces and moments, counterweights
+      kurbel plot --list                        the pictures that there are
+      kurbel plot engine.yaml                   the one that says most
+      kurbel report engine.yaml -o report.html  everything on one page
+
+    Results go to standard output, everything else to standard error.
+    """

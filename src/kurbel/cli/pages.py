@@ -1,0 +1,248 @@
+"""The commands that draw, write a whole page, or compare methods: plot, report, accuracy."""
+
+import os
+import sys
+import time
+from threading import Timer
+from typing import TYPE_CHECKING
+
+import click
+
+from kurbel.cli.options import (
+    Output,
+    complete_cylinder,
+    complete_picture,
+    loaded,
+    number,
+    number_options,
+    numbers,
+    output_options,
+    set_options,
+    units_option,
+)
+from kurbel.render import Look
+
+if TYPE_CHECKING:
+    from kurbel.accuracy.inexact import Difference
+    from kurbel.machine import Machine
+    from kurbel.report.pictures import PictureKind
+
+_PATIENCE = 1.0
+"""Seconds after which a terminal is told what is being done."""
+
+
+@click.command()
+@click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@set_options
+@click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
+@click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@units_option
+@number_options
+def report(
+    files: tuple[str, ...],
+    case_name: str,
+    overrides: tuple[str, ...],
+    file_name: str | None,
+    step: float,
+    units: str | None,
+    decimal: str,
+    digits: int | None,
+) -> None:
+    """Write all that the machine in FILE has to one page: input, pictures, tables, key values, limits, energy balance.
+
+    The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
+    with their differences. --set holds for each of them. FILE may be - for standard input.
+    """
+    from kurbel.machine_file.given import given
+    from kurbel.render.output import refuse_overwriting, write_out
+    from kurbel.render.report_page import report_page
+    from kurbel.report.whole import side_by_side, whole_report
+    from kurbel.solver.case import Case
+
+    if len(files) > 2 or files.count("-") > 1:
+        raise click.UsageError("a report is of one machine, or of two side by side.")
+    if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
+        raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    for file in files:
+        refuse_overwriting(file_name, (file,))
+    with Progress("kurbel report") as progress:
+        progress("reading and checking")
+        cases = [Case(loaded(file, case_name, overrides, file_name)) for file in files]
+        keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+        system = units or "metric"
+        if len(cases) == 1:
+            document = whole_report(cases[0], keys[0], system, step, progress)
+        else:
+            document = side_by_side(cases, keys, system, progress)
+        progress("writing")
+        look = Look("html", comma=decimal == "comma", digits=digits)
+        write_out(report_page(document, look, _today()), file_name, "utf-8")
+
+
+def _today() -> str:
+    """Return the date; SOURCE_DATE_EPOCH decides it where a page must come out the same every time."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    seconds = float(epoch) if epoch.isdecimal() else time.time()
+    return time.strftime("%Y-%m-%d", time.gmtime(seconds) if epoch.isdecimal() else time.localtime(seconds))
+
+
+class Progress:
+    """Called with what is done next; a terminal is told so from the second on, also in its midst; a pipe is not."""
+
+    def __init__(self, command: str) -> None:
+        self._command = command
+        self._doing = ""
+        self._late = False
+        self._timer: Timer | None = None
+
+    def __enter__(self) -> "Progress":
+        if sys.stderr.isatty():
+            self._timer = Timer(_PATIENCE, self._tell)
+            self._timer.daemon = True
+            self._timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._timer:
+            self._timer.cancel()
+
+    def __call__(self, doing: str) -> None:
+        self._doing = doing
+        if self._late:
+            self._tell()
+
+    def _tell(self) -> None:
+        self._late = True
+        click.echo(f"{self._command}: {self._doing} …", err=True)
+
+
+@click.command()
+@click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
+@set_options
+@click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
+@click.option(
+    "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
+)
+@click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
+@click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
+@click.option(
+    "--cylinder", metavar="NAME", help="Only of this cylinder, by name or number.", shell_complete=complete_cylinder
+)
+@units_option
+@number_options
+@click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
+def plot(
+    file: str | None,
+    case_name: str,
+    overrides: tuple[str, ...],
+    names: tuple[str, ...],
+    listed: bool,
+    file_name: str | None,
+    angles: tuple[float, ...] | None,
+    cylinder: str | None,
+    units: str | None,
+    decimal: str,
+    digits: int | None,
+    width: int | None,
+) -> None:
+    """Draw pictures of the machine in FILE: those that are named, 'all', or the one that says most.
+
+    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
+    they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
+    and pdf need typst. FILE may be - for standard input.
+    """
+    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.report.picture_source import PictureOptions
+    from kurbel.report.pictures import PICTURES, pictures, pictures_of
+    from kurbel.solver.case import Case
+
+    if listed and file_name is not None:
+        raise click.UsageError("--list draws nothing; leave --output out.")
+    if file is None:
+        if not listed:
+            raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
+        _write_list(PICTURES)
+        return
+    to_file = file_name is not None and file_name != "-"
+    if to_file:
+        check_file(file_name or "")
+    case = Case(loaded(file, case_name, overrides, file_name))
+    options = PictureOptions(units or "metric", cylinder, angles)
+    if listed:
+        _write_list(pictures_of(case, options))
+        return
+    look = Look(comma=decimal == "comma", digits=digits, width=width)
+    drawn = pictures(case, names, options)
+    if to_file:
+        draw_file(list(drawn), look, file_name or "")
+    else:
+        draw_stdout(drawn, look)
+
+
+def _write_list(declared: "tuple[PictureKind, ...]") -> None:
+    from kurbel.render.page import write_entries
+
+    write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])
+
+
+@click.command()
+@click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
+@set_options
+@click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
+@click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
+@click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Draw the picture too.")
+@output_options
+def accuracy(
+    file: str | None,
+    case_name: str,
+    overrides: tuple[str, ...],
+    quick: bool,
+    extremes: bool,
+    picture: str | None,
+    output: Output,
+) -> int:
+    """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
+
+    Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
+    and come from other methods than kurbel's. Numerical errors, errors of the model (the formulas of the book) and
+    errors of the data (0.1 deg of dead centre, 0.5 % noise, what the file gives as 'uncertainty') stand apart; the last
+    section says what leaving out saves.
+    """
+    if (case_name or overrides) and file is None:
+        raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
+    if extremes:
+        return _extremes(file, picture, output)
+    from kurbel.render.drawing import check_file, draw_file
+
+    if picture is not None:
+        check_file(picture, "--plot")
+    from kurbel.machine_file import loads
+    from kurbel.report.accuracy import accuracy_report
+
+    machine = None if file is None else loaded(file, case_name, overrides, output.file_name, picture)
+    report = accuracy_report(machine, quick, loads, _uncertain(machine))
+    output.write(report)
+    if picture is not None:
+        from kurbel.report.accuracy_picture import accuracy_picture
+
+        draw_file([accuracy_picture(report)], output.look, picture)
+    return 0
+
+
+def _uncertain(machine: "Machine | None") -> "tuple[Difference, ...]":
+    if not (machine and machine.uncertainty):
+        return ()
+    from kurbel.designs.uncertainty import data_uncertainty
+
+    return data_uncertainty(machine)
+
+
+def _extremes(file: str | None, picture: str | None, output: Output) -> int:
+    if file is not None or picture is not None:
+        raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
+    from kurbel.machine_file import loads
+    from kurbel.report.accuracy import extremes_report
+
+    report, passed = extremes_report(loads)
+    output.write(report)
+    return int(not passed)

@@ -1,0 +1,196 @@
+"""Commands that need no machine: tables of the books, shipped machines, and what a machine file may hold."""
+
+import json
+import math
+
+import click
+
+from kurbel.cli.options import (
+    Output,
+    angle_options,
+    complete_example,
+    complete_key,
+    complete_kind,
+    crank_angles,
+    number,
+    output_options,
+    shipped,
+    units_option,
+    words,
+)
+from kurbel.declared.units import kinds, unit_names
+from kurbel.errors import UsageError
+from kurbel.near_words import did_you_mean
+
+
+def _ratio(text: str) -> float:
+    return math.inf if text in ("inf", "infinite") else number(text)
+
+
+@click.command()
+@click.option(
+    "--ratio",
+    "ratios",
+    type=_ratio,
+    multiple=True,
+    metavar="L/R",
+    help="Rod length over crank radius, such as 5, or inf; may be repeated. 5, 4.5 and 4 if not given.",
+)
+@click.option(
+    "--rows",
+    "--columns",
+    "rows",
+    type=words,
+    default="b,c",
+    metavar="ROW,ROW,...",
+    help="Of b, c, x, psi, S, N, D; b,c if not given.",
+)
+@click.option(
+    "--formula",
+    type=click.Choice(["book", "exact", "first-order"]),
+    default="book",
+    help="book: acceleration of first order, all else exact. first-order: b, c and x, the others exact.",
+)
+@click.option(
+    "--compare", is_flag=True, help="Set the figures that the book prints below the computed ones; mark misprints."
+)
+@angle_options
+@units_option
+@output_options
+def table(
+    ratios: tuple[float, ...],
+    rows: tuple[str, ...],
+    formula: str,
+    compare: bool,
+    step: float,
+    angles: tuple[float, ...] | None,
+    units: str | None,  # factors and degrees are the same in all of them
+    output: Output,
+) -> None:
+    """Print Zusammenstellung 112: factors of the straight slider-crank over the crank angle.
+
+    \b
+      b    b over v^2/R         cos phi + R/L cos 2phi
+      c    c over v, T over P   sin(phi+psi)/cos psi
+      x    x over R
+      psi  angle between connecting rod and stroke line
+      S    rod force over piston force    1/cos psi
+      N    guide force over piston force  tan psi
+      D    radial force over piston force cos(phi+psi)/cos psi
+
+    v is the crank-pin speed, R the crank radius, L the rod length.
+    """
+    from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
+
+    ratios = ratios or RATIOS
+    printed = crank_angles(step, angles, 180, len(ratios))
+    output.write(zusammenstellung(ratios, rows, printed, formula, compare))
+
+
+@click.command()
+@click.option("--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal.")
+@click.option("--coefficient", type=number, required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
+@click.option(
+    "--direction",
+    type=number,
+    default=0.0,
+    metavar="DEGREES",
+    help="Direction of the force above the plane; along the plane if not given.",
+)
+@output_options
+def friction(incline: float, coefficient: float, direction: float, output: Output) -> None:
+    """Print the force P, over the weight Q, that moves a body up an inclined plane, and that holds it there.
+
+    After Redtenbacher 1862: in the direction that is asked for, and horizontally, where P = Q tan(alpha +- rho) with
+    tan rho = f. A negative holding force is one that must push the body down: it rests by its friction alone.
+    """
+    from kurbel.report.friction import inclined_plane
+
+    output.write(inclined_plane(incline, coefficient, direction))
+
+
+@click.command()
+@click.argument("name", required=False, shell_complete=complete_example)
+@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+def example(name: str | None, file_name: str | None) -> None:
+    """List the machines that come with kurbel, or print the file of the machine NAME.
+
+    \b
+      kurbel example waterworks > engine.yaml
+      kurbel example waterworks | kurbel forces -
+    """
+    from kurbel.render.output import write_out
+    from kurbel.render.page import write_entries
+
+    files = shipped()
+    if name is None:
+        first_lines = {each: _read(path).partition("\n")[0].lstrip("# ") for each, path in files.items()}
+        write_entries(list(first_lines.items()), file_name)
+        return
+    bare = name.removesuffix(".yaml")
+    if bare not in files:
+        known = ", ".join(files)
+        raise UsageError(f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {known})")
+    write_out((_read(files[bare]),), file_name, "utf-8")
+
+
+def _read(path: str) -> str:
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+@click.command()
+@click.argument("key", required=False, shell_complete=complete_key)
+def keys(key: str | None) -> None:
+    """List the keys of a machine file: what is written, what it means, what holds without it; or KEY in full.
+
+    \b
+      kurbel keys
+      kurbel keys masses.connecting_rod.share
+    """
+    from kurbel.render.page import write_entries
+    from kurbel.report.keys import every_place, places_at
+
+    if key is None:
+        write_entries([(path, ones[0].line) for path, ones in every_place().items()])
+    else:
+        write_entries([line for one in places_at(key) for line in one.full])
+
+
+@click.command()
+@click.argument("kind", required=False, shell_complete=complete_kind)
+def units(kind: str | None) -> None:
+    """List the units that a machine file may use, a line for each kind of quantity; or only those of KIND.
+
+    Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
+    """
+    from kurbel.render.page import write_entries
+
+    named = {kind.replace("_", " "): ", ".join(unit_names(kind)) for kind in kinds()}
+    if kind is None:
+        write_entries(list(named.items()))
+    elif found := named.get(kind.replace("_", " ")):
+        write_entries([(kind.replace("_", " "), found)])
+    else:
+        hint = did_you_mean(kind, tuple(named)) or f"; there are {', '.join(named)}"
+        raise UsageError(f"no kind of quantity '{kind}'{hint}")
+
+
+@click.command()
+@click.option("--answers", is_flag=True, help="The schema of what -f json prints instead, for programs.")
+@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+def schema(answers: bool, file_name: str | None) -> None:
+    """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.
+
+    \b
+      kurbel schema > kurbel.schema.json
+      first line of a machine file:
+      # yaml-language-server: $schema=./kurbel.schema.json
+    """
+    from kurbel.machine_file.schema import json_schema
+    from kurbel.render.data import answer_schema
+    from kurbel.render.output import write_out
+
+    # escapes instead of Greek: valid in whatever encoding a shell redirects to
+    text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"
+    write_out((text,), file_name, "utf-8")

@@ -1,0 +1,113 @@
+"""Load cases: what they set, where their faults are shown, and that the limits are checked in all of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+import kurbel as api
+from kurbel.cli import kurbel
+from kurbel.errors import MachineFileError, UsageError
+
+PUMP = """\
+speed: 50 rpm
+crank: 400 mm
+rod: 2 m
+bore: 450 mm
+indicator: {head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}
+limits: {c_max: 3 m/s}
+cases:
+  - {name: full speed, set: {speed: 80 rpm}}
+  - name: half the pressure
+    set:
+      indicator.head_end.constant.compression: 1.5 bar
+      crank_end_rod: 100 mm
+"""
+
+
+@pytest.fixture
+def pump(tmp_path: Path) -> Path:
+    (tmp_path / "pump.yaml").write_text(PUMP, encoding="utf-8")
+    return tmp_path / "pump.yaml"
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(kurbel, [str(one) for one in arguments])
+
+
+def test_a_case_is_the_file_with_its_values(pump: Path) -> None:
+    """Speeds are proportional to the speed of rotation, and the work of the card to its pressure."""
+    plain, fast = (api.solve(api.load(pump, case=name)) for name in ("", "full speed"))
+    assert fast["c_max"].value == pytest.approx(1.6 * plain["c_max"].value, rel=1e-14)
+    half = api.solve(api.load(pump, case="half the pressure"))
+    assert half["work"].value == pytest.approx(plain["work"].value / 2, rel=1e-14)
+    assert half.machine.cylinders[0].pistons[0].crank_end_rod == 0.1
+    assert half.machine.name == "pump, half the pressure"
+
+
+def test_set_stands_over_the_case_and_vary_over_both(pump: Path) -> None:
+    set_over = run("motion", pump, "--case", "full speed", "--set", "speed=100 rpm", "--key-values", "-f", "json")
+    found = run("sweep", pump, "--case", "full speed", "--vary", "rod=2 m", "--columns", "c_max", "-f", "csv")
+    varied = run("sweep", pump, "--case", "full speed", "--vary", "speed=100 rpm", "--columns", "c_max", "-f", "csv")
+    key_values = json.loads(set_over.stdout)["cylinders"][0]["key_values"]
+    of_set = next(one["value"] for one in key_values if one["id"] == "c_max")
+    assert float(varied.stdout.splitlines()[1].split(",")[2]) == pytest.approx(of_set, rel=1e-15)
+    assert float(found.stdout.splitlines()[1].split(",")[2]) == pytest.approx(0.8 * of_set, rel=1e-14)
+
+
+def test_check_holds_the_limits_in_every_case(pump: Path) -> None:
+    result = run("check", pump)
+    assert result.exit_code == 1
+    lines = [" ".join(line.split()) for line in result.stdout.splitlines() if "c_max" in line]
+    assert [line.split(" m/s")[0].rpartition(" ")[0] for line in lines] == [
+        "c_max",
+        "c_max, full speed",
+        "c_max, half the pressure",
+    ]
+    assert [("BROKEN" in line) for line in lines] == [False, True, False]
+    assert run("check", pump, "--case", "half the pressure").exit_code == 0
+
+
+def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
+    result = run("sweep", pump, "--cases", "--vary", "rod=2,0.3,3 m", "--columns", "c_max", "-f", "csv")
+    rows = [line.split(",") for line in result.stdout.splitlines()]
+    assert rows[0][:3] == ["row", "case", "rod_m"]
+    assert [row[1] for row in rows[1:]] == ["full speed"] * 3 + ["half the pressure"] * 3
+    assert rows[2][-1].startswith("rod: 300 mm is shorter than the crank (400 mm)")
+    for row in (1, 3):
+        assert float(rows[row][3]) == pytest.approx(1.6 * float(rows[row + 3][3]), rel=1e-14)
+
+
+def test_faults_are_shown_where_the_case_has_them(pump: Path) -> None:
+    pump.write_text(PUMP.replace("80 rpm", "80 rmp").replace("crank_end_rod", "crank_end_rodd"), encoding="utf-8")
+    api.load(pump)  # the machine itself is sound
+    with pytest.raises(MachineFileError, match=r"pump\.yaml:8:37: cases\[0\]\.set\.speed: unknown speed"):
+        api.load(pump, case="full speed")
+    with pytest.raises(MachineFileError, match=r"cases\[1\]\.set\.crank_end_rodd: unknown key; did you mean"):
+        api.load(pump, case="half the pressure")
+    assert run("check", pump).exit_code == 2
+
+
+def test_a_case_that_there_is_not(pump: Path) -> None:
+    with pytest.raises(UsageError, match="no such load case; did you mean 'full speed'"):
+        api.load(pump, case="full sped")
+    with pytest.raises(UsageError, match="the file has no 'cases'"):
+        api.load("configs/waterworks.yaml", case="full speed")
+    assert "--cases: the file has no 'cases'" in run("sweep", "configs/waterworks.yaml", "--cases").stderr
+
+
+@pytest.mark.parametrize(
+    ("cases", "message"),
+    [
+        ("[{name: a, set: {speed: 60 rpm}}, {name: a, set: {speed: 70 rpm}}]", r"two cases are called 'a'"),
+        ("[{name: a}]", r"'set' is missing"),
+        ("[{name: a, set: {}}]", r"expected a mapping of dotted keys to values"),
+        ("{a: {speed: 60 rpm}}", r"expected a list"),
+    ],
+)
+def test_what_is_no_case(cases: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=message):
+        api.loads(f"{{crank: 400 mm, rod: 2 m, cases: {cases}}}")
