@@ -96,11 +96,11 @@ def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> N
     result = run(short, "--orders", "--width", "200")
     rows = [line.split() for line in result.stdout.splitlines()]
     assert [row[0] for row in rows if len(row) > 4 and row[0].isdigit()][:24] == ["1", *map(str, range(2, 48, 2))]
-    (note,) = (line for line in result.stdout.splitlines() if "More orders follow, from n = 48 on" in line)
-    assert "of the force they are at most " in note
-    assert note.endswith(" kN, of the moment 0 N m, together.")
+    (note,) = (line for line in result.stdout.splitlines() if "more orders follow, from n = 48 on" in line)
+    assert "together at most " in note
+    assert note.endswith(" kN of the force, 0 N m of the moment.")
     assert len(result.stdout.splitlines()) < 100
-    assert "More orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
+    assert "more orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
 
 
 def test_a_column_by_name() -> None:
@@ -128,7 +128,7 @@ def test_pins_that_are_not_shared_are_told() -> None:
         "name: A,", "name: A, axial_position: 0 mm,"
     )
     for result in (run(apart, "--width", "300"), CliRunner().invoke(kurbel, ["check", "-"], input=apart)):
-        assert "A and B stand at one place along the shaft, but their throws 30 deg apart" in " ".join(
+        assert "A and B are at one place along the shaft, but their throws are 30 deg apart" in " ".join(
             result.stdout.split()
         )
     shared = V90.replace("name: A,", "name: A, axial_position: 0 mm,")

@@ -143,7 +143,7 @@ def test_a_critical_speed_without_a_torque_is_said_to_be_beyond_the_machine() ->
     critical, notes = table(result, "critical_speeds"), " ".join(result["notes"])
     beyond = [speed > 1.2 * 110 / 60 for speed in critical["speed"]]
     assert [torque is None for torque in critical["M_vibratory"]] == beyond
-    assert "– stands where the machine does not come, beyond 1.2 times the working speed" in notes
+    assert "– marks a speed that the machine does not reach, beyond 1.2 times the working speed" in notes
     within = parsed("torsion", SHIP, "--orders", "6", "--modes", "1")
     assert "– stands" not in " ".join(within["notes"])
 
@@ -224,7 +224,7 @@ REFUSED = [
     ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
     ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
     ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
-    ("harmonics", BLOWER, ("--set", "speed=0 rpm", "--speeds", "5 rpm"), "--speeds: the inertia forces are told from"),
+    ("harmonics", BLOWER, ("--set", "speed=0 rpm", "--speeds", "5 rpm"), "--speeds: the inertia forces are scaled"),
 ]
 
 
@@ -252,10 +252,7 @@ def test_an_undamped_resonance_beside_a_damper_elsewhere_has_no_solution() -> No
     )
     result = run("torsion", "-", text=text)
     assert (result.exit_code, result.stdout) == (3, "")
-    assert (
-        "an order of the torque meets a natural vibration that next to nothing damps: give it 'damping'"
-        in result.stderr
-    )
+    assert "an order of the torque meets a natural vibration that is hardly damped: give 'damping'" in result.stderr
     beside = parsed("torsion", "-", "--set", "speed=5.5 rad/s", text=text)
     torques = table(beside, "critical_speeds")["M_vibratory"]
     assert torques[0] is None  # order 1 with mode 1
@@ -276,7 +273,7 @@ def test_what_only_rounding_bounds_has_a_dash() -> None:
     assert None not in torques[0][:3]
     assert torques[1] is None or torques[1][:3] == [None] * 3
     told = " ".join(run("torsion", "-", text=text.replace("LOSS", "1e-12")).stdout.split())
-    assert "and where next to nothing damps the mode" in told
+    assert "and a mode that is hardly damped" in told
 
 
 STALLS = """

@@ -26,7 +26,7 @@ from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 
-LARGEST = 600_000
+LARGEST = 500_000
 ATTACK = "<script>alert(1)</script> \x1b[31m & \"'"
 
 
@@ -290,4 +290,4 @@ def test_equal_cylinders_are_told_once_in_the_input() -> None:
     case = case_of("v8-cross-plane")
     told = checked(case)
     assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.told_once if one.cylinder] == ["left 1–4, right 1–4"]
+    assert [one.title for one in told.shown_once if one.cylinder] == ["left 1–4, right 1–4"]

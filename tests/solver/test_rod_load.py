@@ -126,7 +126,7 @@ def test_a_sum_of_masses_is_taken_whole_and_that_is_said() -> None:
 
 
 def test_api_618_is_quoted_where_either_half_of_its_rule_is_broken() -> None:
-    assert "API 618 asks for 15 deg and 3 %" in " ".join(run("check", "-", file=RLO5).stdout.split())
+    assert "API 618 requires 15 deg and 3 %" in " ".join(run("check", "-", file=RLO5).stdout.split())
     assert "asks for 15 deg" not in run("check", "-", file=RLO1).stdout
 
 

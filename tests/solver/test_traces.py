@@ -507,7 +507,7 @@ def test_samples_too_far_apart_are_told() -> None:
         (part,) = forces_report(
             Case(Machine((Cylinder(CRANK, pistons=(piston,)),))), Frame("forces", [0.0], None, "si")
         ).parts
-        return any("the samples stand too far apart" in warning for warning in part.warnings)
+        return any("the samples are too far apart" in warning for warning in part.warnings)
 
     coarse = [(a, float(smooth(a))) for a in range(0, 361, 60)]
     fine = [(a, float(smooth(a))) for a in range(0, 361, 5)]

@@ -115,7 +115,7 @@ def _as_text(outcomes: list[_Outcome], look: Look) -> Iterator[str]:
     for number, outcome in enumerate(outcomes):
         if outcome.checked:
             sections = [
-                (one.title, [(entry.what, entry.text) for entry in one.entries]) for one in outcome.checked.told_once
+                (one.title, [(entry.what, entry.text) for entry in one.entries]) for one in outcome.checked.shown_once
             ]
             several = f"{outcome.file}: " if len(outcomes) > 1 else ""
             yield "\n" * (number > 0) + listing(several + outcome.checked.title, sections, look)

@@ -25,7 +25,6 @@ from kurbel.render import Look
 if TYPE_CHECKING:
     from kurbel.accuracy.inexact import Difference
     from kurbel.machine import Machine
-    from kurbel.report.pictures import PictureKind
 
 _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
@@ -152,37 +151,31 @@ def plot(
     and pdf need typst. FILE may be - for standard input.
     """
     from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.page import write_entries
     from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
     from kurbel.solver.case import Case
 
     if listed and file_name is not None:
         raise click.UsageError("--list draws nothing; leave --output out.")
-    if file is None:
-        if not listed:
-            raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
-        _write_list(PICTURES)
-        return
-    to_file = file_name is not None and file_name != "-"
-    if to_file:
-        check_file(file_name or "")
-    case = Case(loaded(file, case_name, overrides, file_name))
+    if file is None and not listed:
+        raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
+    if file_name == "-":
+        file_name = None
+    if file_name is not None:
+        check_file(file_name)
     options = PictureOptions(units or "metric", cylinder, angles)
-    if listed:
-        _write_list(pictures_of(case, options))
+    case = None if file is None else Case(loaded(file, case_name, overrides, file_name))
+    if case is None or listed:
+        kinds = PICTURES if case is None else pictures_of(case, options)
+        write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
     drawn = pictures(case, names, options)
-    if to_file:
-        draw_file(list(drawn), look, file_name or "")
-    else:
+    if file_name is None:
         draw_stdout(drawn, look)
-
-
-def _write_list(declared: "tuple[PictureKind, ...]") -> None:
-    from kurbel.render.page import write_entries
-
-    write_entries([(one.id, f"{one.title}. {one.text}") for one in declared])
+    else:
+        draw_file(list(drawn), look, file_name)
 
 
 @click.command()

@@ -13,10 +13,10 @@ from kurbel.render.text import BLANK, Line, Piece, folded, line, right, width
 from kurbel.report.picture import Curve, Panel, Picture
 
 # lengths in columns; a row is as high as two columns are wide
-TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5)
+TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5, shortest=13.5, tallest=59.5)
 _WIDTH, _NARROWEST, _WIDEST = 80, 24, 160
-_TALL, _SHORT, _LEAST, _MOST = 32.0, 20.0, 14.0, 60.0
-"""Height of a panel alone and of one among several, and bounds of one with equal scales."""
+_TALL, _SHORT = 32.0, 20.0
+"""Height of a panel alone and of one among several."""
 LETTERS = "*+ox#@"
 """What draws a curve of each look where there is no Braille."""
 _BLANK = 0x2800
@@ -87,7 +87,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
 
     def framed(side: int) -> PanelFrame:
-        return PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1], _LEAST - dot[1], _MOST - dot[1])
+        return PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
 
     texts = [] if panel.plain else [text for _, text in framed(0).ticks_up(int(tall / 4))]
     side = max(map(width, texts), default=-1) + 1
@@ -114,8 +114,8 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
     # the lines to compare with first, so that curves are over them
     for curve, role in sorted(drawn, key=lambda one: one[1] != "rule"):
         for x, y in (*curve.pieces(), *curve.jumps()):
-            across, down = frame.place(x, y)
-            canvas.line(across / dot[0], down / dot[1], role)
+            places = frame.place(x, y)
+            canvas.line(places.real / dot[0], places.imag / dot[1], role)
     for shade in () if panel.curves else panel.shades:
         left, right_ = frame.x.place(shade.x[[0, -1]]) / dot[0]
         ends = frame.y.place(np.array([shade.low[0], shade.high[0]])) / dot[1]

@@ -19,7 +19,7 @@ from kurbel.render.text_tables import (
     sentence_text,
     sheets,
 )
-from kurbel.report.alike import told_once
+from kurbel.report.alike import shown_once
 from kurbel.report.tables import Report
 
 _ON_PAPER = 9
@@ -196,7 +196,7 @@ Writer = Markdown | Html | Latex
 
 def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
     """Yield the report piece by piece; equal cylinders appear once."""
-    report = told_once(report)
+    report = shown_once(report)
     yield out.title.format(out.text(look.charset.text(report.title)))
     yield from (out.paragraph.format(out.sentence(look.charset.text(text))) for text in report.head)
     for table in _tables(report, look, out.across):

@@ -16,7 +16,7 @@ from kurbel.render.text_tables import (
     sentence_text,
     sheets,
 )
-from kurbel.report.alike import told_once
+from kurbel.report.alike import shown_once
 from kurbel.report.tables import KeyValue, PlaceTable, Report
 
 _NINE = 9  # angles to a block: the book breaks after 80°
@@ -28,7 +28,7 @@ _NARROWEST = 24  # below this a sentence is folded under its head instead of nex
 
 def page(report: Report, look: Look) -> Iterator[Line]:
     """Yield the lines of the whole page."""
-    report = told_once(report)
+    report = shown_once(report)
     yield from (line(one, "title") for one in folded(look.charset.text(report.title), look.width))
     yield from (line(one) for text in report.head for one in folded(look.charset.text(text), look.width))
     for sheet in sheets(report, look):

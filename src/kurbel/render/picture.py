@@ -10,13 +10,14 @@ from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
 from kurbel.render.numbers import angle, decimal, single
 from kurbel.render.text import width
-from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Words
+from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Shade, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 _MOST_MARKED = 12
+_AROUND = np.array([-1.0, 0.0, 1.0])
 LOOKS = 6
 """Different colours and strokes of curves."""
 
@@ -133,7 +134,7 @@ class Medium(NamedTuple):
     """Sizes in the units of a medium, points or columns: width of a character, height of a line, radius of a mark.
 
     grain: width and height of the cells of a grid on which labels look for free ground; covering: how far a label moves
-    away rather than cover one cell of a curve.
+    away rather than cover one cell of a curve; shortest, tallest: bounds of the height of a panel with equal scales.
     """
 
     letter: float
@@ -141,48 +142,45 @@ class Medium(NamedTuple):
     dot: float
     grain: tuple[float, float]
     covering: float
+    shortest: float
+    tallest: float
 
 
 class Label(NamedTuple):
-    """A text between left and right, the point that it names, and its own place next to that point.
+    """A text that names a point x + iy; look: of the curve that it names; led: a line leads to it where it is far.
 
-    look: of the curve that it names; far: whether a line must lead to it.
+    Once it is placed it is between left and right, below top; lead: the end of that line.
     """
 
     text: str
-    left: float
-    right: float
-    top: float
-    point: tuple[float, float]
-    end: tuple[float, float]
-    far: bool
+    point: complex
     look: int | None = None
+    led: bool = False
+    left: float = 0.0
+    right: float = 0.0
+    top: float = 0.0
+    lead: complex | None = None
 
 
 class PanelFrame:
-    """A panel in a rectangle; places count rightward and downward from its upper left corner.
+    """A panel in a rectangle; places x + iy count rightward and downward from its upper left corner.
 
-    tall: its height; with equal scales the height follows from the width, between shortest and tallest.
+    tall: its height; with equal scales the height follows from the width.
     """
 
-    def __init__(
-        self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float, shortest: float, tallest: float
-    ) -> None:
+    def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         x, y = scales(panel)
         if panel.equal:
             across, up = x.high - x.low, y.high - y.low
-            tall = min(max(wide * up / across, shortest), tallest)
+            tall = min(max(wide * up / across, medium.shortest), medium.tallest)
             spare = max(across / wide, up / tall) * np.array([wide, tall]) - (across, up)
             x, y = (one._replace(low=one.low - more / 2, high=one.high + more / 2) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
-        # how often curves cross a cell of the grid, and whether a label has it
-        shape = [math.ceil((size - medium.dot) / cell) for size, cell in zip((tall, wide), medium.grain[::-1])]
-        self._crossed, self._taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
 
-    def place(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
-        return self.x.place(x), self.y.place(y)
+        return np.asarray(self.x.place(x) + 1j * self.y.place(y))
 
     def ticks_across(self, most: int, start: float, end: float) -> list[tuple[float, float, str]]:
         """Return the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
@@ -208,85 +206,93 @@ class PanelFrame:
         return [(float(self.y.place(value)), text) for value, text in zip(values, texts)]
 
     def labels(self, named: bool) -> list[Label]:
-        """Return the labels of lines to compare with, of marks and of shades; named: of several other curves, too."""
-        panel = self.panel.at_moment(0)
-        tracks = [self._track(curve) for curve in panel.curves]
-        for track in tracks:
-            self._occupy(self._crossed, track)
-        points = [self.place(mark.x, mark.y) for mark in panel.marks]
-        reach = np.array([-1.0, 0.0, 1.0]) * self.medium.dot
-        for x, y in points:
-            self._occupy(self._taken, np.add.outer(x + reach, 1j * (y + reach)).ravel())
-        faint = [curve for curve in panel.curves if curve.kind == "faint" and curve.name.symbol]
-        found = [self._nearest(symbol(one.name, self.look), *self.place(one.x[-1], one.y[-1])) for one in faint]
-        found += self._names(panel, tracks) if named else []
-        for mark, (x, y) in list(zip(panel.marks, points))[:_MOST_MARKED]:
-            found.append(self._nearest(figure_text(mark.figure, self.look), x, y, led=True))
-        found += self._figures()
-        return [label for label in found if label]
+        """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.
 
-    def _names(self, panel: Panel, tracks: list[ComplexArray]) -> Iterator[Label | None]:
+        Each is on the nearest ground that no other label has and no curve crosses; without room it is left out.
+        """
+        panel, look, medium = self.panel.at_moment(0), self.look, self.medium
+        tracks = [self._track(curve) for curve in panel.curves]
+        faint = [curve for curve in panel.curves if curve.kind == "faint" and curve.name.symbol]
+        wanted = [Label(symbol(one.name, look), complex(self.place(one.x[-1], one.y[-1]))) for one in faint]
+        wanted += self._names(panel, tracks) if named else []
+        points = [complex(self.place(mark.x, mark.y)) for mark in panel.marks]
+        marks = [Label(figure_text(one.figure, look), point, led=True) for one, point in zip(panel.marks, points)]
+        wanted += marks[:_MOST_MARKED]
+        wanted += self._works(panel.shades)
+
+        # on a grid: which cells curves cross, and which labels and marks have
+        wide, tall = medium.grain
+        shape = math.ceil((self.tall - medium.dot) / tall), math.ceil((self.wide - medium.dot) / wide)
+        crossed, taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
+        reach = np.add.outer(_AROUND, 1j * _AROUND).ravel() * medium.dot
+        for grid, places in ((crossed, tracks), (taken, [point + reach for point in points])):
+            for one in places:
+                row, column = np.floor(one.imag / tall).astype(int), np.floor(one.real / wide).astype(int)
+                inside = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
+                grid[row[inside], column[inside]] = 1
+        placed = [self._on_free_ground(label, crossed, taken) for label in wanted]
+        return [label for label in placed if label]
+
+    def _track(self, curve: Curve) -> ComplexArray:
+        """Return places along a curve, no farther apart than a quarter of a cell."""
+        across, down = (size / 4 for size in self.medium.grain)
+        pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
+        found = [dense(one.real / across, one.imag / down) for one in pieces if one.size]
+        return np.concatenate([x * across + 1j * y * down for x, y in found])
+
+    def _names(self, panel: Panel, tracks: list[ComplexArray]) -> Iterator[Label]:
         """Yield the symbol of each force, and of each of several curves where it is farthest from the others."""
-        for curve in (one for one in panel.curves if one.kind == "arrow"):
-            yield self._nearest(symbol(curve.name, self.look), *self.place(curve.x[1], curve.y[1]))
+        for curve in panel.curves:
+            if curve.kind == "arrow":
+                yield Label(symbol(curve.name, self.look), complex(self.place(curve.x[1], curve.y[1])))
         tracks = [track[::4] for track in tracks]
         lines = [one for one in zip(panel.curves, looks_of(panel), tracks) if one[0].kind in ("line", "dots")]
         for curve, look, own in lines if len(lines) > 1 else ():
             others = np.concatenate([track for other, _, track in lines if other is not curve])
-            best = own[np.abs(own[:, None] - others).min(axis=1).round(6).argmax()]
-            label = self._nearest(symbol(curve.name, self.look), best.real, best.imag)
-            yield label and label._replace(look=look)
+            farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
+            yield Label(symbol(curve.name, self.look), complex(own[farthest]), look)
 
-    def _figures(self) -> Iterator[Label | None]:
+    def _works(self, shades: Sequence[Shade]) -> Iterator[Label]:
         """Yield what is written into shades: their figures, or the names alone where not each figure has the room."""
-        shades = [(shade, shade.figure) for shade in self.panel.shades if shade.figure]
-        texts = [figure_text(figure, self.look) for _, figure in shades]
-        rooms = [np.ptp(self.x.place(shade.x)) for shade, _ in shades]
+        written = [(shade, shade.figure) for shade in shades if shade.figure]
+        texts = [figure_text(figure, self.look) for _, figure in written]
+        rooms = [np.ptp(self.x.place(shade.x)) for shade, _ in written]
         if any(width(text) * self.medium.letter > room for text, room in zip(texts, rooms)):
-            texts = [symbol(figure.name, self.look) for _, figure in shades]
-        for (shade, _), text in zip(shades, texts):
+            texts = [symbol(figure.name, self.look) for _, figure in written]
+        for (shade, _), text in zip(written, texts):
             widest = int(np.argmax(np.abs(shade.high - shade.low)))
-            middle = (shade.high[widest] + shade.low[widest]) / 2
-            yield self._nearest(text, *self.place(shade.x[widest], middle))
+            yield Label(text, complex(self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)))
 
-    def _track(self, curve: Curve) -> ComplexArray:
-        """Return places x + iy along a curve, no farther apart than a quarter of a cell."""
-        across, down = (size / 4 for size in self.medium.grain)
-        pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
-        found = [dense(x / across, y / down) for x, y in pieces if len(x)]
-        return np.concatenate([x * across + 1j * y * down for x, y in found])
+    def _on_free_ground(self, label: Label, crossed: Indices, taken: Indices) -> Label | None:
+        """Return a label in its place, whose cells are then taken, or None where labels leave no room for it.
 
-    def _occupy(self, grid: Indices, places: ComplexArray) -> None:
-        """Mark the cells of the grid in which places x + iy are."""
-        wide, tall = self.medium.grain
-        column, row = np.floor(places.real / wide).astype(int), np.floor(places.imag / tall).astype(int)
-        inside = (row >= 0) & (row < grid.shape[0]) & (column >= 0) & (column < grid.shape[1])
-        grid[row[inside], column[inside]] = 1
-
-    def _nearest(self, text: str, x: float, y: float, led: bool = False) -> Label | None:
-        """Return a label for a place on the nearest ground that no label has and no curve crosses, if there is such.
-
-        led: a line leads to it where it is far.
+        What it costs to be somewhere is the distance from its point, and more for each cell of a curve that it covers.
+        Sums over rectangles of the grid are differences of four of its summed areas.
         """
-        wide, tall, grain = width(text) * self.medium.letter, self.medium.line, self.medium.grain
+        x, y, grain = label.point.real, label.point.imag, self.medium.grain
+        wide, tall = width(label.text) * self.medium.letter, self.medium.line
         rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
-        if rows > self._taken.shape[0] or columns > self._taken.shape[1]:
+        if rows > taken.shape[0] or columns > taken.shape[1]:
             return None
-        crossed, taken = _sums(self._crossed, rows, columns), _sums(self._taken, rows, columns)
-        left, top = grain[0] * np.arange(crossed.shape[1]), grain[1] * np.arange(crossed.shape[0])[:, None]
+        areas = [np.pad(grid.cumsum(0).cumsum(1), ((1, 0), (1, 0))) for grid in (crossed, taken)]
+        on_curves, on_labels = (
+            area[rows:, columns:] - area[:-rows, columns:] - area[rows:, :-columns] + area[:-rows, :-columns]
+            for area in areas
+        )
+        left, top = grain[0] * np.arange(on_curves.shape[1]), grain[1] * np.arange(on_curves.shape[0])[:, None]
         across = np.maximum(np.maximum(left - x, x - left - wide), 0.0)
         down = np.maximum(np.maximum(top - y, y - top - tall), 0.0)
         off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
-        cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * crossed
-        cost = np.where(taken > 0, np.inf, cost.round(6))
+        cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * on_curves
+        cost = np.where(on_labels > 0, np.inf, cost.round(6))
         row, column = np.unravel_index(cost.argmin(), cost.shape)
         if np.isinf(cost[row, column]):
             return None
-        self._taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
+        taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
         start, height = float(left[column]), float(top[row, 0])
-        end = min(max(x, start), start + wide), min(max(y, height), height + tall)
-        far = led and math.hypot(end[0] - x, end[1] - y) > 1.2 * tall
-        return Label(text, start, start + wide, height, (x, y), end, far)
+        end = complex(min(max(x, start), start + wide), min(max(y, height), height + tall))
+        far = label.led and abs(end - label.point) > 1.2 * tall
+        return label._replace(left=start, right=start + wide, top=height, lead=end if far else None)
 
 
 def looks_of(panel: Panel) -> list[int]:
@@ -304,10 +310,3 @@ def dense(x: Array, y: Array) -> tuple[Array, Array]:
     numbers, ends = np.arange(len(x)), np.append(0, steps.cumsum())
     along = np.interp(np.arange(ends[-1] + 1), ends, numbers)
     return np.interp(along, numbers, x), np.interp(along, numbers, y)
-
-
-def _sums(grid: Indices, rows: int, columns: int) -> Indices:
-    """Return the sums of a grid over each rectangle of rows and columns that fits into it, by summed areas."""
-    sums = np.pad(grid.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
-    found: Indices = sums[rows:, columns:] - sums[:-rows, columns:] - sums[rows:, :-columns] + sums[:-rows, :-columns]
-    return found

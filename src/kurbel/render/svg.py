@@ -7,17 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import ComplexArray
 from kurbel.render import Look
 from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol
 from kurbel.render.text import folded, width
 from kurbel.report.picture import Curve, Picture
 
 # lengths in points from the upper left corner
-PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0)
+PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0)
 WIDTH = 720.0
-_TALL, _SHORT, _LEAST, _MOST = 250.0, 170.0, 110.0, 460.0
-"""Height of a panel among at most two and of one among several, and bounds of one with equal scales."""
+_TALL, _SHORT = 250.0, 170.0
+"""Height of a panel among at most two and of one among several."""
 _BOLD = 8.3
 """Width of a character of a heading."""
 _SECONDS = 6.0
@@ -124,7 +124,7 @@ def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
         below = top
         for number, panel in enumerate(picture.panels[first : first + picture.across]):
             left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
-            frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall, _LEAST, _MOST)
+            frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
             inside = "".join(_panel(frame, left, paper))
             items += f'<g transform="translate({number * each + left:g} {top + above:g})">\n{inside}</g>\n'
             below = max(below, top + above + frame.tall + under)
@@ -146,7 +146,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
         yield from _axes(frame)
         yield from _head(frame, -left + 12)
     for shade in panel.shades:
-        low, high = (thinned(_places(frame, shade.x, line)) for line in (shade.low, shade.high))
+        low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
         yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
     resting = _text(0, -5, frame.look.charset.text(panel.title), plain=True) if panel.plain else ""
     moving = ""
@@ -158,9 +158,8 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
             resting += _curve(frame, curve, look, moving=False)
     yield f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n' if moving else resting
     labels = frame.labels(named=False)
-    leads = [np.array([complex(*label.point), complex(*label.end)]) for label in labels if label.far]
-    yield "".join(_shape("f", _path(lead)) for lead in leads)
-    yield "".join(_shape("o", _circle(complex(*frame.place(mark.x, mark.y)), 2.6)) for mark in panel.marks)
+    yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
+    yield "".join(_shape("o", _circle(complex(frame.place(mark.x, mark.y)), 2.6)) for mark in panel.marks)
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
 
 
@@ -199,17 +198,17 @@ def _curve(frame: PanelFrame, curve: Curve, look: int, moving: bool) -> str:
     outlines = zip(*(_outlines(frame, one, look) for one in moments))
     shapes = "".join(_shape(look_, path, [one for _, one in loop]) for (look_, path), *loop in outlines)
     if curve.kind == "arrow":
-        tips = [_arrow(_places(frame, one.x, one.y))[1] for one in moments]
+        tips = [_arrow(frame.place(one.x, one.y))[1] for one in moments]
         shapes += _text(tips[0].real, tips[0].imag, symbol(curve.name, frame.look), "halo", "middle", loop=tips[1:])
     return shapes
 
 
 def _outlines(frame: PanelFrame, curve: Curve, look: int) -> list[tuple[str, str]]:
     """Return classes of the style with the paths in which a curve is drawn."""
-    pieces = [_places(frame, x, y) for x, y in curve.pieces()]
+    pieces = [frame.place(x, y) for x, y in curve.pieces()]
     lines = "".join(map(_path, map(thinned, pieces) if curve.kind in ("line", "faint") else pieces))
     if curve.kind == "line":
-        jumps = "".join(_path(_places(frame, x, y)) for x, y in curve.jumps())
+        jumps = "".join(_path(frame.place(x, y)) for x, y in curve.jumps())
         return [(f"k{look}", lines), (f"j{look}", jumps)] if jumps else [(f"k{look}", lines)]
     if curve.kind == "dots":
         shape = look if curve.look is None else curve.look
@@ -232,12 +231,6 @@ def _arrow(ends: ComplexArray) -> tuple[ComplexArray, complex]:
     return np.concatenate((side + half, [tip], (side - half)[::-1])), tip + 9.0 * along + 3.5j
 
 
-def _places(frame: PanelFrame, x: Array | float, y: Array | float) -> ComplexArray:
-    """Return the places of points as x + iy."""
-    across, down = frame.place(x, y)
-    return np.asarray(across + 1j * down)
-
-
 def thinned(places: ComplexArray) -> ComplexArray:
     """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
     while len(places) > 2:
@@ -253,8 +246,10 @@ def thinned(places: ComplexArray) -> ComplexArray:
 
 
 def _path(places: ComplexArray) -> str:
-    rounded = (np.round(places, 1) + 0.0).tolist()
-    return "M" + "L".join([f"{one.real:g} {one.imag:g}" for one in rounded])
+    rounded = np.round(places, 1) + 0.0
+    steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()
+    start = f"M{rounded[0].real:g} {rounded[0].imag:g}"
+    return f"{start}l{' '.join([f'{one.real:g} {one.imag:g}' for one in steps])}" if steps else start
 
 
 def _circle(middle: complex, radius: float) -> str:

@@ -49,7 +49,7 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
     return list(groups.values())
 
 
-def told_once(report: Report) -> Report:
+def shown_once(report: Report) -> Report:
     """Return the report with its equal parts as one; its title names them if no other part is left.
 
     Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.
@@ -76,9 +76,12 @@ _SHIFTED = (
 
 
 def _bearing(part: Part) -> Hashable:
-    """Return what equal bearings of one kind have in common, such as those of main bearings."""
-    kind = str(part.name).removesuffix(part.of).rstrip("0123456789")
-    return kind, _figures(part.key_values), tuple(part.left_out)
+    return equal_loads(str(part.name), part.of, part.key_values), tuple(part.left_out)
+
+
+def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
+    """Return what equally loaded bearings of one kind have in common; of: the cylinder that a pin belongs to."""
+    return name.removesuffix(of).rstrip("0123456789"), _figures(key_values)
 
 
 def _cylinder(part: Part) -> Hashable:
@@ -93,14 +96,11 @@ def _curve(column: Column) -> Hashable:
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:
     """Return the key values without the angles at which they are, those of one unit relative to the largest."""
-    by_unit: dict[str, list[Value]] = {}
-    for one in key_values:
+    given, by_unit = tuple(key_values), dict[str, list[Value]]()
+    for one in given:
         if not one.noise:
             by_unit.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
-    return (
-        tuple(one.id for one in key_values),
-        tuple((unit, _nine_digits(values)) for unit, values in by_unit.items()),
-    )
+    return *(one.id for one in given), *((unit, _nine_digits(values)) for unit, values in by_unit.items())
 
 
 def _nine_digits(values: Sequence[Value]) -> Hashable:

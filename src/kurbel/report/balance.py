@@ -52,15 +52,15 @@ def _notes(balance: MachineBalance) -> Iterator[str]:
         yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
     if free.next_order and balance.omega is not None:
         square = balance.omega * balance.omega
-        most = show(free.at_most(free.force) * square, "force")
+        most = f"{show(free.at_most(free.force) * square, 'force')} of the force"
         if free.moment is not None:
-            most += f", of the moment {show(free.at_most(free.moment) * square, 'torque')}"
+            most += f", {show(free.at_most(free.moment) * square, 'torque')} of the moment"
         yield (
-            f"More orders follow, from n = {free.next_order} on, which the rod brings, hardly longer than the crank: "
-            f"of the force they are at most {most}, together."
+            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on: "
+            f"together at most {most}."
         )
     if balance.counterweights or balance.machine.balance_shafts:
-        yield "Counterweights and shafts of the file count in all that is free; the best weights stand in their place."
+        yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
     if balance.roll is not None:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 

@@ -24,8 +24,8 @@ _EVEN = 0.5
 """Degrees by which firing intervals differ where angles were rounded."""
 
 
-class Section(NamedTuple):
-    """A head line with its entries; cylinder: they are all about the cylinder whose name it is."""
+class Topic(NamedTuple):
+    """A head line with its entries; cylinder: they are all about the cylinder of this name."""
 
     title: str
     entries: tuple[Entry, ...]
@@ -36,7 +36,7 @@ class Checked(NamedTuple):
     """The outcome of a check; broken: a limit is, or a figure is off; unjudged: which cannot be compared, and why."""
 
     title: str
-    sections: tuple[Section, ...]
+    sections: tuple[Topic, ...]
     broken: bool
     unjudged: tuple[Unjudged, ...]
 
@@ -46,13 +46,13 @@ class Checked(NamedTuple):
         return tuple(one.error for one in self.unjudged)
 
     @property
-    def told_once(self) -> list[Section]:
+    def shown_once(self) -> list[Topic]:
         """The sections, equal cylinders in one."""
         groups = grouped(self.sections, _content)
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
 
 
-def _content(section: Section) -> Hashable:
+def _content(section: Topic) -> Hashable:
     """Return what the sections of equal cylinders have in common."""
     entries = tuple((one.what, one.text, one.severity) for one in section.entries)
     return section.cylinder or section.title, entries
@@ -69,15 +69,15 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         entries += [entry._replace(what=entry.what + of_case) for entry in own if isinstance(entry, Entry)]
     notes = machine_notes(case)
     sections = (
-        Section("Machine", tuple(_machine_entries(machine))),
+        Topic("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
-        Section("Cranks", tuple(_crank_entries(machine))),
-        Section("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
-        Section("Crankshaft", tuple(_crankshaft_entries(case))),
-        Section("Balance", tuple(_balance_entries(case))),
-        Section("Shaft line", tuple(_shaft_entries(case))),
-        Section("Limits", tuple(one for one in entries if one.path[0] == "limits")),
-        Section("Expected", tuple(one for one in entries if one.path[0] == "expect")),
+        Topic("Cranks", tuple(_crank_entries(machine))),
+        Topic("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
+        Topic("Crankshaft", tuple(_crankshaft_entries(case))),
+        Topic("Balance", tuple(_balance_entries(case))),
+        Topic("Shaft line", tuple(_shaft_entries(case))),
+        Topic("Limits", tuple(one for one in entries if one.path[0] == "limits")),
+        Topic("Expected", tuple(one for one in entries if one.path[0] == "expect")),
     )
     return Checked(
         f"{machine.name}: a valid machine",
@@ -111,7 +111,7 @@ def _listed(angles: Iterable[float]) -> str:
     return ", ".join(f"{angle:g}" for angle in angles)
 
 
-def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Section:
+def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Topic:
     several = len(machine.cylinders) > 1
     path: Path = ("cylinders", machine.cylinders.index(cylinder)) if several else ()
     entries = [
@@ -122,7 +122,7 @@ def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note
         *_notes(found, cylinder.name, path),
         *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
     ]
-    return Section(cylinder.name, tuple(entries), cylinder=True)
+    return Topic(cylinder.name, tuple(entries), cylinder=True)
 
 
 def _described(mechanism: Mechanism) -> str:

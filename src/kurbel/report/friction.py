@@ -16,7 +16,7 @@ _RHO = Quantity("rho", "ρ", "angle", "Angle of friction: at a smaller incline t
 def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -> Report:
     """Return the forces over the weight on a body on a plane at `incline`, in degrees, with this coefficient f.
 
-    direction: of the force above the plane, in degrees; a horizontal force (D 3) stands below it. Raises UsageError for
+    direction: of the force above the plane, in degrees; a horizontal force (D 3) acts below it. Raises UsageError for
     angles and coefficients that make no inclined plane, and for a force that lifts the body off it.
     """
     _check(incline, coefficient, direction)

@@ -13,8 +13,8 @@ from kurbel.near_words import did_you_mean
 _ROOT = Record(Machine)
 
 
-class Place(NamedTuple):
-    """A key where it stands: dotted path, declaration, whether it must be given, and with which word beside it."""
+class ListedKey(NamedTuple):
+    """A key with its dotted path, whether it must be given, and the word next to which it is allowed."""
 
     path: str
     key: Key
@@ -51,18 +51,18 @@ class Place(NamedTuple):
             yield "below it", ", ".join(dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in below))
 
 
-def every_place() -> dict[str, list[Place]]:
+def every_place() -> dict[str, list[ListedKey]]:
     """Return every key of a machine file by its dotted path, once for each mechanism that has it.
 
     Those of a cylinder stand at the top.
     """
-    places: dict[str, list[Place]] = {}
+    places: dict[str, list[ListedKey]] = {}
     for one in _of_record(_ROOT, ""):
         places.setdefault(one.path, []).append(one)
     return places
 
 
-def places_at(path: str) -> list[Place]:
+def places_at(path: str) -> list[ListedKey]:
     """Return the key at a dotted path, as messages and `--set` write it; raises UsageError where there is none."""
     places = every_place()
     if not path.strip(". "):
@@ -79,7 +79,7 @@ def places_at(path: str) -> list[Place]:
     raise UsageError(f"no key '{shown(path)}'{hint}; 'kurbel keys' lists them")
 
 
-def meaning(path: str, places: dict[str, list[Place]]) -> str:
+def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
     """Return what the key at the end of a path as the file has it means; '' of one that is not known."""
     steps = _steps(path)
     above = next((k for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
@@ -95,18 +95,18 @@ def _steps(path: str) -> list[str]:
     return [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
 
 
-def _of_record(record: Record, path: str, beside: str = "") -> Iterator[Place]:
+def _of_record(record: Record, path: str, beside: str = "") -> Iterator[ListedKey]:
     needed = required(record.keys)
     for name, key in record.keys.items():
         if not key.form.shared:
             here = f"{path}.{name}" if path else name
-            yield Place(here, key, name in needed, beside)
+            yield ListedKey(here, key, name in needed, beside)
             yield from _of_form(key.form, here)
         for word, inner in key.form.records(name) if key.form.inline() else ():
             yield from _of_record(inner, path, "" if key.form.shared else word)
 
 
-def _of_form(form: Form, path: str) -> Iterator[Place]:
+def _of_form(form: Form, path: str) -> Iterator[ListedKey]:
     """Yield the keys below a key of this form."""
     if isinstance(form, Record):
         if not form.inline_too:

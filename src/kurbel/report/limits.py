@@ -78,7 +78,7 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
 def _compared_all(
     key: str, name: str, bound: float | Expected, declared: Mapping[str, Quantity], found: Found
 ) -> list[Verdict | Unjudged]:
-    """Compare the values of all that a figure applies to with it, equal ones once."""
+    """Compare the values of all that a figure applies to with it, those equal to nine digits once."""
     quantity, path = declared[scoped(name)[1]], _path(key, name, bound)
     if isinstance(found, KurbelError):
         return [Unjudged(path, type(found)(f"{path_text(path)}: {found}"))]
@@ -87,7 +87,7 @@ def _compared_all(
         return [Unjudged(path, UsageError(f"{path_text(path)}: {text}"))]
     return [
         compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
-        for equal in grouped(found, lambda one: one[1])
+        for equal in grouped(found, lambda one: f"{one[1]:.9g}")
     ]
 
 

@@ -1,13 +1,14 @@
 """The reports of `kurbel bearings` and `kurbel stress`: the loads on pins and bearings, and stresses in the shaft."""
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from kurbel.declared.factors import PHI
 from kurbel.declared.shaft import STRESSES
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
+from kurbel.report.alike import equal_loads, grouped
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values
 from kurbel.report.left_out import bearing_left_out, bearings_left_out, left_out, strength_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import as_far_as_solved, bearing_warnings, of_machine, shell_verdict
@@ -38,6 +39,16 @@ def bearings_subjects(case: Case) -> list[Subject]:
     return [_bearing(one) for one in _bearings(case)]
 
 
+def equal_bearings(case: Case) -> list[list[Bearing]]:
+    """Return the pins and main bearings, those together that carry equal loads."""
+
+    def load(part: Bearing) -> Hashable:
+        one = _bearing(part)
+        return equal_loads(one.name, one.of, shown_key_values(one.key_values("bearings"), "si"))
+
+    return grouped(_bearings(case), load)
+
+
 def _bearings(case: Case) -> list[Bearing]:
     for forces in case.cylinders:
         forces.refuse_locking()
@@ -66,7 +77,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
             "and 'crankshaft' as the throw of every cylinder."
         )
     if line and any(len(throw.cylinders) > 1 for throw in line.throws):
-        yield "Rods on one pin stand side by side, each on an equal part of its length; all load the pin in its middle."
+        yield "Rods on one pin are side by side, each on an equal part of its length; all load the pin in its middle."
     if any(one.masses and one.masses.undivided for one in machine.cylinders):
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
@@ -114,7 +125,7 @@ def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceT
 
 def _stress_notes(strength: CrankshaftStrength) -> Iterator[str]:
     yield (
-        "A and B are the forces of the shaft on its bearings, told in the frame that turns with the throw: "
+        "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
         "D toward the shaft, T in the sense of rotation."
     )
     yield (

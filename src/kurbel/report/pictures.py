@@ -16,6 +16,7 @@ from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
+from kurbel.report.loads import equal_bearings
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
@@ -461,7 +462,8 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     if command in _OF_MACHINE:
         yield Source(_OF_MACHINE[command](case), options.angles), ""
     elif command == "bearings":
-        yield from ((Source(part, options.angles), part.name) for part in case.bearings.parts)
+        for bearings in equal_bearings(case):
+            yield Source(bearings[0], options.angles), together([one.name for one in bearings])
     else:
         wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
         for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):

@@ -91,14 +91,14 @@ def _flywheel_notes(machine: Machine, turning: MachineTurning) -> Iterator[str]:
         eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
         yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        yield "Such a load holds no speed of its own: the mean of ω over time is taken as the nominal speed."
+        yield "Such a load determines no speed: the mean of ω over time is taken as the nominal speed."
     if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
         yield (
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
             "driven pistons, inertia, weight and friction count in full (R p. 613)."
         )
     if machine.efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
-        yield "As in the book the efficiency takes its share of all of T; in ω the moving masses count in full."
+        yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
     if turning.rigid:
         yield (
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
@@ -194,7 +194,7 @@ def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
 
 def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[float], system: str) -> PlaceTable:
     if not machine.speed:
-        raise UsageError("--speeds: the inertia forces are told from those at the 'speed' of the machine; give it one")
+        raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
     rows: list[Row] = []
     for speed in speeds:
         at_speed = found.machine.at_speed(speed / machine.speed)
@@ -219,7 +219,7 @@ def _orders_notes(found: MachineOrders) -> Iterator[str]:
         return
     yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
     if found.machine.inertia is not None:
-        yield "M_b goes with the square of the speed; M_g, of gas, weight and friction, counts the same at every speed."
+        yield "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
 
 
 # torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
@@ -281,8 +281,8 @@ def torsion_warnings(case: Case) -> Iterator[str]:
 def _refuse_endless(found: ShaftVibration) -> None:
     if found.vibration is not None and found.vibration.endless.any():
         raise NoSolutionError(
-            "an order of the torque meets a natural vibration that next to nothing damps: give it 'damping'; or pieces "
-            "of the shaft are too unequal to compute with: look at the units of their stiffnesses"
+            "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of "
+            "the shaft are too unequal to compute with: check the units of their stiffnesses"
         )
 
 
@@ -398,7 +398,7 @@ def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
     elif bare:
         yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
     if found.machine.cylinders:
-        yield LeftOut("change of the inertia over the turn", "the mean counts; what its change excites is not told")
+        yield LeftOut("change of the inertia over the turn", "the mean counts; what its change excites is not computed")
 
 
 def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
@@ -418,11 +418,11 @@ def _torsion_notes(
     found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical], amplitudes: Sequence[_Amplitude]
 ) -> Iterator[str]:
     if wanted.orders is None:
-        yield f"Critical speeds of orders up to {_HIGHEST_CRITICAL}; --orders tells others, --modes of more modes."
+        yield f"Critical speeds of orders up to {_HIGHEST_CRITICAL}; --orders lists others, --modes more modes."
     if any(map(found.met, critical)) and any(torque is None for torque, _ in amplitudes):
         yield (
-            "What the shaft bears at a critical speed holds all orders, when running there; – stands where the machine "
-            f"does not come, beyond {RUN_UP:g} times the working speed, and where next to nothing damps the mode."
+            "Torques and stresses at a critical speed include all orders, when running there; – marks a speed that the "
+            f"machine does not reach, beyond {RUN_UP:g} times the working speed, and a mode that is hardly damped."
         )
     if any(piece.ratio != 1 for piece in found.line.pieces):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."

@@ -128,7 +128,7 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
         apart = abs(math.remainder(throws[0] - throws[1], 360.0))
         if next_z - z <= _SAME_PLACE and apart > _SAME_ANGLE:
             yield (
-                f"{one.name} and {other.name} stand at one place along the shaft, but their throws "
+                f"{one.name} and {other.name} are at one place along the shaft, but their throws are "
                 f"{show(apart, 'angle')} apart: they share no crank pin. Two on one pin have crank positions that "
                 "differ as their bank angles do; throws of their own need an 'axial_position' each"
             )
@@ -236,8 +236,8 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     residual, traced = abs(forces.energy_residual or 0.0), any(gas.traced for gas in forces.drive.gas)
     if traced and residual > _COARSE:  # it shows the spacing of the samples
         yield (
-            "the samples stand too far apart: the indicated work, by the trapezoid rule, and that of T, by "
-            f"straight lines between them, differ by {residual:.1%} of what goes to and fro"
+            "the samples are too far apart: the indicated work, by the trapezoid rule, and that of T, by "
+            f"straight lines between them, differ by {residual:.1%} of the energy exchanged"
         )
     if not traced and residual > _CLOSED:
         signed = forces.energy_residual
@@ -265,10 +265,10 @@ def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
     if angle is None or ratio is None:
         return
     if not angle:
-        yield "the rod load never reverses: no oil comes between crosshead pin and bush on the loaded side"
+        yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
     elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
         yield (
-            f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 asks for 15 deg "
+            f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires 15 deg "
             "and 3 %"
         )
 
@@ -338,8 +338,8 @@ def turning_warnings(case: Case) -> Iterator[str]:
         word = "more" if turning.deficit > 0 else "less"
         yield (
             f"mean effort {show(turning.M_mean, 'torque')} and mean resistance "
-            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily like this; "
-            f"E and ω count {show(abs(turning.deficit), 'torque')} {word} resistance all the time"
+            f"{show(turning.M_mean - turning.deficit, 'torque')} differ: the machine does not run steadily; "
+            f"E and ω assume {show(abs(turning.deficit), 'torque')} {word} resistance throughout"
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
@@ -367,16 +367,16 @@ def turning_warnings(case: Case) -> Iterator[str]:
     rim = machine.flywheel.rim if machine.flywheel else None
     if rim and rim.allowable_tension and turning.rim_stress and turning.rim_stress > rim.allowable_tension:
         yield (
-            f"the rim bears a hoop stress of {show(turning.rim_stress, 'stress')}, more than the allowable "
+            f"the hoop stress of the rim, {show(turning.rim_stress, 'stress')}, exceeds the allowable "
             f"{show(rim.allowable_tension, 'stress')}"
         )
 
 
 _SHELLS = (
-    (25, "bronze shells stand it (25)"),
-    (30, "too much for bronze shells (25), white metal stands it (30)"),
-    (35, "only the best white metal stands it (30 to 35)"),
-    (math.inf, "more than white metal stands (30 to 35)"),
+    (25, "permissible for bronze shells (25)"),
+    (30, "too much for bronze shells (25), permissible for white metal (30)"),
+    (35, "permissible for the best white metal only (30 to 35)"),
+    (math.inf, "more than permissible for white metal (30 to 35)"),
 )
 """p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 

@@ -59,7 +59,7 @@ def _input(given: Given, found: Checked) -> Section:
     places = every_place()
     rows = tuple((path, value, meaning(path, places)) for path, value in given)
     items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), rows)] if rows else []
-    for part in found.told_once:
+    for part in found.shown_once:
         if part.title not in _VERDICTS:
             items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
     return Section("input", "Input as understood", tuple(items))
