@@ -75,7 +75,7 @@ def test_version_and_help() -> None:
         for line in text.partition("Commands:")[2].partition("Exit status")[0].splitlines()
         if line.strip()
     ]
-    assert tuple(listed) == COMMANDS
+    assert tuple(listed) == tuple(COMMANDS)
 
 
 @law_of_each(COMMANDS)

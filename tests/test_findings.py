@@ -18,7 +18,7 @@ from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.quantities import every_quantity
 from kurbel.report.check import checked
-from kurbel.report.commands import COMMANDS, report_of
+from kurbel.report.commands import REPORTS, report_of
 from kurbel.report.frame import Frame
 from kurbel.report.limits import Unjudged, compared
 from kurbel.solver.case import Case
@@ -68,7 +68,7 @@ def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
 def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
     case = case_of(path.stem)
     shown = {one.text for section in checked(case).sections for one in section.entries if one.severity == "warning"}
-    frames = [Frame(word, (0.0,), None, "metric") for word in COMMANDS]
+    frames = [Frame(word, (0.0,), None, "metric") for word in REPORTS]
     for frame in frames:
         with suppress(UsageError):
             parts = report_of(case, frame).all_parts

@@ -118,13 +118,6 @@ def test_a_smooth_trace_is_drawn_from_whole_arrays() -> None:
 
 
 @pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="52 calls a sample in the machine file (check of 160,000: 5.8 s)"
-)
-def test_points_in_the_machine_file_are_read_together() -> None:
-    assert per_sample(lambda file: ("check", file), pointed, 1000, 2000) < 10
-
-
-@pytest.mark.xfail(
     strict=True,
     raises=AssertionError,
     reason="100 calls a sample: one shaded piece for each of the crossings in the noise (160,000 samples: 21 s)",
@@ -190,11 +183,6 @@ def test_a_report_solves_equal_cylinders_once() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="each row is compared with the whole front: 10,000 rows take 11 times as long as without, 20,000 18 times",
-)
 def test_the_front_of_two_aims_takes_hardly_more_than_its_rows() -> None:
     """Of one aim against itself every row is on the front; two aims need no more than an order of the rows."""
     run(*swept(100))

@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
 from kurbel.declared.unit_systems import SI, SYSTEMS, convert, show, shown_unit, told_in
-from kurbel.declared.units import ZEROED_UNITS, kinds, parse_quantity, unit_names
+from kurbel.declared.units import ZEROED_UNITS, kinds, listed_units, parse_quantity
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
@@ -175,7 +175,7 @@ def test_every_shown_unit_can_be_read_back(kind: str) -> None:
 
 @law_of_each(kind for kind in SI if kind != "ratio")
 def test_every_unit_is_positive_and_finite(kind: str) -> None:
-    for unit in {*unit_names(kind)} - {*ZEROED_UNITS}:
+    for unit in {*listed_units(kind)} - {*ZEROED_UNITS}:
         assert 0 < parse_quantity(f"1 {unit}", kind) < math.inf
 
 
@@ -270,7 +270,7 @@ def test_the_units_of_one_kind() -> None:
     def told(*kind: str) -> Result:
         return CliRunner().invoke(kurbel, ["units", *kind])
 
-    of_pressure = f"pressure  {', '.join(unit_names('pressure'))}\n"
+    of_pressure = f"pressure  {', '.join(listed_units('pressure'))}\n"
     assert told("pressure").stdout == of_pressure
     assert of_pressure.split("  ")[1] in told().stdout
     assert told("angular velocity").stdout == told("angular_velocity").stdout == "angular velocity  rad/s\n"

@@ -100,7 +100,6 @@ def test_a_spring_in_inches(spring: str) -> None:
     assert forces_of(text).mean_pressure == pytest.approx(40 * 6894.757293168361, rel=1e-12)
 
 
-@pytest.mark.xfail(strict=True, raises=MachineFileError, reason="points of a drawn card are millimetres, always")
 def test_a_card_drawn_in_inches_has_points_in_inches() -> None:
     """40 psi to the inch: 48 psi to 2/5 of the stroke, straight to 12 psi; back from 4 psi straight to 48 psi."""
     lines = "expansion: [[0, 1.2], [1.4, 1.2], [3.5, 0.3]], compression: [[3.5, 0.1], [0, 1.2]]"
@@ -109,7 +108,6 @@ def test_a_card_drawn_in_inches_has_points_in_inches() -> None:
     assert forces_of(text).mean_pressure == pytest.approx(mean * 6894.757293168361, rel=1e-12)
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="the message counts points of a card of 3.5 in in mm")
 def test_a_point_beside_a_card_drawn_in_inches_is_told_in_inches() -> None:
     lines = "expansion: [[0, 1.2], [4.5, 0.3]], compression: [[3.5, 0.1], [0, 1.2]]"
     said = refused(f"indicator: {{head_end: {{drawn: {{length: 3.5 in, spring: 1/40 in/psi}}, {lines}}}}}\n")

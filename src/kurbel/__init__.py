@@ -36,6 +36,7 @@ __all__ = [
 
 TYPE_CHECKING = False  # as in typing, whose import an interrupt could hit before anything guards it
 if TYPE_CHECKING:
+    import os
     from typing import Any
 
     from kurbel.designs.asked import sweep as sweep
@@ -47,8 +48,8 @@ if TYPE_CHECKING:
     from kurbel.machine_file import loads as loads
     from kurbel.mechanisms import Mechanism as Mechanism
     from kurbel.mechanisms.slider_crank import SliderCrank as SliderCrank
+    from kurbel.notebook import Case as Case
     from kurbel.notebook import draw as draw
-    from kurbel.solver.case import Case as Case
 
 _HOMES = {
     "Case": "kurbel.notebook",
@@ -66,11 +67,12 @@ _HOMES = {
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
 
 
-def solve(machine: "Machine") -> "Case":
+def solve(machine: "Machine | str | os.PathLike[str]") -> "Case":
     """Return the machine with its results, each computed when it is asked for.
 
-    machine: from `load`, `loads`, or built in Python. Raises NoSolutionError, when a result is asked for that does not
-    exist, because a crosshead locks itself for instance.
+    machine: from `load`, `loads`, or built in Python; or what these take, the path or the text of a machine file.
+    Raises NoSolutionError, when a result is asked for that does not exist, because a crosshead locks itself for
+    instance.
     """
     from kurbel.notebook import Case  # which shows itself there
 

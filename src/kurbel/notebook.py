@@ -1,16 +1,26 @@
 """What a notebook shows of results: the tables of the reports, and pictures."""
 
+import os
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from kurbel.errors import KurbelError
+from kurbel.machine import Machine
+from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
-from kurbel.solver.case import Case as Case
+from kurbel.solver import case as solved
 from kurbel.solver.figures import Results, Shown
 
 if TYPE_CHECKING:
     from kurbel.report.picture import Picture
+
+
+class Case(solved.Case):
+    """A machine with its results; machine: one, or the path or the text of a machine file."""
+
+    def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
+        super().__init__(machine_of(machine), count)
 
 
 class Drawing(NamedTuple):
@@ -43,7 +53,7 @@ def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ..
     return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
-def as_html(shown: Case | Results) -> str:
+def as_html(shown: solved.Case | Results) -> str:
     """Return the key values of results, or of every part of a machine, as HTML."""
     if isinstance(shown, Results):
         return _key_values(shown, "Key values")

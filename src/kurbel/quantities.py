@@ -6,18 +6,21 @@ from kurbel.mechanisms.kinds import KINDS
 from kurbel.quantity import Lists
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.bearings import Bearing
-from kurbel.solver.figures import Results, declared_rows, rows_of
-from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.figures import Results, rows_of
+from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.harmonics import MachineOrders
 from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.torsion import ShaftVibration
 
 RESULTS: tuple[type[Results], ...] = (
     CylinderForces,
     MachineTurning,
+    DeadCentre,
     CrankshaftStrength,
     Bearing,
     MachineBalance,
+    MachineOrders,
     ShaftVibration,
 )
 """The classes of results, in the order in which their quantities are listed; those of a part come with it."""
@@ -28,7 +31,6 @@ def every_quantity() -> Lists:
     """Return what machines may have, whatever their mechanism; what several commands print is there for each."""
     offers = dict.fromkeys(offer for one in KINDS for offer in one.OFFERS)
     key_offers = dict.fromkeys(offer for one in KINDS for offer in one.KEY_OFFERS)
-    of_cylinder = rows_of(CylinderForces, (*offers,), (*key_offers,)).lists
-    every = [of_cylinder, *(rows_of(one).lists for one in RESULTS[1:]), declared_rows("harmonics").lists]
+    every = [rows_of(CylinderForces, (*offers,), (*key_offers,)).lists, *(rows_of(one).lists for one in RESULTS[1:])]
     columns = (quantity for one in every for quantity in one.all_columns)
     return Lists((*columns,), tuple(quantity for one in every for quantity in one.all_key_values))

@@ -93,8 +93,8 @@ def test_guide_force_while_driving_and_while_driven() -> None:
 def test_rings() -> None:
     """Friction D π h p_r f, share 4 h p_r f/(D p) of the piston force (Kolbenreibung)."""
     rings = Rings(1, 0.05, 0.4e5, 0.1)
-    assert rules.ring_force(rings, 0.42) == pytest.approx(math.pi * 0.42 * 0.05 * 0.4e5 * 0.1, rel=1e-15)
     forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(None, rings))
+    assert forces.drive.ring_force == pytest.approx(math.pi * 0.42 * 0.05 * 0.4e5 * 0.1, rel=1e-15)
     assert forces.loss_rings == pytest.approx(4 * 0.05 * 0.4e5 * 0.1 / (0.42 * 6e5), rel=1e-14)
 
 

@@ -24,10 +24,9 @@ from kurbel.machine.masses import ConnectingRod, Masses
 from kurbel.machine.piston import Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.turning import dead_centre_force
 from kurbel.solver.case import Case
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from machines import STEAM_CARD, constant_pressure
 from representative import few, law_of_each
 from turning_machines import of_points
@@ -258,7 +257,7 @@ def test_parts_before_a_pump_stand_steam_and_pump_together() -> None:
         Indicator(constant_pressure_pair(-0.45 * at, 5.4 * at), constant_pressure_pair(-0.45 * at, 5.4 * at)),
     )
     machine = turning(replace(ENGINE, pistons=(STEAM, pump)))
-    force = dead_centre_force(Case(machine.machine).cylinders[0], machine.effort.cycle)
+    force = DeadCentre(Case(machine.machine).cylinders[0], machine.effort.cycle).P_dead_centre
     head, crank = STEAM.head_area, STEAM.crank_area
     steam = 9.5 * at * head - 2.2 * at * crank
     assert force.value == pytest.approx(steam + 3710 * at / 1e4, rel=1e-3)  # the book rounds the pump's 3710 kgf

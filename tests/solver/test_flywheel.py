@@ -17,8 +17,8 @@ from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.report.check import checked
-from kurbel.report.turning import dead_centre_force
 from kurbel.solver.case import Case
+from kurbel.solver.flywheel import DeadCentre
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -230,7 +230,7 @@ def test_tafel_i_low_pressure_leads_and_evens_the_effort() -> None:
     assert [c.drive.cylinder.crank_position for c in both.cylinders] == [0, -90]
     each = [c.W * c.drive.mechanism.crank for c in both.cylinders]
     assert both.flywheel.M_mean == pytest.approx(sum(each), rel=1e-13)
-    assert dead_centre_force(both.cylinders[0], both.flywheel.effort.cycle).degrees == 0
+    assert DeadCentre(both.cylinders[0], both.flywheel.effort.cycle).P_dead_centre.degrees == 0
 
 
 def test_four_cylinders_fire_every_180_degrees() -> None:

@@ -1,13 +1,14 @@
-"""The command line: a thin command for every row of `SUMMARIES`; it imports what it computes with when it is called."""
+"""The command line: a thin command for every row of `COMMANDS`; it imports what it computes with when it is called."""
 
 from kurbel.cli.check import check
-from kurbel.cli.group import BROKEN, COMMANDS, DONE, SUMMARIES, Context, exit_statuses, kurbel
+from kurbel.cli.group import Context, exit_statuses, kurbel
 from kurbel.cli.machine import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
 from kurbel.cli.pages import accuracy, plot, report
 from kurbel.cli.reference import example, friction, keys, schema, table, units
 from kurbel.cli.sweep import sweep
+from kurbel.report.commands import COMMANDS
 
-__all__ = ["BROKEN", "COMMANDS", "DONE", "kurbel"]
+__all__ = ["COMMANDS", "kurbel"]
 
 for _command in (
     *(table, motion, forces, flywheel, stress, bearings, balance, harmonics, torsion, plot, report, sweep, accuracy),
@@ -15,5 +16,5 @@ for _command in (
 ):
     assert _command.name
     _command.context_class, _command.epilog = Context, exit_statuses(_command.name)
-    _command.short_help = SUMMARIES[_command.name]
+    _command.short_help = COMMANDS[_command.name].summary
     kurbel.add_command(_command)

@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from kurbel.cli.group import BROKEN, DONE, message_of, to_stderr
+from kurbel.cli.group import DONE, message_of, to_stderr
 from kurbel.cli.options import format_of, loaded, output_option, set_options, width_option
 from kurbel.errors import KurbelError
 from kurbel.render import Look
+from kurbel.report.commands import BROKEN
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine

@@ -14,6 +14,7 @@ import click
 from kurbel import __version__
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.near_words import did_you_mean
+from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 
 if TYPE_CHECKING:
     from kurbel.render.text import Charset
@@ -21,33 +22,9 @@ if TYPE_CHECKING:
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-SUMMARIES = {
-    "table": "Zusammenstellung 112 for any L/R; needs no machine file.",
-    "motion": "Displacement, velocity, acceleration of any mechanism.",
-    "forces": "Forces, work and friction loss of every cylinder.",
-    "flywheel": "Turning effort, flywheel and speed line of the machine.",
-    "stress": "Bearing forces and stresses of the crankshaft.",
-    "bearings": "Loads on pins and main bearings.",
-    "balance": "Free forces and moments, counterweights.",
-    "harmonics": "Orders of the turning effort, gas and inertia apart.",
-    "torsion": "Torsional vibration of the shaft line.",
-    "plot": "Pictures, in the terminal or as SVG, PNG, PDF.",
-    "report": "Everything on one page of HTML; two machines side by side.",
-    "sweep": "Key values of many designs of a machine.",
-    "accuracy": "Error against run time; stiff and extreme cases.",
-    "friction": "Body on an inclined plane; needs no machine file.",
-    "check": "Read and check a machine file and its limits.",
-    "example": "List the shipped machines, or print one.",
-    "keys": "The keys of the machine file, or one of them in full.",
-    "units": "The units of every kind of quantity.",
-    "schema": "JSON Schema of the machine file, for editors, or of the answers.",
-}
-"""The commands in the order in which `kurbel --help` lists them."""
-COMMANDS = tuple(SUMMARIES)
-
 _DEBUG = "KURBEL_DEBUG"
 
-DONE, BROKEN, WRONG, NO_SOLUTION, INTERNAL, INTERRUPTED = 0, 1, 2, 3, 70, 130
+DONE, WRONG, INTERNAL, INTERRUPTED = 0, 2, 70, 130
 
 _MEANINGS = {
     DONE: "done",
@@ -59,21 +36,11 @@ _MEANINGS = {
 }
 
 
-_OF_SOME = {
-    BROKEN: ("kurbel", "check", "accuracy"),
-    NO_SOLUTION: (
-        *("kurbel", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
-        *("plot", "check", "accuracy"),
-    ),
-}
-"""Statuses that only some commands return."""
-
-
-def exit_statuses(command: str) -> str:
+def exit_statuses(command: str = "") -> str:
     """Return the last sentence of the help of a command, or of `kurbel` itself."""
-    return "Exit status: " + "; ".join(
-        f"{status} {meaning}" for status, meaning in _MEANINGS.items() if command in _OF_SOME.get(status, (command,))
-    )
+    own = COMMANDS[command].statuses if command else (BROKEN, NO_SOLUTION)
+    told = (one for one in _MEANINGS if one not in (BROKEN, NO_SOLUTION) or one in own)
+    return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in told)
 
 
 class Context(click.Context):
@@ -97,7 +64,7 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
-        raise click.UsageError(f"no command '{name}'{did_you_mean(name, COMMANDS)}", ctx)
+        raise click.UsageError(f"no command '{name}'{did_you_mean(name, tuple(COMMANDS))}", ctx)
 
     def make_context(self, *args: Any, **extra: Any) -> click.Context:
         with _silent_interrupt():
@@ -206,7 +173,7 @@ def _output_failed(error: OSError) -> int:
 @click.group(
     cls=_Kurbel,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog=exit_statuses("kurbel"),
+    epilog=exit_statuses(),
 )
 @click.version_option(__version__, prog_name="kurbel", message="%(prog)s %(version)s")
 def kurbel() -> None:

@@ -18,7 +18,7 @@ from kurbel.cli.options import (
     units_option,
     words,
 )
-from kurbel.declared.units import kinds, unit_names
+from kurbel.declared.units import kinds, listed_units
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 
@@ -166,7 +166,7 @@ def units(kind: str | None) -> None:
     """
     from kurbel.render.page import write_entries
 
-    named = {kind.replace("_", " "): ", ".join(unit_names(kind)) for kind in kinds()}
+    named = {kind.replace("_", " "): ", ".join(listed_units(kind)) for kind in kinds()}
     if kind is None:
         write_entries(list(named.items()))
     elif found := named.get(kind.replace("_", " ")):

@@ -1,42 +1,6 @@
 """The quantities of harmonics and torsional vibration: orders, modes, critical speeds, what forced vibration makes."""
 
-from functools import partial
-
-from kurbel.declared.quantity import Quantity, by_id
-
-_torsion = partial(Quantity, commands=("torsion",))
-_harmonics = partial(Quantity, commands=("harmonics",))
-
-TORSION_COLUMNS = (
-    _torsion("M_shaft", "M_w", "torque", "Torque in the piece of shaft, mean and vibration"),
-    _torsion("tau", "τ", "stress", "Torsional stress where the piece is thinnest"),
-)
-
-HARMONIC_VALUES = (
-    _harmonics(
-        "orders_share",
-        "Σ|M_ν|²/2",
-        "ratio",
-        "Share of the mean square of the torque about its mean that these orders carry (Parseval)",
-        "sum M_nu2/2",
-    ),
-    _harmonics("major_orders", "ν_H", "ratio", "Major orders, in which all cranks pull together", listed=True),
-)
-
-TORSION_VALUES = (
-    _torsion("natural_frequency", "f_1", "frequency", "Lowest natural frequency of torsional vibration"),
-    _torsion(
-        "holzer_residual",
-        "ΣωJΘ",
-        "ratio",
-        "Torque left behind the last mass in Holzer's tables, over the largest one",
-        "sum w2 J Theta",
-        residual=True,
-    ),
-    _torsion("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any piece, half of what it swings"),
-    _torsion("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece"),
-    _torsion("vibration_loss", "N_d", "power", "Mean power that the damping takes"),
-)
+from kurbel.quantity import Quantity, by_id
 
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),

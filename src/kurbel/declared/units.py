@@ -341,3 +341,14 @@ def kinds() -> tuple[str, ...]:
 def unit_names(kind: str) -> tuple[str, ...]:
     """Return the units of a kind in the spelling that messages and the schema use."""
     return (*_units_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))
+
+
+_RARE = r"\b(um|km|dm)[23]?\b"
+_WRITTEN = ("kg/dm3", "km/h", "km/s", "um/s")
+
+
+def listed_units(kind: str) -> tuple[str, ...]:
+    """Return the units of a kind that people write: products with micrometres, kilometres, decimetres are read, too."""
+    rare = (name for name in unit_names(kind) if re.search(_RARE, name) and re.search("[ /]", name))
+    left_out = set(rare) - set(_WRITTEN)
+    return tuple(name for name in unit_names(kind) if name not in left_out)

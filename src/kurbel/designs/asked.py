@@ -1,5 +1,6 @@
 """`kurbel.sweep`: what Python asks of many designs of a machine, as arrays."""
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -14,15 +15,20 @@ from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.reader import machine_of
 
 
 def sweep(
-    machine: Machine, inputs: Mapping[str, Any], columns: Sequence[str] | str = (), with_angles: bool = False
+    machine: Machine | str | os.PathLike[str],
+    inputs: Mapping[str, Any],
+    columns: Sequence[str] | str = (),
+    with_angles: bool = False,
 ) -> dict[str, Any]:
     """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
 
-    machine: as `load` or `loads` returned it; inputs: dotted key of its file -> numbers (n,) in SI (angles in degrees,
-    speeds in revolutions per second), or texts as the file would have them. columns: id or symbol of a key value, or
+    machine: as `load` or `loads` returned it, or what these take; inputs: dotted key of its file -> numbers (n,) in SI
+    (angles in degrees, speeds in revolutions per second), or texts as the file would have them; a single one holds for
+    every row. columns: id or symbol of a key value, or
     several, all of `kurbel forces` where none is named. Numbers are nan, and `failure` (n,) tells why, where a design
     fails; a list of angles is a tuple. With limits in the file `keeps` tells whether they are kept.
 
@@ -33,6 +39,7 @@ def sweep(
 
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
+    machine = machine_of(machine)
     if machine.origin is None:
         raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
     given = tuple(_inputs(machine.origin, inputs))
@@ -44,6 +51,8 @@ def sweep(
 def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
     """Yield the inputs with their values as texts of the machine file."""
     columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
+    count = max(map(len, columns.values()), default=0)
+    columns = {key: np.repeat(one, count) if np.ndim(inputs[key]) == 0 else one for key, one in columns.items()}
     lengths = {key: len(column) for key, column in columns.items()}
     counts = set(lengths.values())
     if len(counts) != 1 or 0 in counts or any(column.ndim != 1 for column in columns.values()):

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array, Indices
 from kurbel.declared.numerals import plain
 from kurbel.declared.quantity import called
 from kurbel.declared.reading import shown
@@ -127,14 +128,25 @@ def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
     places = [place for place, each in found.items() if not any(lacking for lacking, _ in each)]
     costs = np.array([[cost for _, cost in found[place]] for place in places]).reshape(len(places), len(aims))
     order = np.lexsort(costs.T[::-1])
+    front = order[_front(costs[order])]
+    return (given[places[one]] for one in sorted(front.tolist()))
+
+
+def _front(costs: Array) -> Indices:
+    """Return which rows of costs (n, aims), in the order of the first, then the next, no other one betters."""
+    if costs.shape[1] == 2:
+        second = costs[:, 1]
+        before = np.concatenate(([np.inf], np.minimum.accumulate(second)[:-1]))
+        # one as good as the best before it is bettered by that, unless both are equal
+        alike = np.concatenate(([False], (np.diff(costs, axis=0) == 0).all(axis=1)))
+        leads = second < before
+        return np.flatnonzero(leads[np.maximum.accumulate(np.where(alike, 0, np.arange(len(second))))])
     front: list[int] = []
-    kept = np.empty((0, len(aims)))
-    for one in order.tolist():
-        better = (kept <= costs[one]).all(axis=1) & (kept < costs[one]).any(axis=1)
-        if not better.any():
-            front.append(places[one])
-            kept = np.vstack((kept, costs[one]))
-    return (given[place] for place in sorted(front))
+    for place, one in enumerate(costs):
+        kept = costs[front]
+        if not ((kept <= one).all(axis=1) & (kept < one).any(axis=1)).any():
+            front.append(place)
+    return np.array(front, dtype=int)
 
 
 class Unit(str):

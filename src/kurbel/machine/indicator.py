@@ -68,8 +68,8 @@ class Card(Record):
     )
     _drawn = alternative(
         Drawn,
-        "The paper of the card: all points are then millimetres, from the card's own dead centre and from the "
-        "atmospheric line",
+        "The paper of the card: all points are then millimetres, or inches where its length is, from the card's own "
+        "dead centre and from the atmospheric line",
         instead="unit",
         key="drawn",
     )
@@ -112,9 +112,9 @@ class Card(Record):
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
         if drawn and given.keys() & {"area", "mean_height"}:
             return _by_planimeter(drawn, **given)
-        factor = drawn.unit if drawn else unit or (1, 1)
+        factor = drawn.factor if drawn else unit or (1, 1)
         whole = drawn.whole if drawn else 1.0
-        faults = [*_missing_lines(given), *_all_line_faults(given, whole)]
+        faults = [*_missing_lines(given), *_all_line_faults(given, whole, drawn.unit if drawn else "")]
         if interpolate == "polytropic" and not clearance:
             needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
             faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
@@ -136,7 +136,7 @@ class Card(Record):
         if REFUSED not in values.values():
             return []
         lines = {name: value for name, value in values.items() if isinstance(value, list)}
-        return [] if "drawn" in values else _all_line_faults(lines, 1.0)
+        return [] if "drawn" in values else _all_line_faults(lines, 1.0, "")
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -186,27 +186,27 @@ def _line(name: str, points: list[Point], unit: Factor, whole: float, start: int
     return Line(name, tuple(x / whole for x, _ in kept), tuple(p * up / down for _, p in kept), start)
 
 
-def _all_line_faults(lines: Mapping[str, list[Point]], whole: float) -> list[Fault]:
+def _all_line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
     """Return what keeps lines from running once through the whole stroke; points that are not on it are told once."""
     faults = []
     for name, points in lines.items():
         beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
         if beyond:
-            return [Fault((name, beyond[0]), _beyond(points[beyond[0]][0], whole, len(beyond) > 1))]
-        faults += _order_faults(name, points, whole)
+            return [Fault((name, beyond[0]), _beyond(points[beyond[0]][0], whole, unit, len(beyond) > 1))]
+        faults += _order_faults(name, points, whole, unit)
     return faults
 
 
-def _beyond(x: float, whole: float, several: bool) -> str:
-    if whole != 1:
-        return f"{x:g} mm is not on the card, which is {whole:g} mm long; its own dead centre is at 0"
+def _beyond(x: float, whole: float, unit: str, several: bool) -> str:
+    if unit:
+        return f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
     hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and several else ""
     return f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
 
 
-def _order_faults(name: str, points: list[Point], whole: float) -> list[Fault]:
+def _order_faults(name: str, points: list[Point], whole: float, unit: str) -> list[Fault]:
     forward = _runs_forward(points)
-    word, unit = ("", " mm") if whole != 1 else ("fraction ", "")
+    word, unit = ("", f" {unit}") if unit else ("fraction ", "")
     along = [x for x, _ in points]
     low, high = (along[0], along[-1]) if forward else (along[-1], along[0])
     if (low, high) != (0.0, whole):
@@ -250,6 +250,7 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
+    texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
 )
 _ONE_PRESSURE = Rectangular("level")
 

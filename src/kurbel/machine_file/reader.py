@@ -1,14 +1,15 @@
 """From a machine file to a `Machine`: text, tree, records; or one error with all faults."""
 
 import os
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
 from kurbel.declared.forms.records import Maker
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of
-from kurbel.errors import Fault
+from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
+from kurbel.errors import Fault, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
@@ -44,6 +45,20 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     """
     # half of a surrogate pair is no text: let the decoder say so
     return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides))
+
+
+def machine_of(given: Any) -> Machine:
+    """Return a machine as it is, that of a file by its path, or that of a text; raises UsageError for anything else.
+
+    A text has several lines, or braces, or a colon with a blank behind it; a path has none of these.
+    """
+    if isinstance(given, Machine):
+        return given
+    if isinstance(given, str) and re.search(r"[\n{]|:\s", given):
+        return loads(given)
+    if isinstance(given, (str, os.PathLike)):
+        return load(given)
+    raise UsageError(f"a machine is expected, or the path or text of a machine file, not {shown(repr(given))}")
 
 
 def reading_of(origin: Origin) -> Reading:

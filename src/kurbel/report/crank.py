@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from kurbel.declared.forces import CYCLE_VALUES
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.frame import Frame, Row, Subject, place_table, refuse_without_cylinder, report_on
@@ -14,6 +13,7 @@ from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import by_cylinder, guide_notes
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.indicated import CYCLE_ROWS
 from kurbel.solver.trace import TracePressure
 
 _TITLE = "Kräfte im Kurbeltriebe"
@@ -78,8 +78,9 @@ def cycles_report(case: Case, system: str) -> Report:
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if cycles:
-        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in CYCLE_VALUES}
-        columns = zip(*(getattr(cycles, id).tolist() for id in declared))
+        quantities = (row.quantity for row in CYCLE_ROWS)
+        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in quantities}
+        columns = zip(*(row.of(cycles).tolist() for row in CYCLE_ROWS))
         rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
         yield place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import Keyed, Listing, Record
 from kurbel.declared.keys import Form, Key, required
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
@@ -47,7 +47,9 @@ class ListedKey(NamedTuple):
         example = key.example or key.form.example()
         if example != "…":
             yield "example", f"{self.path.rpartition('.')[2]}: {example}"
-        if below := list(_of_form(key.form, self.path)):
+        listed = key.form.item if isinstance(key.form, Listing) else None
+        inner = _of_record(listed, self.path) if isinstance(listed, Record) else _of_form(key.form, self.path)
+        if below := list(inner):
             yield "below it", ", ".join(dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in below))
 
 
@@ -112,6 +114,10 @@ def _of_form(form: Form, path: str) -> Iterator[ListedKey]:
         if not form.inline_too:
             yield from _of_record(form, path)
         return
+    if isinstance(form, Keyed):
+        for name, case in form.cases.items():
+            if not isinstance(case, Record):
+                yield ListedKey(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
     if not form.inline():
         for name, inner in form.parts():
             yield from _of_form(inner, f"{path}.{name}" if name else path)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import repeat
 from typing import NamedTuple
 
@@ -13,17 +13,13 @@ from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEE
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.numerics.extreme import Extreme
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.harmonics import MachineOrders, Orders
-from kurbel.solver.motion import every_dead_centre
-from kurbel.solver.state import State
 from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, stress
 
 # turning effort, excess work, flywheel and speed line
@@ -43,45 +39,11 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     return report_on(frame, case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
 
 
-@dataclass(frozen=True, eq=False)
-class _DeadCentre:
-    """The key value of a single cylinder: the force that its parts before a pump must carry."""
-
-    turning: MachineTurning
-    forces: CylinderForces
-
-    @property
-    def P_dead_centre(self) -> Extreme | None:
-        """Largest force in N in a dead centre, without inertia."""
-        return dead_centre_force(self.forces, self.turning.effort.cycle)
-
-
 def flywheel_subjects(case: Case) -> list[Subject]:
     """Return every cylinder, and the whole machine last."""
     turning = case.flywheel
-    cylinders = [Subject(one.drive.name, (_DeadCentre(turning, one),)) for one in case.cylinders]
-    return [*cylinders, Subject("whole machine", tuple(turning.answering), turning.at, source=turning)]
-
-
-def dead_centre_force(forces: CylinderForces, cycle: float) -> Extreme | None:
-    """Return the largest force in N of steam and pump in a dead centre of a cylinder, without inertia (R p. 613).
-
-    At the end of the stroke both oppose the motion, and the parts before the pump must carry their sum. None if the
-    cylinder does not both drive and drive a pump.
-    """
-    driving, driven = forces.work_driving, forces.work_driven
-    both = np.asarray(driving is not None and (driving > 0) & (driven < 0))
-    if not both.any():
-        return None
-    drive, count = forces.drive, forces.drive.count or 1
-    centres = every_dead_centre(drive.mechanism, count, drive.cycle)
-    angles = np.repeat(centres, 2, axis=1)
-    sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
-    machine = np.repeat(np.arange(count), angles.shape[1])
-    values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
-    largest = np.arange(count), np.abs(values).argmax(axis=1)
-    found = np.where(both, values[largest], np.nan), np.mod(angles[largest], cycle)
-    return Extreme(*map(forces.told, found))
+    cylinders = [Subject(one.drive.name, (DeadCentre(one, turning.effort.cycle),)) for one in case.cylinders]
+    return [*cylinders, Subject("whole machine", (turning,), turning.at, source=turning)]
 
 
 def _flywheel_notes(machine: Machine, turning: MachineTurning) -> Iterator[str]:

@@ -15,7 +15,7 @@ from kurbel.numerics.extreme import number_of, size_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
-from kurbel.report.commands import COMMANDS, Command
+from kurbel.report.commands import REPORTS, Command, report_of, subjects_of
 from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.frame import Frame, Subject, provenance
 from kurbel.report.keys import every_place, meaning
@@ -42,7 +42,7 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
     found = checked(case)
     sections: list[Section | None] = [_input(given, found)]
     left_out: list[LeftOut] = []
-    for command in COMMANDS.values():
+    for command in REPORTS.values():
         progress(command.title.lower())
         try:
             sections.append(Section(command.word, command.title, tuple(_items(case, command, system, step))))
@@ -74,7 +74,7 @@ def _items(case: Case, command: Command, system: str, step: float) -> list[Item]
     angles = stepped(step, end, max(len(case.cylinders), 1))
     table: Item
     try:
-        table = command.report(case, Frame(command.word, angles, None, system))
+        table = report_of(case, Frame(command.word, angles, None, system))
     except NoSolutionError as error:
         table = f"No solution: {error}"
     found: list[Item] = []
@@ -151,7 +151,7 @@ def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, pro
     first, second = (case.machine.name for case in cases)
     names = (first, second) if first != second else (f"{first} (A)", f"{second} (B)")
     sections = [Section("input", "What was given differently", (*_files(cases, names), _given(given, names)))]
-    for command in COMMANDS.values():
+    for command in REPORTS.values():
         progress(command.title.lower())
         items: tuple[Item, ...] = (*_key_values(cases, names, command, system), *_pairs(cases, names, command, system))
         sections.append(Section(command.word, command.title, items))
@@ -174,7 +174,7 @@ def _given(given: Sequence[Given], names: Sequence[str]) -> Grid | str:
 
 def _key_values(cases: Sequence[Case], names: Sequence[str], command: Command, system: str) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder next to cylinder, equal ones once."""
-    both = [_if_any(partial(command.subjects, case)) for case in cases]
+    both = [_if_any(partial(subjects_of, case, command.word)) for case in cases]
     heads = ("Symbol", *names, "Unit", "Difference", "Meaning")
     found = [(one or other, one, other) for one, other in zip_longest(*both)]
     compared = [(some.name, tuple(_rows(one, other, command.word, system))) for some, one, other in found]

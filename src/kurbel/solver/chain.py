@@ -24,8 +24,6 @@ from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.speed import SpeedLaw
 
-_AT_ONCE = 2048
-"""Systems of equations that are solved together: what the nearest memory holds."""
 _NOTHING = 1e-40
 """In place of a quotient of Holzer's table that is exactly zero: there a mass stands still."""
 _STILL = 1e-6
@@ -98,65 +96,48 @@ class Response(NamedTuple):
 
 
 def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0) -> Response:
-    """Return the answer to torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
+    """Return the vibration under torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
 
     (K (1 + iη) + iΩ C − Ω² J) θ = M; load_damping: of the masses in addition to their own, (n, …) in N m s/rad. A
     resonance that nothing damps has no answer: it is not finite.
     """
-    flat, damping = frequencies.ravel(), np.broadcast_to(load_damping, torques.shape).reshape(len(torques), -1)
-    sides = torques.reshape(len(torques), -1)
-    parts = [slice(start, start + _AT_ONCE) for start in range(0, max(1, len(flat)), _AT_ONCE)]
-    found = [_response(chain, flat[part], sides[:, part], damping[:, part]) for part in parts]
-    return Response(*(np.concatenate(each, axis=1).reshape(torques.shape) for each in zip(*found)))
-
-
-def _response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array) -> Response:
-    """Return it at frequencies (m,)."""
-    twists, springs = chain.twists, chain.springs(frequencies)
-    own = 1j * (chain.mass_damping[:, None] + load_damping) * frequencies - np.outer(chain.inertias, frequencies**2)
+    omegas, sides = frequencies.ravel(), torques.reshape(len(torques), -1)
+    damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(sides.shape)
+    twists, springs = chain.twists, chain.springs(omegas)
+    own = 1j * damping * omegas - np.outer(chain.inertias, omegas**2)
     # a pivot of exactly zero is none: it ends as inf
     diagonal = own + (twists.T**2) @ springs + np.finfo(float).tiny * 1j
-    solved = _eliminated(diagonal, (twists[:, :-1] * twists[:, 1:]).T @ springs)
-    angles = solved(torques)
+    beside = (twists[:, :-1] * twists[:, 1:]).T @ springs
+    (angles,) = _eliminated(diagonal, beside, sides)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
-    left = torques - own * angles - twists.T @ (springs * (twists @ angles))
+    left = sides - own * angles - twists.T @ (springs * (twists @ angles))
     phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
     sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
-    unsure = np.finfo(float).eps * (sizes * angles + np.abs(torques) * phases)
-    return Response(angles + solved(left), solved(unsure))
+    unsure = np.finfo(float).eps * (sizes * angles + np.abs(sides) * phases)
+    missed, moved = _eliminated(diagonal, beside, left, unsure)
+    return Response((angles + missed).reshape(torques.shape), moved.reshape(torques.shape))
 
 
-def _eliminated(diagonal: ComplexArray, beside: ComplexArray) -> Callable[[ComplexArray], ComplexArray]:
-    """Return what solves beside_{i−1} x_{i−1} + diagonal_i x_i + beside_i x_{i+1} = sides_i for x (n, m).
+def _eliminated(diagonal: ComplexArray, beside: ComplexArray, *sides: ComplexArray) -> ComplexArray:
+    """Return x (q, n, m) with beside_{i−1} x_{i−1} + diagonal_i x_i + beside_i x_{i+1} = each of q sides_i.
 
-    diagonal (n, m), beside (n − 1, m). Of two neighbouring rows the one with the larger pivot goes first.
+    diagonal, sides (n, m), beside (n − 1, m). Of two neighbouring rows the one with the larger pivot goes first.
     """
-    count, width = diagonal.shape
-    done = np.zeros((count, 3, width), dtype=complex)  # the factors of x_i, x_{i+1}, x_{i+2} in finished rows
-    row, lower = np.zeros((2, 3, width), dtype=complex)
-    swaps, shares = np.zeros((count, width), dtype=bool), np.zeros((count, width), dtype=complex)
-    row[0], row[1] = diagonal[0], beside[0] if count > 1 else 0.0
+    count, nothing = len(diagonal), np.zeros_like(diagonal[:1])
+    before, after = np.concatenate((nothing, beside)), np.concatenate((beside, nothing))
+    # a row holds the factors of x_i, x_{i+1}, x_{i+2}, and its right sides
+    rows = np.stack((before, diagonal, after, *sides), axis=1).astype(complex)
+    row = np.stack((diagonal[0], after[0], nothing[0], *(one[0] for one in sides)))
     for i in range(1, count):
-        lower[0], lower[1], lower[2] = beside[i - 1], diagonal[i], beside[i] if i + 1 < count else 0.0
-        swap = swaps[i] = np.abs(lower[0]) > np.abs(row[0])
-        above = done[i - 1] = np.where(swap, lower, row)
-        below = np.where(swap, row, lower)
-        shares[i] = below[0] / above[0]
-        row[:2] = below[1:] - shares[i] * above[1:]
-    done[-1] = row
-
-    def solved(sides: ComplexArray) -> ComplexArray:
-        right = sides.astype(complex)
-        for i in range(1, count):
-            above = np.where(swaps[i], right[i], right[i - 1])
-            right[i] = np.where(swaps[i], right[i - 1], right[i]) - shares[i] * above
-            right[i - 1] = above
-        found = np.zeros((count + 2, width), dtype=complex)
-        for i in range(count - 1, -1, -1):
-            found[i] = (right[i] - done[i, 1] * found[i + 1] - done[i, 2] * found[i + 2]) / done[i, 0]
-        return np.asarray(found[:-2])
-
-    return solved
+        swap = np.abs(rows[i, 0]) > np.abs(row[0])
+        rows[i - 1], below = np.where(swap, rows[i], row), np.where(swap, row, rows[i])
+        row = below - below[0] / rows[i - 1, 0] * rows[i - 1]
+        row[0], row[1], row[2] = row[1].copy(), row[2].copy(), 0.0
+    rows[-1] = row
+    found = np.zeros((count + 2, len(sides), diagonal.shape[1]), dtype=complex)
+    for i in range(count - 1, -1, -1):
+        found[i] = (rows[i, 3:] - rows[i, 1] * found[i + 1] - rows[i, 2] * found[i + 2]) / rows[i, 0]
+    return np.asarray(found[:-2].swapaxes(0, 1))
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
@@ -299,11 +280,8 @@ class ChainEquation:
         def by_machine(numbers: Array) -> Array:
             return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
 
-        self._twists, self._damping, self._against = (
-            chain.twists,
-            by_machine(chain.segment_damping),
-            by_machine(chain.mass_damping),
-        )
+        self._twists = chain.twists
+        self._damping, self._against = by_machine(chain.segment_damping), by_machine(chain.mass_damping)
         self._speeds = 1 / (by_machine(chain.inertias) * omega)
         self._springs = by_machine(chain.stiffnesses) / (omega * self._order)
         self.unknowns, self.bounded = sum(chain.twists.shape), len(chain.stiffnesses) + loaded
@@ -326,11 +304,9 @@ class ChainEquation:
 
     def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
         """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
-        rate, slope = (
-            self._flow(y, pieces.machine)[1],
-            self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2),
-        )
+        rate = self._flow(y, pieces.machine)[1]
         rate[-len(known) :] += known
+        slope = self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2)
         if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
             height = self.height(known, pieces, eased)

@@ -142,17 +142,15 @@ class TurningEffort:
     # the effort
 
     @cached_property
-    def indicated(self) -> Array:
-        """The torque M in N m without the losses of the machine."""
-        if self.machine.effort:
-            return torque_on(self.machine.effort, self.pieces)
-        return self.sampled([Term(1.0, group) for group in self.groups])
+    def given(self) -> Array | None:
+        """The effort in N m that is known from elsewhere, without losses; None where cylinders give it."""
+        return torque_on(self.machine.effort, self.pieces) if self.machine.effort else None
 
     @cached_property
     def drives(self) -> Any:
         """Whether any piston drives; for a given effort, whether its mean does."""
-        if self.machine.effort:
-            return self.result(self._mean_of(self.indicated)) >= 0
+        if self.given is not None:
+            return self.result(self._mean_of(self.given)) >= 0
         return any_of(group[0].drive.drives for group in self.groups)
 
     def share(self, drive: Drive | None) -> Any:
@@ -186,9 +184,7 @@ class TurningEffort:
     @cached_property
     def M(self) -> Array:
         """The turning effort in N m, with the losses of the machine; see `share`."""
-        if self.machine.effort:
-            return np.asarray(self.indicated * self.pieces.of(self.share(None)))
-        return self.indicated if not some(self.machine.efficiency != 1) else self.sampled(self.terms)
+        return self.sampled(self.terms) if self.given is None else self.given * self.pieces.of(self.share(None))
 
     @cached_property
     def mean(self) -> Array:
@@ -203,21 +199,22 @@ class TurningEffort:
     @cached_property
     def load(self) -> Array:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
-        if self.diagram is None:
-            return np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
-        return np.asarray(self._given_load + self.pieces.of(self.deficit))
+        level = np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
+        return (
+            level
+            if self._given_load is None
+            else level + (self._given_load - self.pieces.mean(self._given_load)[self.pieces.machine])
+        )
 
     @cached_property
-    def _given_load(self) -> Array:
-        assert self.diagram
-        return torque_on(self.diagram, self.pieces)
+    def _given_load(self) -> Array | None:
+        return torque_on(self.diagram, self.pieces) if self.diagram else None
 
-    @cached_property
+    @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (n,); 0 where they agree, and for another load."""
-        given = self.mean if self.diagram is None else self._mean_of(self._given_load)
-        size = np.maximum(np.abs(given), np.abs(self.mean))
-        return np.asarray(unless_cancelled(self.mean - given, size, _BALANCED))
+        given = self.mean if self._given_load is None else self.pieces.mean(self._given_load)
+        return np.asarray(unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED))
 
     # the masses
 
@@ -247,7 +244,9 @@ class TurningEffort:
         too_little = (self.mean < 0) & (self.machine.efficiency != 1) & self.drives
         self.refused |= too_little
         if self.count is None and too_little.any():
-            eta, mean, whole = self.machine.efficiency, float(self.mean[0]), float(self._mean_of(self.indicated)[0])
+            eta, mean = self.machine.efficiency, float(self.mean[0])
+            indicated = self.sampled([Term(1.0, group) for group in self.groups]) if self.given is None else self.given
+            whole = float(self._mean_of(indicated)[0])
             runs = "with no efficiency"
             if whole >= 0:  # the mean is linear in η
                 least = 1 - (1 - eta) * whole / (whole - mean)

@@ -9,7 +9,7 @@ The books take J as constant and the load as independent of the speed; the speed
 from __future__ import annotations
 
 import math
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,25 +19,84 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Standstill, Unsettled
-from kurbel.numerics.extreme import Extremes
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.numerics.roots import rising_root
+from kurbel.quantity import column, key_value
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.figures import Columns, Results, passed_on
-from kurbel.solver.forces import Brake
+from kurbel.solver.figures import AtAngles, Results, Searched, part
+from kurbel.solver.forces import Brake, CylinderForces
+from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine
+from kurbel.solver.state import State
 
 RIGID_ABOVE = 100.0
 """Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
-_COLUMNS = ("M", "M_load", "T", "T_inertia", "E", "omega", "alpha", "M_coupling")
 _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before a warning."""
 _LARGEST_EXPONENT = 709.7
 """Its power of e is all but the largest float."""
 _DOUBLINGS = 30
 """How many doublings of the flywheel are tried for one that turns."""
+
+
+class TurningState(AtAngles):
+    """The columns of the only machine at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
+
+    commands = ("flywheel",)
+
+    def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
+        self.turning, self.phi, self._within = turning, phi, within
+
+    def __getitem__(self, id: str) -> Any:
+        """Return a column by its id; None for one that there is not."""
+        return self.M_load if id == "M_load" else super().__getitem__(id)
+
+    def _at(self, column: str) -> Array | None:
+        found = self.turning.samples_of(column)
+        return None if found is None else self.turning.effort.at(*found, self.phi, self._within)
+
+    @property
+    def M_load(self) -> Any:
+        """Load in N m at the nominal speed."""
+        return self._at("M_load")
+
+    @column("T", "force", extremes=("flywheel",), called="tangential force", peak=True)
+    def T(self) -> Any:
+        """Tangential force at the crank pin, positive when it drives."""
+        return self._at("T")
+
+    @column("T_b", "force")
+    def T_inertia(self) -> Any:
+        """Share of the inertia forces in T, at uniform rotation (Tolle)."""
+        return self._at("T_inertia")
+
+    @column("M", "torque", extremes=("flywheel",), called="torque")
+    def M(self) -> Any:
+        """Torque on the shaft."""
+        return self._at("M")
+
+    @column("E", "energy")
+    def E(self) -> Any:
+        """Excess of the work of M over that of the resistance since angle 0."""
+        return self._at("E")
+
+    @column("ω", "angular_velocity")
+    def omega(self) -> Any:
+        """Angular velocity of the shaft."""
+        return self._at("omega")
+
+    @column("α", "angular_acceleration", extremes=("flywheel",), called="angular acceleration of the shaft")
+    def alpha(self) -> Any:
+        """Angular acceleration of the shaft, just after a jump."""
+        return self._at("alpha")
+
+    @column("M_K", "torque")
+    def M_coupling(self) -> Any:
+        """Torque in the elastic coupling."""
+        return self._at("M_coupling")
 
 
 class MachineTurning(Results):
@@ -48,35 +107,25 @@ class MachineTurning(Results):
     Raises UsageError where nothing turns the machine, NoSolutionError where it cannot run.
     """
 
-    command = "flywheel"
+    command, state = "flywheel", TurningState
 
     def __init__(self, effort: TurningEffort) -> None:
         self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
         self.omega = effort.omega
         self.crank = self.machine.cylinders[0].mechanism.crank if self.machine.cylinders else None
-        self.brake = Brake(self.machine, effort.cylinders)
+        self._extremes: dict[str, Extremes | None] = {}
         wheel = self.machine.flywheel
         self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
         self._turns = self.omega is not None and some(self.omega != 0)
         if effort.count is not None:
             _ = self.natural_order  # refuses machines of a batch before any result is read
 
-    @property
-    def answering(self) -> tuple[Any, ...]:
-        """The objects that have key values, searched in this order."""
-        return (self, *((self.elastic,) if self.elastic else ()), self.brake)
-
     # over the crank angle
 
-    def _columns(self, phi: Array, within: Array) -> Columns:
-        return Columns(phi, {column: partial(self._column, column, phi, within) for column in _COLUMNS})
+    def _columns(self, phi: Array, within: Array) -> TurningState:
+        return TurningState(self, phi, within)
 
-    def _column(self, column: str, phi: Array, within: Array) -> Array | None:
-        """Return a column of the only machine at crank angles (k,); None for one that is left out."""
-        found = self._samples_of(column)
-        return None if found is None else self.effort.at(*found, phi, within)
-
-    def _samples_of(self, column: str) -> tuple[Pieces, Array] | None:
+    def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column at the nodes of pieces; None for one that is left out."""
         effort, arm = self.effort, self.crank if column.startswith("T") else 1.0
         if column in ("omega", "alpha", "M_coupling"):
@@ -96,36 +145,45 @@ class MachineTurning(Results):
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
-        found = self._samples_of(column)
+        found = self.samples_of(column)
         return None if found is None else where_is(*found, value)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
-        found = self._samples_of(column)
-        result = self.speed.result if column == "alpha" and self.speed else self.effort.result
-        return None if found is None else found[0].extremes(found[1][None]).each(result)[0]
+        if column not in self._extremes:
+            found = self.samples_of(column)
+            result = self.speed.result if column == "alpha" and self.speed else self.effort.result
+            self._extremes[column] = None if found is None else found[0].extremes(found[1][None]).each(result)[0]
+        return self._extremes[column]
 
     # turning effort
 
-    @property
-    def M_mean(self) -> Any:
-        """Mean torque in N m."""
-        return self.effort.result(self.effort.mean)
+    @part(Brake)
+    def brake(self) -> Brake:
+        """Key values of the brake."""
+        return Brake(self.machine, self.effort.cylinders)
 
-    @property
+    @key_value("W", "force")
     def W(self) -> Any:
-        """Mean tangential force in N at the radius of crank 1: the resistance."""
+        """Mean tangential force over the cycle: the resistance."""
         return None if self.crank is None else self.M_mean / self.crank
 
-    @property
+    @key_value("M_m", "torque")
+    def M_mean(self) -> Any:
+        """Mean torque of the turning effort: the resistance."""
+        return self.effort.result(self.effort.mean)
+
+    @key_value("A", "energy")
     def work_shaft(self) -> Any:
-        """Work of the turning effort in J per cycle."""
+        """Work of the turning effort per cycle."""
         return self.M_mean * math.radians(self.effort.cycle)
 
-    @property
+    @key_value("N_e", "power")
     def power_shaft(self) -> Any:
-        """Mean torque times nominal angular velocity in W."""
+        """Power at the shaft, mean torque times nominal angular velocity."""
         return self.M_mean * self.omega if self._turns else None
+
+    _searched = Searched()
 
     @property
     def deficit(self) -> Any:
@@ -141,14 +199,14 @@ class MachineTurning(Results):
         tuples = tuple(tuple(one.tolist()) for one in each)
         return tuples[0] if self.effort.count is None else tuples
 
-    @property
+    @key_value("φ_T=W", "angle", listed=True)
     def phi_crossing(self) -> Any:
-        """Crank angles in degrees at which T crosses W."""
+        """Crank angles at which the effort crosses the resistance."""
         return self._of_each(self.excess.crossings.degrees)
 
-    @property
+    @key_value("A_1, A_2, …", "energy", plain="A_1, ...", listed=True)
     def lobes(self) -> Any:
-        """Work in J of the lobes between the crossings."""
+        """Excess work of the lobes, from crossing to crossing."""
         return self._of_each(self.excess.lobes)
 
     @cached_property
@@ -156,33 +214,35 @@ class MachineTurning(Results):
         """Largest and smallest E with their angles; None where the only machine has no excess."""
         return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
 
-    E_max = passed_on("_summits", "largest", "Largest excess work in J since angle 0; None where there is none.")
-    E_min = passed_on("_summits", "smallest", "Smallest excess work in J since angle 0; None where there is none.")
+    @key_value("E_max", "energy")
+    def E_max(self) -> Extreme | None:
+        """Largest excess work since angle 0."""
+        return self._summits and self._summits.largest
 
-    @property
+    @key_value("E_min", "energy")
+    def E_min(self) -> Extreme | None:
+        """Smallest excess work since angle 0."""
+        return self._summits and self._summits.smallest
+
+    @key_value("ΔE", "energy")
     def dE(self) -> Any:
-        """ΔE in J, the largest swing of the excess work."""
+        """Largest swing of the excess work, over all lobes."""
         return self.effort.result(self.excess.dE)
 
-    @property
+    @key_value("ΔE/A", "ratio")
     def energy_fluctuation(self) -> Any:
-        """ΔE over the work of a cycle; None where none is done, nan for such a machine of many."""
+        """Coefficient of fluctuation of energy.
+
+        None where no work is done, nan for such a machine of many.
+        """
         work = self.work_shaft
         return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
 
     # flywheel
 
-    @cached_property
-    def J_needed(self) -> Any:
-        """Flywheel in kg m² for the wanted δ, J = ΔE/(δ ω²); what a rigid coupling adds comes off."""
-        if self._wanted is None or not self._turns:
-            return None
-        left = self.dE / (self._wanted * self.omega**2) - self._driven_rigidly
-        return where(left > 0, left, 0.0)
-
-    @property
+    @key_value("J", "inertia")
     def J(self) -> Any:
-        """Flywheel in kg m²: the given one, or else the one for the wanted δ."""
+        """Moment of inertia of the flywheel: the given one, or that for the wanted δ."""
         return self.J_needed if self._given is None else self._given
 
     @property
@@ -190,78 +250,42 @@ class MachineTurning(Results):
         """Whether the flywheel is the one for the wanted δ."""
         return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
 
-    @property
+    @key_value("GD²", "gd2", plain="GD2")
     def GD2(self) -> Any:
-        """GD² = 4 J in kg m²."""
+        """Old form of the moment of inertia, 4gJ as a weight times an area."""
         return None if self.J is None else 4 * self.J
 
-    @property
+    @key_value("J_δ", "inertia", unless=lambda turning: turning.is_the_needed)
+    def J_needed(self) -> Any:
+        """Flywheel for the wanted δ, ΔE/(δ ω²).
+
+        What a rigid coupling adds comes off.
+        """
+        if self._wanted is None or not self._turns:
+            return None
+        left = self.dE / (self._wanted * self.omega**2) - self._driven_rigidly
+        return where(left > 0, left, 0.0)
+
+    @key_value("GD²_δ", "gd2", plain="GD2_delta", unless=lambda turning: turning.is_the_needed)
     def GD2_needed(self) -> Any:
-        """GD² = 4 J for the wanted δ, in kg m²."""
+        """The same as GD² = 4gJ."""
         return None if self.J_needed is None else 4 * self.J_needed
 
-    @property
+    @key_value("A_K", "area")
     def rim_section(self) -> Any:
-        """Section of the rim in m² that has the wanted moment of inertia, or else the given one."""
+        """Section of the rim for the wanted δ, or for J: 4 J/(π ρ D (D² + h²))."""
         wanted = self.J if self.J_needed is None else self.J_needed
         return None if self._rim is None or wanted is None else self._rim.section(wanted)
 
-    @property
+    @key_value("v_K", "velocity")
     def rim_speed(self) -> Any:
-        """Speed of the middle of the rim in m/s."""
+        """Speed of the middle of the rim."""
         return self._rim.speed(self.omega) if self._rim and self._turns else None
 
-    @property
+    @key_value("σ_K", "stress")
     def rim_stress(self) -> Any:
-        """Hoop stress ρ v² of the rim in Pa."""
+        """Hoop stress of the rim, ρ v²."""
         return self._rim.stress(self.omega) if self._rim and self._turns else None
-
-    @property
-    def delta_book(self) -> Any:
-        """δ ≈ ΔE/(J ω²) of the books: constant J, and a load that does not depend on the speed."""
-        inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
-        if not self._turns or not some(inertia != 0):
-            return None
-        return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
-
-    # coupling
-
-    @cached_property
-    def natural_order(self) -> Any:
-        """Natural frequency of cranks and driven inertia on the coupling, over ω; None where not defined."""
-        if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
-            return None
-        flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
-        own = self._before_coupling(flywheel)
-        if not every(own != 0):
-            return None
-        found = natural_order(self.machine.coupling, own, self.omega)
-        if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
-            self.effort.refused |= found > RIGID_ABOVE
-        return self.effort.result(found)
-
-    def _before_coupling(self, flywheel: Any) -> Array:
-        """Return J₁ in kg m² (n,): the flywheel and the mean of what the moving masses add."""
-        return np.asarray(flywheel + self.effort.pieces.mean(self.effort.J_moving))
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the coupling is so stiff that it counts as rigid; that of many machines, whether all do."""
-        return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
-
-    @property
-    def _driven_rigidly(self) -> Any:
-        return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
-
-    @property
-    def elastic(self) -> ElasticCoupling | None:
-        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
-
-        Raises NoSolutionError where no motion of it repeats.
-        """
-        if self.machine.coupling is None or self.rigid:
-            return None
-        return self.speed if isinstance(self.speed, ElasticCoupling) else None
 
     # speed line
 
@@ -295,7 +319,7 @@ class MachineTurning(Results):
         whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
         return RigidLine(self.effort, self.law, np.broadcast_to(whole, self.effort.mean.shape))
 
-    @cached_property
+    @part(SpeedLine)
     def speed(self) -> SpeedLine | None:
         """The speed of the crank shaft over the turn; None without a flywheel or a speed.
 
@@ -352,14 +376,17 @@ class MachineTurning(Results):
             least, enough = (least, middle) if turns else (middle, enough)
         return _rounded_up(enough)
 
-    delta = passed_on("speed", "delta", "δ = (ω_max − ω_min)/ω_mean of the speed line.")
-    omega_max = passed_on("speed", "omega_max", "Largest angular velocity in rad/s.")
-    omega_min = passed_on("speed", "omega_min", "Smallest angular velocity in rad/s.")
-    omega_mean = passed_on("speed", "omega_mean", "Mean angular velocity over time in rad/s.")
+    @key_value("δ_0", "ratio", after="delta")
+    def delta_book(self) -> Any:
+        """The same after the books, ΔE/(J ω²)."""
+        inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
+        if not self._turns or not some(inertia != 0):
+            return None
+        return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
 
-    @property
+    @key_value("μ", "ratio")
     def multiplier(self) -> Any:
-        """Floquet multiplier: what is left of a small disturbance after one cycle; stable below 1.
+        """What is left of a disturbance after a cycle (Floquet); below 1 it dies away.
 
         μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
         """
@@ -367,6 +394,60 @@ class MachineTurning(Results):
             return None
         found = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
         return float(found) if self.effort.count is None else found
+
+    # coupling
+
+    @key_value("n_e", "ratio")
+    def natural_order(self) -> Any:
+        """Natural frequency of the coupled masses over the angular velocity."""
+        if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
+            return None
+        flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
+        own = self._before_coupling(flywheel)
+        if not every(own != 0):
+            return None
+        found = natural_order(self.machine.coupling, own, self.omega)
+        if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
+            self.effort.refused |= found > RIGID_ABOVE
+        return self.effort.result(found)
+
+    def _before_coupling(self, flywheel: Any) -> Array:
+        """Return J₁ in kg m² (n,): the flywheel and the mean of what the moving masses add."""
+        return np.asarray(flywheel + self.effort.pieces.mean(self.effort.J_moving))
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the coupling is so stiff that it counts as rigid; that of many machines, whether all do."""
+        return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
+
+    @property
+    def _driven_rigidly(self) -> Any:
+        return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
+
+    @property
+    def elastic(self) -> ElasticCoupling | None:
+        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
+
+        Raises NoSolutionError where no motion of it repeats.
+        """
+        if self.machine.coupling is None or self.rigid:
+            return None
+        return self.speed if isinstance(self.speed, ElasticCoupling) else None
+
+    @key_value("M_K,max", "torque")
+    def M_coupling_max(self) -> Extreme | None:
+        """Largest torque in the elastic coupling."""
+        return self.elastic.M_coupling_max if self.elastic else None
+
+    @key_value("M_K,min", "torque")
+    def M_coupling_min(self) -> Extreme | None:
+        """Smallest torque in the elastic coupling."""
+        return self.elastic.M_coupling_min if self.elastic else None
+
+    @key_value("V", "ratio")
+    def amplification(self) -> Any:
+        """Swing of the torque in the coupling over that in a rigid one."""
+        return self.elastic.amplification if self.elastic else None
 
     # the wanted δ, held against the speed line
 
@@ -376,7 +457,7 @@ class MachineTurning(Results):
         if self.J_needed is None or not self._turns or self._needs_no_inertia:
             return None
         if self.is_the_needed:
-            return self.delta
+            return self.speed and self.speed.delta
         if self.effort.count is not None:
             return self._line(self.J_needed).delta
         delta = self._delta_with(self.J_needed)
@@ -389,11 +470,11 @@ class MachineTurning(Results):
             return False
         return some((self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED))
 
-    @cached_property
+    @key_value("J_δ,ω", "inertia", after="rim_stress")
     def J_exact(self) -> Any:
-        """Flywheel in kg m² with which δ of the speed line is the wanted one, where that of the books misses it.
+        """Flywheel with which δ of the speed line is the wanted one.
 
-        Of many machines nan: each is searched by itself.
+        None where that of the books does; of many machines nan: each is searched by itself.
         """
         if not self.misses_the_wish or self._wanted is None or not some(self.J_needed != 0):
             return None
@@ -412,3 +493,33 @@ def _rounded_up(value: float) -> float:
     """Return the next larger number of three digits."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return math.ceil(value / digit) * digit
+
+
+class DeadCentre(Results):
+    """What `kurbel flywheel` has of a cylinder that drives a pump; cycle: of the machine in degrees."""
+
+    command = "flywheel"
+
+    def __init__(self, forces: CylinderForces, cycle: float) -> None:
+        self.forces, self._cycle = forces, cycle
+
+    @key_value("P_d + P_p", "force")
+    def P_dead_centre(self) -> Extreme | None:
+        """Force before the pump in a dead centre, without inertia.
+
+        At the end of the stroke steam and pump both oppose the motion, and the parts before the pump must carry their
+        sum (R p. 613). None if the cylinder does not both drive and drive a pump.
+        """
+        forces, drive, count = self.forces, self.forces.drive, self.forces.drive.count or 1
+        driving, driven = forces.work_driving, forces.work_driven
+        both = np.asarray(driving is not None and (driving > 0) & (driven < 0))
+        if not both.any():
+            return None
+        centres = every_dead_centre(drive.mechanism, count, drive.cycle)
+        angles = np.repeat(centres, 2, axis=1)
+        sides = angles + np.tile([-1e-6, 1e-6], centres.shape[1])
+        machine = np.repeat(np.arange(count), angles.shape[1])
+        values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
+        largest = np.arange(count), np.abs(values).argmax(axis=1)
+        found = np.where(both, values[largest], np.nan), np.mod(angles[largest], self._cycle)
+        return Extreme(*map(forces.told, found))

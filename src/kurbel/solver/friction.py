@@ -1,28 +1,12 @@
 """Friction of a crosshead and of piston rings, after Redtenbacher 1862 (D) and with signs for every quadrant."""
 
 import math
-from typing import Any
+
+import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.machine.friction import Rings
-
-_HALF_RULE = (
-    (0.09501250983763744, 0.1894506104550685),
-    (0.2816035507792589, 0.1826034150449236),
-    (0.45801677765722737, 0.16915651939500254),
-    (0.6178762444026438, 0.14959598881657674),
-    (0.755404408355003, 0.12462897125553388),
-    (0.8656312023878318, 0.09515851168249279),
-    (0.9445750230732326, 0.062253523938647894),
-    (0.9894009349916499, 0.027152459411754096),
-)
-"""Nodes and weights of 16 Gauss points on (−1, 1), the positive half; the rule is symmetric."""
-
-
-def ring_force(rings: Rings, bore: Any) -> Any:
-    """Return the friction force n π d h p_r f of n piston rings in N (D, Kolbenreibung); bore d in m."""
-    return rings.count * math.pi * bore * rings.height * rings.pressure * rings.coefficient
+from kurbel.numerics.lobatto import rule
 
 
 def redtenbacher_loss(lam: float, friction: float) -> float:
@@ -45,25 +29,18 @@ def redtenbacher_logarithm(lam: float, friction: float) -> float:
 def mean_friction_over_rod_angle(gamma: float, friction: float) -> float:
     """Return F_m/P, the mean of f sin β/(cos β + f sin β) over the rod angle β from 0 to γ (radians), D 5.
 
-    The closed form f/(1+f²) [f − ln(cos γ + f sin γ)/γ] cancels for small γ; there a 16-point Gauss rule is exact.
+    The closed form f/(1+f²) [f − ln(cos γ + f sin γ)/γ] cancels for small γ; there a rule of 16 points is exact.
 
     >>> round(mean_friction_over_rod_angle(0.2, 0.1), 8)
     0.00993391
     """
     if gamma < 0.2:
-        half = gamma / 2
-        return math.fsum(
-            weight / 2 * _friction_share(half * (1 + side * node), friction)
-            for node, weight in _HALF_RULE
-            for side in (-1, 1)
-        )
+        beta = gamma / 2 * (1 + rule(16).nodes)
+        share = friction * np.sin(beta) / (np.cos(beta) + friction * np.sin(beta))
+        return float(rule(16).weights @ share) / 2
     change = friction * math.sin(gamma) - 2 * math.sin(gamma / 2) ** 2
     logarithm = math.log1p(change) if -0.5 < change < 1 else math.log(math.cos(gamma) + friction * math.sin(gamma))
     return friction / (1 + friction * friction) * (friction - logarithm / gamma)
-
-
-def _friction_share(beta: float, friction: float) -> float:
-    return friction * math.sin(beta) / (math.cos(beta) + friction * math.sin(beta))
 
 
 def holding_force(incline: float, friction: float, direction: float = 0.0) -> float:

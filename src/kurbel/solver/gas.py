@@ -13,7 +13,6 @@ A measured trace is in `kurbel.solver.trace`. The force is P = p_H A_H − p_C A
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -126,16 +125,7 @@ def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: floa
         return _card(chamber, lift)
     if isinstance(chamber, Rectangle):
         return _rectangle(chamber, base, cycle)
-    draw = _Drawing(lift, chamber.clearance, cycle == 720.0)
-    if isinstance(chamber, Steam):
-        strokes = draw.steam(chamber)
-    elif isinstance(chamber, Compressor):
-        strokes = draw.compressor(chamber)
-    elif isinstance(chamber, Otto):
-        strokes = draw.otto(chamber)
-    else:
-        strokes = draw.diesel(chamber)
-    return Process(strokes, lift, chamber.clearance)
+    return Process(_ideal(chamber, lift, four_stroke=cycle == 720.0), lift, chamber.clearance)
 
 
 def _card(card: Card, lift: float) -> Process:
@@ -166,59 +156,46 @@ def _rectangle(card: Rectangle, base: float, cycle: float) -> Process:
     return Process(tuple((_isobar(float(i % 2), p, float(1 - i % 2)),) for i, p in enumerate(pressures)))
 
 
-class _Drawing(NamedTuple):
-    """Draws ideal cards; lift makes pressures absolute; four_stroke: with exhaust and intake."""
+def _ideal(card: Steam | Compressor | Otto | Diesel, lift: float, four_stroke: bool) -> tuple[Stroke, ...]:
+    """Return the lines of an ideal card, stroke by stroke; those of an engine with exhaust and intake in four strokes.
 
-    lift: float
-    clearance: float
-    four_stroke: bool
+    lift: what makes its pressures absolute, in Pa.
+    """
+    clearance = card.clearance
 
-    def polytrope(self, z: float, p: float, next_z: float, exponent: float) -> Segment:
+    def polytrope(z: float, p: float, next_z: float, exponent: float) -> Segment:
         """Return p V^n = const from the point (z, p) to the stroke fraction next_z."""
         if next_z == z:  # even where there is no volume
             return _isobar(z, p, z)
-        absolute = after_polytrope(p + self.lift, z + self.clearance, next_z + self.clearance, exponent)
-        return Segment(z, p, next_z, absolute - self.lift, exponent)
+        absolute = after_polytrope(p + lift, z + clearance, next_z + clearance, exponent)
+        return Segment(z, p, next_z, absolute - lift, exponent)
 
-    def fraction_after(self, z: float, p: float, next_p: float, exponent: float) -> float:
-        """Return the stroke fraction at which p V^n = const from (z, p) reaches next_p."""
-        ratio = (p + self.lift) / (next_p + self.lift)
-        return z + (z + self.clearance) * math.expm1(math.log(ratio) / exponent)
-
-    def steam(self, card: Steam) -> tuple[Stroke, ...]:
-        """Admission, expansion, exhaust; exhaust, compression."""
-        expansion = self.polytrope(card.cut_off, card.admission, card.release, card.exponent)
-        compression = self.polytrope(card.compression, card.exhaust, 0.0, card.exponent)
+    if isinstance(card, Steam):  # admission, expansion, exhaust; exhaust, compression
+        expansion = polytrope(card.cut_off, card.admission, card.release, card.exponent)
         out = _isobar(0.0, card.admission, card.cut_off), expansion, _isobar(card.release, card.exhaust, 1.0)
-        return _wide(*out), _wide(_isobar(1.0, card.exhaust, card.compression), compression)
-
-    def compressor(self, card: Compressor) -> tuple[Stroke, ...]:
-        """Expansion of the clearance gas, suction; compression, delivery."""
-        fills = self.fraction_after(0.0, card.delivery, card.suction, card.exponent)
-        empties = self.fraction_after(1.0, card.suction, card.delivery, card.exponent)
+        back = (
+            _isobar(1.0, card.exhaust, card.compression),
+            polytrope(card.compression, card.exhaust, 0.0, card.exponent),
+        )
+        return _wide(*out), _wide(*back)
+    if isinstance(card, Compressor):  # expansion of the clearance gas, suction; compression, delivery
+        grown = math.expm1(math.log((card.delivery + lift) / (card.suction + lift)) / card.exponent)
+        shrunk = math.expm1(math.log((card.suction + lift) / (card.delivery + lift)) / card.exponent)
+        fills, empties = clearance * grown, 1.0 + (1.0 + clearance) * shrunk
         expansion = Segment(0.0, card.delivery, fills, card.suction, card.exponent)
         compression = Segment(1.0, card.suction, empties, card.delivery, card.exponent)
         suction, delivery = _isobar(fills, card.suction, 1.0), _isobar(empties, card.delivery, 0.0)
         return _wide(expansion, suction), _wide(compression, delivery)
-
-    def otto(self, card: Otto) -> tuple[Stroke, ...]:
-        """Expansion from the peak; then as every engine."""
-        return self._engine(card, (self.polytrope(0.0, card.peak, 1.0, card.expansion_exponent),))
-
-    def diesel(self, card: Diesel) -> tuple[Stroke, ...]:
-        """Injection at constant pressure, expansion; then as every engine."""
-        burning = self._compression(card).next_p if card.peak is None else card.peak
-        expansion = self.polytrope(card.cut_off, burning, 1.0, card.expansion_exponent)
-        return self._engine(card, (_isobar(0.0, burning, card.cut_off), expansion))
-
-    def _compression(self, card: Otto | Diesel) -> Segment:
-        return self.polytrope(1.0, card.intake, 0.0, card.exponent)
-
-    def _engine(self, card: Otto | Diesel, power: Stroke) -> tuple[Stroke, ...]:
-        compression = (self._compression(card),)
-        if not self.four_stroke:
-            return power, compression
-        return power, (_isobar(1.0, card.leaving, 0.0),), (_isobar(0.0, card.intake, 1.0),), compression
+    compression = polytrope(1.0, card.intake, 0.0, card.exponent)
+    if isinstance(card, Otto):
+        power: Stroke = (polytrope(0.0, card.peak, 1.0, card.expansion_exponent),)
+    else:  # injection at constant pressure
+        burning = compression.next_p if card.peak is None else card.peak
+        expansion = polytrope(card.cut_off, burning, 1.0, card.expansion_exponent)
+        power = _isobar(0.0, burning, card.cut_off), expansion
+    if not four_stroke:
+        return power, (compression,)
+    return power, (_isobar(1.0, card.leaving, 0.0),), (_isobar(0.0, card.intake, 1.0),), (compression,)
 
 
 def _isobar(z: float, p: float, next_z: float) -> Segment:
@@ -234,22 +211,19 @@ def _wide(*segments: Segment) -> Stroke:
 
 
 class CardPressure:
-    """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
-
-    processes: one, or one of every machine.
-    """
+    """Gauge pressure in one chamber from a process over the stroke, or in those of many machines."""
 
     def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
         self.setting, self._count = setting, count
-        self.processes = _processes(chamber, setting, count)
-        self._alike = len(self.processes) == 1 and count_of(setting.mechanism) is None
-        own = None if self._alike else count
-        self._machine, self._begins, self._ends, self._table = _over_the_angle(self.processes, setting, own)
+        self.processes, self._which = _processes(chamber, setting, count)
+        alike = self._alike = len(self.processes) == 1 and count_of(setting.mechanism) is None
+        segments = _over_the_angle(self.processes, self._which, setting, alike)
+        self._machine, self._begins, self._ends, self._table = segments
+        self._clearance = self._of_machines([one.clearance for one in self.processes])
         self._keys = self._machine * (2 * setting.cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(own or 1))
+        self._first = np.searchsorted(self._machine, np.arange(1 if alike else len(self._which)))
         z, p, next_z, next_p, exponent = self._table
         self._rows = np.stack((z, p, next_z, exponent, (next_p - p) / (next_z - z), self._begins, self._ends))
-        self._clearance = _one_or_each([one.clearance for one in self.processes])
         self.straight = not exponent.any()
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
 
@@ -314,48 +288,41 @@ class CardPressure:
     @cached_property
     def area(self) -> Any:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
-        return _one_or_each([one.area for one in self.processes])
+        return self._of_machines([one.area for one in self.processes])
+
+    def _of_machines(self, values: list[float]) -> Any:
+        """Return numbers of the processes as those of the machines: one if there is one process."""
+        return values[0] if len(values) == 1 else np.array(values)[self._which]
 
 
-def _one_or_each(values: Sequence[float]) -> Any:
-    """Return numbers of machines as one where they are equal, else as an array (machines,)."""
-    return values[0] if len(set(values)) == 1 else np.array(values)
-
-
-def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[Process, ...]:
-    """Return one process, or one of every machine."""
-    several = isinstance(chamber, Chambers) or isinstance(setting.ambient, np.ndarray)
-    if not several or count is None:
-        return (process_in(chamber, setting.lift, setting.cycle, setting.base),)
-    each = [chamber] * count
-    if isinstance(chamber, Chambers):
-        each = [chamber.each[place] for place in chamber.which.tolist()]
-    lifts, bases = (np.broadcast_to(one, count).tolist() for one in (setting.lift, setting.base))
-    made: dict[tuple[int, float, float], Process] = {}
-    for one, lift, base in zip(each, lifts, bases):
-        if (id(one), lift, base) not in made:
-            made[id(one), lift, base] = process_in(one, lift, setting.cycle, base)
-    return tuple(made[id(one), lift, base] for one, lift, base in zip(each, lifts, bases))
+def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[list[Process], Indices]:
+    """Return the different processes of machines, and which one each has, (machines,)."""
+    each, which = (chamber.each, chamber.which) if isinstance(chamber, Chambers) else ((chamber,), 0)
+    numbers = (np.broadcast_to(one, count or 1).tolist() for one in (which, setting.lift, setting.base))
+    made: dict[tuple[int, float, float], int] = {}
+    own = np.array([made.setdefault(key, len(made)) for key in zip(*numbers)])
+    return [process_in(each[one], lift, setting.cycle, base) for one, lift, base in made], own
 
 
 def _over_the_angle(
-    processes: tuple[Process, ...], setting: Setting, count: int | None
+    processes: list[Process], which: Indices, setting: Setting, alike: bool
 ) -> tuple[Indices, Array, Array, Segment]:
     """Return whose each segment is, where it begins and ends in degrees, and the segments, in the order of the angle.
 
-    Those over no width, being jumps, are left out. One process of many machines lies elsewhere in each.
+    Those over no width, being jumps, are left out. alike: the segments are at the same angles in all machines, and are
+    returned for one. One process of many machines is elsewhere in each.
     """
-    machine, stroke, table = _rows_of(processes, count)
+    machine, stroke, table = _rows_of(processes, which[:1] if alike else which)
     # the crank end begins its process at the outer dead centre, one stroke later
     number = stroke + (0 if setting.head_end else 1)
-    mechanism = setting.mechanism if count is None else taken(setting.mechanism, machine)
+    mechanism = setting.mechanism if alike else taken(setting.mechanism, machine)
     begin, end = (_dead_centre(mechanism, each) for each in (number, number + 1))
     edges, along = begin.copy(), table.z if setting.head_end else 1 - table.z
     later = np.append(False, (stroke[1:] == stroke[:-1]) & (machine[1:] == machine[:-1]))
     for outstroke in (True, False):
         inside = np.flatnonzero(later & ((number % 2 == 0) == outstroke))
         if len(inside):
-            own = mechanism if count is None else taken(setting.mechanism, machine[inside])
+            own = mechanism if alike else taken(setting.mechanism, machine[inside])
             edges[inside] = 360.0 * (number[inside] // 2) + own.crank_angles_at(along[inside] * own.stroke, outstroke)
     ends = np.where(np.append(later[1:], False), np.append(edges[1:], 0.0), end)
     # beside the other end of the stroke rounding may turn two angles round
@@ -371,15 +338,12 @@ def _over_the_angle(
     return machine, angles, angles[following], Segment(*(part[wide][order] for part in table))
 
 
-def _rows_of(processes: tuple[Process, ...], count: int | None) -> tuple[Indices, Indices, Segment]:
+def _rows_of(processes: list[Process], which: Indices) -> tuple[Indices, Indices, Segment]:
     """Return whose each segment is, of which stroke, and the segments, (n,), in the order of the process."""
-    different = {id(one): one for one in processes}
     rows = [
         np.array([(number, *segment) for number, stroke in enumerate(one.strokes) for segment in stroke])
-        for one in different.values()
+        for one in processes
     ]
-    numbers = {key: number for number, key in enumerate(different)}
-    which = np.broadcast_to([numbers[id(one)] for one in processes], count or 1)
     lengths = np.array([len(one) for one in rows])
     machine = np.repeat(np.arange(len(which)), lengths[which])
     begins = (np.cumsum(lengths) - lengths)[which]

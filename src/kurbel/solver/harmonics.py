@@ -20,7 +20,9 @@ from kurbel.crank_angle import unit_vector
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
+from kurbel.quantity import key_value
 from kurbel.solver.effort import TurningEffort, inertia_torque, moves, position
+from kurbel.solver.figures import Results
 from kurbel.solver.forces import CylinderForces
 
 HIGHEST = 24
@@ -142,8 +144,10 @@ class CylinderOrders(NamedTuple):
         return math.pi / 4 * pistons[0].bore ** 2 * crank if pistons else None
 
 
-class MachineOrders:
+class MachineOrders(Results):
     """The orders (k,) of the turning effort of a whole machine, or of many, and of its cylinders."""
+
+    command = "harmonics"
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort = effort
@@ -192,9 +196,9 @@ class MachineOrders:
             size = sum(np.abs(one.parts).max(axis=(0, 1)) for one in each)
         return Orders(self.orders, parts, moving).cleared(size)
 
-    @property
+    @key_value("M_m", "torque")
     def M_mean(self) -> Any:
-        """Mean torque in N m."""
+        """Mean torque of the turning effort: the resistance."""
         return self.effort.result(self.effort.mean)
 
     @property
@@ -203,9 +207,9 @@ class MachineOrders:
         effort = self.effort
         return effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
 
-    @property
+    @key_value("Σ|M_ν|²/2", "ratio", plain="sum M_nu2/2")
     def orders_share(self) -> Any:
-        """Share of the mean square of M − M_m that these orders carry, Σ |M_ν|²/2 over it (Parseval).
+        """Share of the mean square of the torque about its mean that these orders carry (Parseval).
 
         None where the torque is uniform.
         """
@@ -213,9 +217,12 @@ class MachineOrders:
         varies = swing > 1e-28 * self.M_mean**2
         return carried / where(varies, swing, math.nan) if some(varies) else None
 
-    @property
+    @key_value("ν_H", "ratio", listed=True)
     def major_orders(self) -> Any:
-        """The orders to which all cranks contribute in phase; None with fewer than two cylinders."""
+        """Major orders, in which all cranks pull together.
+
+        None with fewer than two cylinders.
+        """
         positions = [position(forces) * np.ones(self.effort.pieces.count) for forces, *_ in self.cylinders]
         if len(positions) < 2:
             return None

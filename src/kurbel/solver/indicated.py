@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme
-from kurbel.quantity import key_value
+from kurbel.quantity import Quantity, Row, key_value
 from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.trace import TracePressure
@@ -24,6 +24,27 @@ class Cycles(NamedTuple):
     p_max: Array
     phi_p_max: Array
     p_rise_max: Array
+
+
+CYCLE_ROWS = (
+    Row(
+        Quantity("mean_pressure", "p_i", "pressure", "Mean indicated pressure of the cycle"),
+        lambda cycles: cycles.mean_pressure,
+    ),
+    Row(
+        Quantity("p_max", "p_max", "pressure", "Largest gauge pressure of the cycle", gauge=True),
+        lambda cycles: cycles.p_max,
+    ),
+    Row(
+        Quantity("phi_p_max", "φ_p,max", "angle", "Crank angle of the largest pressure"),
+        lambda cycles: cycles.phi_p_max,
+    ),
+    Row(
+        Quantity("p_rise_max", "dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg"),
+        lambda cycles: cycles.p_rise_max,
+    ),
+)
+"""Columns of the table of all measured cycles."""
 
 
 class Indicated(Results):

@@ -100,13 +100,15 @@ class Motion(Results):
         """Mean speed of the return stroke (R p. 615)."""
         return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
 
+    # the extremes over a turn
+
     @cached_property
-    def _pieces(self) -> Pieces:
-        """One revolution, halved until all that the mechanism does is a polynomial on every piece."""
+    def _turn(self) -> tuple[Pieces, Array]:
+        """One revolution, halved until all that the mechanism does is a polynomial on every piece, and its samples."""
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)
         turn = Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0)
-        return refined(turn, self._sampled)[0]
+        return refined(turn, self._sampled)
 
     def _sampled(self, pieces: Pieces) -> Array:
         """Return velocity and acceleration factor, and what is offered besides, at the nodes, (q, nodes, pieces)."""
@@ -129,29 +131,28 @@ class Motion(Results):
     @cached_property
     def _searched(self) -> list[Extremes]:
         """Largest and smallest values of what is sampled."""
-        return self._pieces.extremes(self._sampled(self._pieces)).each(self._told)
-
-    def _told(self, values: Array) -> Any:
-        return float(values[0]) if self._count is None else values
-
-    @property
-    def _moves(self) -> bool:
-        """Whether there is a velocity: something slides, at a speed that is known."""
-        return self.mechanism.slides and self.omega is not None
-
-    @cached_property
-    def _velocity(self) -> Extremes:
-        return self._times_omega(_ends(self.mechanism.velocity_extremes()) or self._searched[0], 1)
-
-    @cached_property
-    def _acceleration(self) -> Extremes:
-        return self._times_omega(_ends(self.mechanism.acceleration_extremes()) or self._searched[1], 2)
+        pieces, values = self._turn
+        return pieces.extremes(values).each(lambda one: float(one[0]) if self._count is None else one)
 
     def _times_omega(self, found: Extremes, order: int) -> Extremes:
         """Return extremes over a turn times ω^order."""
         # a power would raise where a product is inf, which is refused by name
         scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
         return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
+
+    @cached_property
+    def _velocity(self) -> Extremes | None:
+        """Of the velocity; None where nothing slides, or at no known speed."""
+        if not self.mechanism.slides or self.omega is None:
+            return None
+        return self._times_omega(_ends(self.mechanism.velocity_extremes()) or self._searched[0], 1)
+
+    @cached_property
+    def _acceleration(self) -> Extremes | None:
+        """Of the acceleration."""
+        if not self.mechanism.slides or self.omega is None:
+            return None
+        return self._times_omega(_ends(self.mechanism.acceleration_extremes()) or self._searched[1], 2)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
@@ -164,12 +165,12 @@ class Motion(Results):
     @key_value("c_max", "velocity")
     def c_max(self) -> Extreme | None:
         """Largest velocity on the outstroke."""
-        return self._velocity.largest if self._moves else None
+        return self._velocity and self._velocity.largest
 
     @key_value("c_min", "velocity", unless=lambda motion: motion.equal_strokes or motion.mechanism.quick_return)
     def c_min(self) -> Extreme | None:
         """Largest velocity on the return stroke, negative."""
-        return self._velocity.smallest if self._moves else None
+        return self._velocity and self._velocity.smallest
 
     @key_value("c_a,max", "velocity")
     def c_work_max(self) -> Extreme | None:
@@ -186,12 +187,12 @@ class Motion(Results):
     @key_value("b_max", "acceleration")
     def b_max(self) -> Extreme | None:
         """Largest acceleration."""
-        return self._acceleration.largest if self._moves else None
+        return self._acceleration and self._acceleration.largest
 
     @key_value("b_min", "acceleration")
     def b_min(self) -> Extreme | None:
         """Smallest acceleration: the largest deceleration, negative."""
-        return self._acceleration.smallest if self._moves else None
+        return self._acceleration and self._acceleration.smallest
 
     @key_value("φ_b=0", "angle", listed=True)
     def phi_b_zero(self) -> tuple[Any, ...] | None:
@@ -202,7 +203,8 @@ class Motion(Results):
         if closed:
             angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
             return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
-        found = self._pieces.zeros(self._sampled(self._pieces)[1])
+        pieces, (_, curvature, *_) = self._turn
+        found = pieces.zeros(curvature)
         if self._count is None:
             return tuple(found.degrees.tolist())
         return tuple(tuple(one.tolist()) for one in found.of_each(self._count))

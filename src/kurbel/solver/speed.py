@@ -24,7 +24,9 @@ from kurbel.numerics.arithmetic import every
 from kurbel.numerics.collocation import Standstill, periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces, Sample, refined
+from kurbel.quantity import key_value
 from kurbel.solver.effort import TurningEffort
+from kurbel.solver.figures import Results
 
 _SLOWEST = 0.01
 """Of the nominal speed: a machine under a constant load that falls below it stands still."""
@@ -68,7 +70,7 @@ class SpeedLaw(NamedTuple):
         return mean * np.expm1(half * logarithm), mean * half * np.exp((half - 1) * logarithm)
 
 
-class SpeedLine:
+class SpeedLine(Results):
     """The speed of the crank shaft over the turn, by u = ω/ω_n − 1 on pieces (nodes, pieces) of the cycle.
 
     mean (n,): mean speed over ω_n. failed (n,): which of a batch have none; the only machine raises UsageError, or
@@ -96,25 +98,25 @@ class SpeedLine:
     def _extreme(self, u: Array, degrees: Array) -> Extreme:
         return Extreme(self.result(self.effort.omega * (1 + u)), self.result(np.mod(degrees, self.pieces.cycle)))
 
-    @property
+    @key_value("δ", "ratio")
+    def delta(self) -> Any:
+        """Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m."""
+        return self.result((self._ends[0] - self._ends[2]) / self._mean)
+
+    @key_value("ω_max", "angular_velocity")
     def omega_max(self) -> Extreme:
-        """Largest angular velocity in rad/s."""
+        """Largest angular velocity."""
         return self._extreme(*self._ends[:2])
 
-    @property
+    @key_value("ω_min", "angular_velocity")
     def omega_min(self) -> Extreme:
-        """Smallest angular velocity in rad/s."""
+        """Smallest angular velocity."""
         return self._extreme(*self._ends[2:])
 
-    @property
+    @key_value("ω_m", "angular_velocity")
     def omega_mean(self) -> Any:
-        """Mean angular velocity over time in rad/s."""
+        """Mean angular velocity over time."""
         return self.result(self.effort.omega * self._mean)
-
-    @property
-    def delta(self) -> Any:
-        """δ = (ω_max − ω_min)/ω_mean."""
-        return self.result((self._ends[0] - self._ends[2]) / self._mean)
 
     @property
     def growth(self) -> Any:

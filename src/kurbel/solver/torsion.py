@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,10 +28,11 @@ from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
+from kurbel.quantity import column, key_value
 from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import Term, TurningEffort, inertia_torque, moves
-from kurbel.solver.figures import Columns, Results
+from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
@@ -237,10 +238,28 @@ class SegmentTorque(NamedTuple):
         """Vibratory stress amplitude (half peak-to-peak) in Pa."""
         return None if self.factor is None else self.factor * self.M_vibratory
 
-    def at(self, degrees: Array) -> Columns:
+    def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
-        torque, factor = self.over(degrees), self.factor
-        return Columns(degrees, {"M_shaft": lambda: torque, "tau": lambda: None if factor is None else torque * factor})
+        return SegmentState(self, degrees)
+
+
+class SegmentState(AtAngles):
+    """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
+
+    commands = ("torsion",)
+
+    def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
+        self._segment, self.phi = segment, phi
+
+    @column("M_w", "torque")
+    def M_shaft(self) -> Any:
+        """Torque in the piece of shaft, mean and vibration."""
+        return self._segment.over(self.phi) if self._segment else None
+
+    @column("τ", "stress")
+    def tau(self) -> Any:
+        """Torsional stress where the piece is thinnest."""
+        return self._segment.factor * self.M_shaft if self._segment and self._segment.factor else None
 
 
 # the results
@@ -272,7 +291,7 @@ class ShaftVibration(Results):
     first, last: numbers of the first mode, 0 where the shaft turns freely, and of the last.
     """
 
-    command = "torsion"
+    command, state = "torsion", SegmentState
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort, self.machine, self.line = effort, effort.machine, shaft_line_of(effort.machine)
@@ -293,6 +312,9 @@ class ShaftVibration(Results):
             raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
         return inertia
 
+    def _columns(self, phi: Array, within: Array) -> SegmentState:
+        return SegmentState(None, phi)
+
     # natural vibrations
 
     def holzer(self, mode: int) -> Holzer:
@@ -301,14 +323,17 @@ class ShaftVibration(Results):
             raise UsageError(f"--mode {mode}: the shaft line has the modes 1 to {self.last}")
         return self.modes.holzer(mode - self.first)
 
-    @property
+    @key_value("f_1", "frequency")
     def natural_frequency(self) -> float:
-        """Lowest natural frequency in Hz but for the rotation of the whole."""
+        """Lowest natural frequency of torsional vibration.
+
+        The rotation of the whole is none.
+        """
         return float(self.modes.omegas[1 - self.first]) / (2 * math.pi)
 
-    @cached_property
+    @key_value("ΣωJΘ", "ratio", plain="sum w2 J Theta", residual=True)
     def holzer_residual(self) -> float:
-        """Residual torque of the Holzer tables of all modes, relative to the largest of its table."""
+        """Torque left behind the last mass in Holzer's tables, over the largest one."""
         return max(self.modes.holzer(index).residual for index in range(len(self.modes.omegas)))
 
     # critical speeds
@@ -436,19 +461,19 @@ class ShaftVibration(Results):
         found = pieces.extremes(torques)
         return [wave(*one) for one in zip(vibration.means, torques)], (found.largest[:, 0], found.smallest[:, 0])
 
-    @property
+    @key_value("N_d", "power", after="tau_vibratory")
     def vibration_loss(self) -> float | None:
-        """Mean power in W that the damping takes."""
+        """Mean power that the damping takes."""
         return None if self.vibration is None else float(self.vibration.loss[0])
 
-    @property
+    @key_value("M_w,a", "torque")
     def M_vibratory(self) -> float | None:
-        """Largest vibratory torque amplitude in N m of any segment at the working speed."""
+        """Largest vibratory torque of any piece, half of what it swings."""
         return max((piece.M_vibratory for piece in self.pieces), default=None)
 
-    @property
+    @key_value("τ_a", "stress")
     def tau_vibratory(self) -> float | None:
-        """Largest vibratory stress amplitude in Pa of any segment at the working speed."""
+        """Largest vibratory stress of any piece."""
         return max((piece.tau_vibratory for piece in self.pieces if piece.tau_vibratory is not None), default=None)
 
     def piece_name(self, segment: int) -> str:

@@ -96,12 +96,15 @@ class OneOf(Form):
 
 
 class Keyed(Form):
-    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`."""
+    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`.
+
+    texts: what those of the telling keys mean under which no mapping stands.
+    """
 
     shape = dict
 
-    def __init__(self, cases: dict[str, Form], otherwise: Record) -> None:
-        self.cases, self.otherwise = cases, otherwise
+    def __init__(self, cases: dict[str, Form], otherwise: Record, texts: dict[str, str]) -> None:
+        self.cases, self.otherwise, self.texts = cases, otherwise, texts
 
     def expected(self) -> str:
         keys = self.otherwise.expected().removeprefix("a mapping with ")
