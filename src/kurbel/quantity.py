@@ -343,7 +343,8 @@ def for_each(
 ) -> Callable[[Callable[[Any, str], V]], ForEach[V]]:
     """Return what makes a method of a part a key value, or a column, of each of these parts.
 
-    `*` in the id, the symbol and the sentence stands for the part. group: returns the group of the quantity of a part.
+    `*` in the id, the symbol, the sentence and `after` stands for the part. group: returns the group of the quantity of
+    a part.
     """
 
     def made(function: Callable[[Any, str], V]) -> ForEach[V]:
@@ -351,7 +352,7 @@ def for_each(
 
         def row(part: str, index: str, called: str) -> Row:
             texts = (id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called))
-            quantity = Quantity(*texts, commands=ITS_OWN, after=after, group=group(part))
+            quantity = Quantity(*texts, commands=ITS_OWN, after=after.replace("*", part), group=group(part))
             return Row(quantity, lambda one: function(one, part), unless)
 
         return ForEach(function, tuple(row(part, *words) for part, words in parts.items()))

@@ -79,7 +79,10 @@ def error_of_friction(forces: CylinderForces) -> float:
 def bearing_load(strength: CrankshaftStrength, bearing: str) -> Function:
     def load(degrees: np.ndarray) -> np.ndarray:
         state = strength.forces.at(degrees)
-        return np.hypot(*((state.D, state.T) if bearing == "pin" else getattr(strength._running(state), bearing)))
+        if bearing == "pin":
+            return np.hypot(state.D, state.T)
+        at, end = strength.at(degrees), bearing[-1]
+        return np.hypot(at[f"{end}_D"], at[f"{end}_T"])
 
     return load
 
@@ -92,7 +95,7 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
     if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
         breaks = with_least(friction_power(forces), breaks)
     errors = []
-    for bearing, diameter, length in (("pin", 0.18, 0.2), ("A", 0.19, 0.3), ("B", 0.19, 0.3)):
+    for bearing, diameter, length in (("pin", 0.18, 0.2), ("journal_A", 0.19, 0.3), ("journal_B", 0.19, 0.3)):
         found = strength.pressure_mean(bearing)
         assert found is not None
         precise = precise_integral(bearing_load(strength, bearing), breaks) / turn / diameter / length

@@ -8,13 +8,13 @@ import numpy as np
 
 from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.unit_systems import show
+from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
 from kurbel.report.left_out import balance_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import pin_warnings
-from kurbel.solver.balance import BookBalance, MachineBalance
+from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
-from kurbel.solver.unbalanced import Circles, power
 from kurbel.solver.weights import Weight
 
 _DIGITS = 4
@@ -41,9 +41,8 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
 
 def balance_subjects(case: Case, compare: bool = False) -> list[Subject]:
     """Return the whole machine; compare: with what the acceleration of first order gives, next to the true figures."""
-    balance = case.balance
-    book = (BookBalance(balance),) if compare else ()
-    return [Subject("whole machine", (*balance.answering, *book), balance.at)]
+    balance = MachineBalance(case.effort, compare=True) if compare else case.balance
+    return [Subject("whole machine", (balance,), balance.at)]
 
 
 def _notes(balance: MachineBalance) -> Iterator[str]:
@@ -62,7 +61,7 @@ def _notes(balance: MachineBalance) -> Iterator[str]:
         )
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
-    if balance.rolls:
+    if balance.roll is not None:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 
 
@@ -101,7 +100,7 @@ def _order(balance: MachineBalance, order: int, square: float, compare: bool) ->
                 abs(book_f) * square,
                 abs(book_g) * square,
             )
-        whole = power(vector)
+        whole = float((np.abs(vector.waves) ** 2).sum())
         circles[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
         ellipse[f"{name}_long"] = (abs(f) + abs(g)) * square
         ellipse[f"{name}_short"] = abs(abs(f) - abs(g)) * square
@@ -110,9 +109,9 @@ def _order(balance: MachineBalance, order: int, square: float, compare: bool) ->
     return ((), circles), ((), ellipse)
 
 
-def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
+def _pair(vector: ClosedCurve, order: int) -> tuple[complex, complex]:
     """Return both circles of an order, 0 for none."""
-    return complex(vector.of(order)), complex(vector.of(-order))
+    return complex(vector.of(order)[0]), complex(vector.of(-order)[0])
 
 
 def _direction(forward: complex, backward: complex) -> float | None:
