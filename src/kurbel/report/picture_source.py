@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 from kurbel.report.frame import too_large
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
 from kurbel.solver.figures import Results
