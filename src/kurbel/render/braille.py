@@ -76,32 +76,31 @@ class Canvas:
 def braille(picture: Picture, look: Look) -> Iterator[Line]:
     """Yield a picture line by line, in the width of the look."""
     wide = min(max(look.width or _WIDTH, _NARROWEST), _WIDEST)
-    yield from (line(one, "title") for one in folded(look.charset.text(picture.heading), wide))
+    yield from (line(one, "title") for one in folded(look.text(picture.heading), wide))
     for panel in picture.panels:
         yield BLANK
         yield from _panel(panel, look, wide, _TALL if len(picture.panels) == 1 else _SHORT)
 
 
 def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
-    has_dots = look.charset.has("⣿")
+    has_dots = look.has("⣿")
     dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
-
-    def framed(side: int) -> PanelFrame:
-        return PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
-
-    texts = [] if panel.plain else [text for _, text in framed(0).ticks_up(int(tall / 4))]
-    side = max(map(width, texts), default=-1) + 1
-    frame = framed(side)
+    side, needed, ticks = -1, 0, []  # columns of the texts at the left, which are others in a narrower frame
+    while side < needed:
+        side = needed
+        frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
+        ticks = [] if panel.plain else frame.ticks_up(int(tall / 4))
+        needed = max((width(text) + 1 for _, text in ticks), default=0)
     canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
     _draw(canvas, frame, dot)
     axis = "" if panel.plain else axis_text(panel.y, look)
-    yield from (line(one) for one in folded("   ".join(filter(None, (look.charset.text(panel.title), axis))), wide))
+    yield from (line(one) for one in folded("   ".join(filter(None, (look.text(panel.title), axis))), wide))
     if panel.plain:
         rows = canvas.lines()
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
         yield from rows[used[0] : used[-1] + 1]
         return
-    at = {int(place // 2): text for place, text in frame.ticks_up(int(tall / 4))}
+    at = {int(place // 2): text for place, text in ticks}
     for number, row in enumerate(canvas.lines()):
         yield (*line(right(at.get(number, ""), side - 1) + " ", "unit"), *row)
     yield from _below(frame, side, canvas.columns)
@@ -135,10 +134,10 @@ def _role(curve: Curve, look: int) -> str:
 
 def _below(frame: PanelFrame, side: int, columns: int) -> Iterator[Line]:
     """Yield the axis below a panel, its ticks, and what runs along it."""
-    charset = frame.look.charset
-    rule, under = [charset.text("─")] * columns, [" "] * columns
+    look = frame.look
+    rule, under = [look.text("─")] * columns, [" "] * columns
     for place, left, text in frame.ticks_across(max(2, columns // 10), 0.0, columns):
-        rule[int(place)] = "┴" if charset.has("┴") else "+"
+        rule[int(place)] = "┴" if look.has("┴") else "+"
         under[round(left) : round(left) + len(text)] = text
     yield line(" " * side + "".join(rule), "rule")
     yield line(" " * side + "".join(under).rstrip(), "unit")

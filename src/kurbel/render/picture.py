@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
-from kurbel.render.numbers import angle, decimal, single
+from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
 from kurbel.render.text import width
 from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Shade, Words
 
@@ -26,24 +26,24 @@ LOOKS = 6
 
 def symbol(words: Words, look: Look) -> str:
     """Return a symbol in the characters of the output."""
-    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol or words.symbol))
+    return look.text(look.symbol(words.symbol, words.ascii_symbol or words.symbol))
 
 
 def axis_text(axis: Axis, look: Look) -> str:
     """Return what is written at the end of an axis."""
-    return " in ".join(filter(None, (symbol(axis.name, look), look.charset.unit(axis.unit))))
+    return " in ".join(filter(None, (symbol(axis.name, look), look.unit(axis.unit))))
 
 
 def figure_text(figure: Figure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     text, place = symbol(figure.name, look), ""
     if figure.at_deg is not None:
-        place = f"{angle(figure.at_deg, look.comma)}{look.charset.text('°')}"
+        place = f"{angle(figure.at_deg, look.comma)}{look.text('°')}"
     if figure.value is None:
         return f"{text} {place}".rstrip()
     number, power = single(figure.value, look.digits, look.comma)
-    number = look.charset.counted(_signed(number, look), power)
-    text = f"{text} {number} {look.charset.unit(figure.unit)}".rstrip()
+    number = look.counted(_signed(number, look), power)
+    text = f"{text} {number} {look.unit(figure.unit)}".rstrip()
     return f"{text}, {place}" if place else text
 
 
@@ -52,13 +52,13 @@ def picture_text(picture: Picture, look: Look) -> str:
     figures = [mark.figure for panel in picture.panels for mark in panel.marks]
     figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
-    sentence = f"{look.charset.text(picture.heading)}. {look.charset.text(picture.text)}"
+    sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
 
 
 def _signed(number: str, look: Look) -> str:
     """Return a number with a minus sign in place of a hyphen."""
-    return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
+    return f"−{number[1:]}" if number.startswith("-") and look.has("−") else number
 
 
 # scales
@@ -120,11 +120,10 @@ def tick_texts(axis: Axis, values: list[float], look: Look) -> list[str]:
     if axis.log:
         return [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
     if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
-        texts = [f"{value:.4g}" for value in values]
+        texts = [decimal(f"{value:.4g}", look.comma) for value in values]
     else:
-        decimals = max((len(f"{one:.9g}".partition(".")[2]) for one in values if "e" not in f"{one:.9g}"), default=0)
-        texts = [f"{value:.{decimals}f}" for value in values]
-    return [_signed(decimal(text, look.comma), look) for text in texts]
+        texts = [cell(value, angle_scale(values), look.comma) for value in values]
+    return [_signed(text, look) for text in texts]
 
 
 # a panel in its place

@@ -4,7 +4,7 @@ from kurbel.declared.forms.alike import Alike
 from kurbel.declared.forms.figures import Expectations, Limits
 from kurbel.declared.forms.points import Points
 from kurbel.declared.forms.records import Record, Variant
-from kurbel.declared.forms.scalars import Choice, Count, Number, Physical, Truth, UnitName, not_negative, positive
+from kurbel.declared.forms.scalars import Choice, Count, Number, Physical, Truth, UnitName
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf
 from kurbel.declared.forms.texts import ColumnRange, FilePath, FiringOrder, Text
 from kurbel.declared.forms.uncertainties import Settings, Uncertainties
@@ -32,6 +32,4 @@ __all__ = [
     "Uncertainties",
     "UnitName",
     "Variant",
-    "not_negative",
-    "positive",
 ]

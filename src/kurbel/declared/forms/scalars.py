@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.keys import Form, Key, Schema
+from kurbel.declared.keys import Form, Schema
 from kurbel.declared.kinds import KINDS, out_of_size, range_of
 from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_ratio
 from kurbel.declared.reading import LONGEST_VALUE, Plain, Reading, glued_hint, is_nothing, kind_of, shown
@@ -167,16 +167,6 @@ class Physical(_Bounded):
             "examples": [self.example()],
         }
         return self._schema(reference(name))
-
-
-def positive(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
-    """Declare a key under which a value of this kind above 0 stands; more: see `Key`."""
-    return Key(Physical(kind, above=0), text, symbol, **more)
-
-
-def not_negative(kind: str, text: str, symbol: str = "", **more: Any) -> Key:
-    """Declare a key under which 0, or a value above it, stands."""
-    return Key(Physical(kind, least=0), text, symbol, **more)
 
 
 class Number(_Bounded):
