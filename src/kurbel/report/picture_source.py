@@ -88,6 +88,7 @@ class Source:
         if isinstance(results, Results):  # others have no columns
             self.quantities = {one.id: one for one in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
+        if self.quantities:
             self._start = results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, ids: Iterable[str]) -> tuple[str, ...]:
