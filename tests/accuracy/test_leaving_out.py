@@ -57,7 +57,7 @@ def test_only_what_the_command_needs_is_computed() -> None:
     everything(case)
     assert "flywheel" not in vars(case)
     assert "strength" not in vars(case)
-    assert {"_cycle", "_extremes", "crosshead_work", "work"} <= stages_of(case.cylinders[0])
+    assert {"_cycle", "_extremes", "friction_works", "work"} <= stages_of(case.cylinders[0])
 
 
 def test_nothing_is_printed_for_what_is_absent() -> None:
