@@ -17,10 +17,8 @@ from scipy.integrate import quad
 from indicated import columns_file
 from kurbel.errors import MachineFileError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank

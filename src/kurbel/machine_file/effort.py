@@ -8,9 +8,9 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, Points, UnitName
 from kurbel.declared.keys import Key
-from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative
+from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.machine_file.trace import (

@@ -10,9 +10,9 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, Physical, Points, UnitName
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.kinds import Factor, Point
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak

@@ -11,8 +11,8 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.rod_point import RodPoint
-from kurbel.machine.variants import taken
+from kurbel.machine.batch import taken
+from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest

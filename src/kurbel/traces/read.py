@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.numerals import familiar
+from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError, refused
 
 LARGEST_FILE = 64 * 2**20
