@@ -39,4 +39,4 @@ def test_the_end_loses_nothing_that_was_written_before() -> None:
 def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:
     forces = Case(load(WATERWORKS)).cylinders[0]
     assert list(cylinder_warnings(forces)) == []
-    assert "phi_rod_reversal" not in vars(forces)
+    assert "rod_loads" not in vars(forces)

@@ -57,7 +57,7 @@ def _lighter(machine: Machine) -> Iterator[tuple[str, Machine]]:
 
 
 def evaluated(thing: Any, seen: set[int] | None = None) -> int:
-    """Count the cached properties that were computed in an object of kurbel's solver, and in all that it holds."""
+    """Count what was computed once, and is there, in an object of kurbel's solver, and in all that it holds."""
     seen = set() if seen is None else seen
     if id(thing) in seen:
         return 0
@@ -66,5 +66,6 @@ def evaluated(thing: Any, seen: set[int] | None = None) -> int:
         return sum(evaluated(one, seen) for one in thing)
     if not type(thing).__module__.startswith("kurbel.solver") or not hasattr(thing, "__dict__"):
         return 0
-    cached = [name for name in vars(thing) if isinstance(getattr(type(thing), name, None), (cached_property, Computed))]
-    return len(cached) + sum(evaluated(value, seen) for value in vars(thing).values())
+    there = {name: value for name, value in vars(thing).items() if value is not None}
+    cached = [name for name in there if isinstance(getattr(type(thing), name, None), (cached_property, Computed))]
+    return len(cached) + sum(evaluated(value, seen) for value in there.values())

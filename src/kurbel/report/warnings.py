@@ -261,7 +261,8 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
 def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
     if forces.no_compressor:
         return
-    angle, ratio = forces.reversal_longest, forces.reversal_ratio
+    loads = forces.rod_loads
+    angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
     if angle is None or ratio is None:
         return
     if not angle:

@@ -19,6 +19,7 @@ from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
+from kurbel.solver.figures import told
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 _SURE = 4.0
@@ -39,7 +40,7 @@ class SampledCylinder:
 
     def told(self, values: Array) -> Any:
         """Return values (machines,) as they are for many machines, and as a float for one."""
-        return float(values[0]) if self.drive.count is None else values
+        return told(values, self.drive.count)
 
     # the pieces
 
@@ -100,24 +101,6 @@ class SampledCylinder:
         values = self.sampled(column)
         return None if values is None else where_is(self.pieces, values, value)
 
-    def reversals_of(self, column: str) -> tuple[Any, ...] | None:
-        """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace.
-
-        For many machines one tuple each.
-        """
-        values = self.sampled(column)
-        if values is None:
-            return None
-        changes = self.pieces.zeros(values)
-        if self.drive.count is not None:
-            return tuple(tuple(one.tolist()) for one in changes.of_each(self.drive.count))
-        return tuple(lasting(self.pieces, values, changes.degrees, _SURE * self.noise).tolist())
-
-    @property
-    def noise(self) -> float:
-        """Standard deviation in N of the noise that traces bring into P."""
-        return math.hypot(*(gas.noise for gas in self.drive.gas))
-
 
 def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
     """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
@@ -171,6 +154,17 @@ def _sense(state: State) -> Any:
 def _stacked(pieces: Pieces, *values: Any) -> Array:
     """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
     return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
+
+
+def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:
+    """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace.
+
+    values: samples in N (nodes, pieces). For many machines one tuple each.
+    """
+    changes = pieces.zeros(values)
+    if drive.count is not None:
+        return tuple(tuple(one.tolist()) for one in changes.of_each(drive.count))
+    return tuple(lasting(pieces, values, changes.degrees, _SURE * drive.noise).tolist())
 
 
 def where_is(pieces: Pieces, values: Array, value: float) -> Where:

@@ -170,6 +170,11 @@ class Drive:
         return PistonGas(piston, self.mechanism, 360.0 * turns, ambient, self.revolutions // turns, self.count)
 
     @property
+    def noise(self) -> float:
+        """Standard deviation in N of the noise that traces bring into the gas force."""
+        return math.hypot(*(gas.noise for gas in self.gas))
+
+    @property
     def own_gas(self) -> PistonGas | None:
         """Pressures on the cylinder's own piston."""
         pistons = self.cylinder.pistons

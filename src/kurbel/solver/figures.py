@@ -23,6 +23,7 @@ from kurbel.quantity import (
     ITS_OWN,
     PHI,
     Computed,
+    Condition,
     ForEach,
     Lists,
     Quantity,
@@ -135,14 +136,17 @@ class Rows(NamedTuple):
 class Part(Computed[V]):
     """Results that are a part of others; their rows stand in the place of the attribute."""
 
-    def __init__(self, function: Callable[[Any], V], kind: type[Results]) -> None:
+    def __init__(self, function: Callable[[Any], V], kind: type[Results], unless: Condition | None) -> None:
         super().__init__(function, Quantity(function.__name__, "", "", ""))
-        self.kind = kind
+        self.kind, self.unless = kind, unless
 
 
-def part(kind: type[Results]) -> Callable[[Callable[[Any], V]], Part[V]]:
-    """Return what makes a method a part of results, of this class; it may return None where there is no such part."""
-    return lambda function: Part(function, kind)
+def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], Part[V]]:
+    """Return what makes a method a part of results, of this class; it may return None where there is no such part.
+
+    unless: takes the results; where it is true, all of the part says nothing new.
+    """
+    return lambda function: Part(function, kind, unless)
 
 
 class Searched:
@@ -242,7 +246,8 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     for item in _definitions(kind):
         if isinstance(item, Part):
             inner = rows_of(item.kind, offers, key_offers).key_values.values()
-            found += [row.through(item.value_of) for row in inner]
+            seen = (row.through(item.value_of) for row in inner)
+            found += [row._replace(unless=item.unless) if item.unless else row for row in seen]
         elif isinstance(item, Searched):
             found += searched(quantities, kind.command)
         elif isinstance(item, (Computed, ForEach)):
@@ -253,6 +258,11 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
 
 
 _ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
+
+
+def told(values: Array, count: int | None) -> Any:
+    """Return values (machines,) as they are for many machines, and as a float for one, whose count is None."""
+    return float(values[0]) if count is None else values
 
 
 def crank_angles(degrees: Any) -> Array:

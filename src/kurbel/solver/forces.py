@@ -1,9 +1,4 @@
-"""Key values of `kurbel forces` for one cylinder, or for the same cylinder of many machines.
-
-Rod loads are judged after API 618: unless crosshead pin and bush part once in every turn, no oil comes between them on
-the loaded side. The standard asks for 15° of crank angle and 3 % of the larger load in the other direction; it takes
-both every 5°, kurbel at the roots.
-"""
+"""Key values of `kurbel forces` for one cylinder, or for the same cylinder of many machines."""
 
 from __future__ import annotations
 
@@ -14,20 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.quantity import Quantity, for_each, key_value
-from kurbel.solver.cycle import SampledCylinder
+from kurbel.solver.cycle import SampledCylinder, reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
 from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
+from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
 _RUBBING = {
@@ -36,15 +32,6 @@ _RUBBING = {
     "journals": ("J", "in the journals of the throw"),
 }
 """Key of the coefficient of friction -> index of the symbols, and where it rubs."""
-_ROD_LOADS = {
-    "rod_compression": ("P_G,d", "rod load at the crosshead pin in compression"),
-    "rod_tension": ("P_G,z", "rod load at the crosshead pin in tension"),
-    "piston_rod_compression": ("P_KS,d", "load on the piston rod in compression"),
-    "piston_rod_tension": ("P_KS,z", "load on the piston rod in tension"),
-    "gas_compression": ("P_gas,d", "gas load in compression"),
-    "gas_tension": ("P_gas,z", "gas load in tension"),
-}
-"""Column P_… and the way it loads the rod -> symbol, and what it is called."""
 
 
 class Brake(Results):
@@ -55,22 +42,15 @@ class Brake(Results):
     """
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
-        self.machine, self.cylinders = machine, cylinders
-
-    @cached_property
-    def indicated(self) -> Any:
+        self.machine = machine
+        # each once in a turn, a cycle of two turns in every other one
+        gases = [(one.drive.own_gas, one.drive.revolutions) for one in cylinders]
+        swept = _sum_of_all([None if gas is None else gas.swept_volume / turns for gas, turns in gases])
+        self.indicated: Any = _sum_of_all([one.power for one in cylinders])
         """Indicated power in W of all cylinders, negative where they are driven; None where one has none."""
-        powers = [forces.power for forces in self.cylinders]
-        known = [power for power in powers if power is not None]
-        return total(*known) if known and len(known) == len(powers) else None
-
-    @cached_property
-    def _swept(self) -> Any:
+        rate = None if swept is None or machine.speed is None else swept * machine.speed
+        self._swept: Any = None if rate is None or every(rate == 0) else rate
         """Volume in m³ that the cylinders' own pistons sweep per second against their pressures; None at rest."""
-        speed, volumes = self.machine.speed, list(map(_swept_rate, self.cylinders))
-        known = [volume for volume in volumes if volume is not None]
-        whole = total(*known) if known and len(known) == len(volumes) else None
-        return None if whole is None or speed is None or every(whole * speed == 0) else whole * speed
 
     @key_value("p_e", "pressure")
     def mean_pressure_brake(self) -> Any:
@@ -270,12 +250,13 @@ class CylinderForces(SampledCylinder, Results):
         P changes sign there, through zero or by a jump. Changes that are noise of a trace count once, at the middle
         one. For many machines one tuple each.
         """
-        return self.reversals_of("P") if self.drive.has_force else None
+        P = self.sampled("P") if self.drive.has_force else None
+        return None if P is None else reversals(self.drive, self.pieces, P)
 
     @property
     def reversals_in_noise(self) -> int:
         """How many changes of the sign of P are noise of a trace, and are not listed."""
-        values = self.sampled("P") if self.noise and self.drive.has_force else None
+        values = self.sampled("P") if self.drive.noise and self.drive.has_force else None
         return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
 
     @property
@@ -492,78 +473,14 @@ class CylinderForces(SampledCylinder, Results):
     def no_compressor(self) -> bool:
         """Whether the rod load is of no interest: an engine, also a motored four-stroke one, or no connecting rod."""
         work, drive = self.work, self.drive
-        return work is None or work >= 0 or drive.revolutions > 1 or not drive.mechanism.has_rod
+        return work is None or work >= 0 or drive.revolutions > 1 or not self.mechanism.has_rod
 
-    @cached_property
-    def _rod_loads(self) -> dict[str, Extremes]:
-        return self.extremes_over(("P_gas", "P_rod", "P_piston_rod")) if self.drive.has_force else {}
-
-    @for_each(
-        _ROD_LOADS,
-        "*_max",
-        "*",
-        "force",
-        group=lambda load: load.rpartition("_")[0],
-        unless=lambda forces: forces.no_compressor,
-    )
-    def rod_load_max(self, which: str) -> Extreme | None:
-        """Largest *.
-
-        In tension its size; 0, where it comes nearest, if it is never loaded so.
-        """
-        column, _, way = which.rpartition("_")
-        found = self._rod_loads.get(f"P_{column}")
-        if found is None:
-            return None
-        value, degrees = found.largest if way == "compression" else (-found.smallest.value, found.smallest.degrees)
-        return Extreme(where(value > 0, value, 0.0), degrees)
-
-    @key_value("φ_G=0", "angle", listed=True, unless=lambda forces: forces.no_compressor)
-    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
-        """Crank angles at which the rod load at the crosshead pin reverses.
-
-        Changes within the noise of a trace count once. For many machines one tuple each.
-        """
-        return self.reversals_of("P_rod") if self.drive.has_force else None
-
-    @cached_property
-    def _reversed(self) -> Array | None:
-        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
-
-        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
-        """
-        values = self.sampled("P_rod") if self.drive.has_force else None
-        if values is None or self.phi_rod_reversal is None:
-            return None
-        each = [self.phi_rod_reversal] if self.drive.count is None else self.phi_rod_reversal
-        machine = np.repeat(np.arange(len(each)), [len(one) for one in each])
-        start = np.array([angle for one in each for angle in one])
-        first, last = np.flatnonzero(np.diff(machine, prepend=-1)), np.flatnonzero(np.diff(machine, append=-1))
-        end = np.append(start[1:], 0.0)[: len(start)]
-        end[last] = start[first] + self.drive.cycle
-        presses = self.pieces.at(values, machine, (start + end) / 2) > 0
-        pressed, pulled = (_stretches(machine[way], (end - start)[way], len(each)) for way in (presses, ~presses))
-        return np.where(pulled[0] < pressed[0], pulled, pressed)
-
-    @key_value("Δφ_G", "angle", wanted_large=True, unless=lambda forces: forces.no_compressor)
-    def reversal_angle(self) -> Any:
-        """Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least."""
-        return None if self._reversed is None else self.told(self._reversed[0])
-
-    @key_value("Δφ_G,1", "angle", wanted_large=True, unless=lambda forces: forces.no_compressor)
-    def reversal_longest(self) -> Any:
-        """The longest stretch of it; a bound is the least."""
-        return None if self._reversed is None else self.told(self._reversed[1])
-
-    @key_value("P_G,min/max", "ratio", wanted_large=True, unless=lambda forces: forces.no_compressor)
-    def reversal_ratio(self) -> Any:
-        """Smaller over larger peak of the rod load, pressed and pulled; a bound is the least."""
-        angle, peaks = self.reversal_angle, self._rod_loads.get("P_rod")
-        if angle is None or peaks is None or not some(angle > 0):
-            return angle
-        pressed, pulled = (abs(one.value) for one in peaks)
-        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
-        return where(angle > 0, ratio, 0.0)
+    @part(RodLoads, unless=lambda forces: forces.no_compressor)
+    def rod_loads(self) -> RodLoads | None:
+        """The rod load, judged after API 618; None where no force acts."""
+        columns = ("P_gas", "P_rod", "P_piston_rod") if self.drive.has_force else ()
+        loads = {name: values for name in columns if (values := self.sampled(name)) is not None}
+        return RodLoads(self.drive, self.pieces, loads) if loads else None
 
 
 @cache
@@ -573,14 +490,7 @@ def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: b
     return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
 
 
-def _swept_rate(forces: CylinderForces) -> float | None:
-    """Return the volume in m³ per turn that a cylinder's own piston sweeps against its pressures, once in a cycle."""
-    gas = forces.drive.own_gas
-    return None if gas is None else gas.swept_volume / forces.drive.revolutions
-
-
-def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
-    """Return the sum of the stretches (n,) of each of `count` machines, and the longest, (2, count)."""
-    longest = np.zeros(count)
-    np.maximum.at(longest, whose, degrees)
-    return np.stack((np.bincount(whose, degrees, count), longest))
+def _sum_of_all(values: Sequence[Any]) -> Any:
+    """Return the sum of the values of all cylinders; None where one has none."""
+    known = [value for value in values if value is not None]
+    return total(*known) if known and len(known) == len(values) else None

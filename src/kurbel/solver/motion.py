@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from kurbel.numerics.arithmetic import every, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.quantity import key_value
-from kurbel.solver.figures import Results, Rows, Searched, rows_of
+from kurbel.solver.figures import Results, Rows, Searched, rows_of, told
 
 
 class Motion(Results):
@@ -132,7 +132,7 @@ class Motion(Results):
     def _searched(self) -> list[Extremes]:
         """Largest and smallest values of what is sampled."""
         pieces, values = self._turn
-        return pieces.extremes(values).each(lambda one: float(one[0]) if self._count is None else one)
+        return pieces.extremes(values).each(partial(told, count=self._count))
 
     def _times_omega(self, found: Extremes, order: int) -> Extremes:
         """Return extremes over a turn times ω^order."""
