@@ -14,7 +14,7 @@ from click.testing import CliRunner
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
 from kurbel.machine.alike import gathered
-from kurbel.render.text import Charset
+from kurbel.render.text import Look
 from kurbel.report.alike import together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
@@ -74,7 +74,7 @@ def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
     several = len(parts) > 1
     parts.append(("", answer.get("machine_key_values", [])))
     rows = [
-        f"| {_named(one, name if several else '')} | {one['value']:g} {Charset().unit(one['unit'])} | {_angle(one)} |"
+        f"| {_named(one, name if several else '')} | {one['value']:g} {Look().unit(one['unit'])} | {_angle(one)} |"
         for name, values in parts
         for one in values
         if one["id"] in ids and abs(one["value"]) > _ROUNDING

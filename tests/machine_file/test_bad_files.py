@@ -75,12 +75,12 @@ def test_pretty_clears_what_could_steer_a_terminal() -> None:
 def test_the_caret_stands_below_the_fault_at_every_width(cells: int, encoding: str) -> None:
     """Wide letters, letters that become two, and lines wider than the terminal."""
     from kurbel.errors import Fault
-    from kurbel.render.text import Charset, width
+    from kurbel.render.text import Look, width
 
     for before, (filling, after) in product((0, 1, 7, 40, 90), (("x", 0), ("φ", 3), ("宽", 200), ("ß", 50))):
         text = filling * before + "@" + filling * after
         error = MachineFileError("m", [Fault((), "wrong", line=1, column=before + 1, source_line=text)])
-        _, source, caret = error.pretty(cells, Charset(encoding).text, width).split("\n")
+        _, source, caret = error.pretty(cells, Look(encoding=encoding).text, width).split("\n")
         assert width(source) <= cells
         assert width(source[: source.index("@")]) == caret.index("^")
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.render.page import book_sizes, fitting_sizes
-from kurbel.render.text import Charset, folded, width
+from kurbel.render.text import folded, width
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
 
@@ -119,8 +119,8 @@ def test_names_cannot_steer_the_terminal(name: str) -> None:
 
 
 @given(texts(), st.sampled_from(["ascii", "cp1252", "utf-8"]))
-def test_charset_always_encodes(text: str, encoding: str) -> None:
-    written = Charset(encoding).text(text)
+def test_any_text_can_be_encoded(text: str, encoding: str) -> None:
+    written = Look(encoding=encoding).text(text)
     assert isinstance(written.encode(encoding, "strict" if encoding != "utf-8" else "replace"), bytes)
 
 

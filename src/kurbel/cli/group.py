@@ -17,7 +17,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 
 if TYPE_CHECKING:
-    from kurbel.render.text import Charset
+    from kurbel.render import Look
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -137,13 +137,13 @@ def message_of(error: KurbelError) -> str:
         return f"Error: {error}"
     from kurbel.render.text import width
 
-    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_charset().text, width)
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text, width)
 
 
-def _stderr_charset() -> "Charset":
-    from kurbel.render.text import Charset
+def _stderr_look() -> "Look":
+    from kurbel.render import Look
 
-    return Charset(getattr(sys.stderr, "encoding", None) or "utf-8")
+    return Look(encoding=getattr(sys.stderr, "encoding", None) or "utf-8")
 
 
 def _failed(message: str, status: int) -> int:
@@ -155,7 +155,7 @@ def _failed(message: str, status: int) -> int:
 def to_stderr(message: str) -> None:
     """Write a message to standard error, in characters that it has; nothing where it is full or closed."""
     try:
-        click.echo("\n".join(_stderr_charset().text(line) for line in message.splitlines()), err=True)
+        click.echo("\n".join(_stderr_look().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
         from kurbel.render.output import silence
 

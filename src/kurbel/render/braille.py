@@ -76,14 +76,14 @@ class Canvas:
 def braille(picture: Picture, look: Look) -> Iterator[Line]:
     """Yield a picture line by line, in the width of the look."""
     wide = min(max(look.width or _WIDTH, _NARROWEST), _WIDEST)
-    yield from (line(one, "title") for one in folded(look.charset.text(picture.heading), wide))
+    yield from (line(one, "title") for one in folded(look.text(picture.heading), wide))
     for panel in picture.panels:
         yield BLANK
         yield from _panel(panel, look, wide, _TALL if len(picture.panels) == 1 else _SHORT)
 
 
 def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
-    has_dots = look.charset.has("⣿")
+    has_dots = look.has("⣿")
     dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
 
     def framed(side: int) -> PanelFrame:
@@ -95,7 +95,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
     _draw(canvas, frame, dot)
     axis = "" if panel.plain else axis_text(panel.y, look)
-    yield from (line(one) for one in folded("   ".join(filter(None, (look.charset.text(panel.title), axis))), wide))
+    yield from (line(one) for one in folded("   ".join(filter(None, (look.text(panel.title), axis))), wide))
     if panel.plain:
         rows = canvas.lines()
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
@@ -135,10 +135,10 @@ def _role(curve: Curve, look: int) -> str:
 
 def _below(frame: PanelFrame, side: int, columns: int) -> Iterator[Line]:
     """Yield the axis below a panel, its ticks, and what runs along it."""
-    charset = frame.look.charset
-    rule, under = [charset.text("─")] * columns, [" "] * columns
+    look = frame.look
+    rule, under = [look.text("─")] * columns, [" "] * columns
     for place, left, text in frame.ticks_across(max(2, columns // 10), 0.0, columns):
-        rule[int(place)] = "┴" if charset.has("┴") else "+"
+        rule[int(place)] = "┴" if look.has("┴") else "+"
         under[round(left) : round(left) + len(text)] = text
     yield line(" " * side + "".join(rule), "rule")
     yield line(" " * side + "".join(under).rstrip(), "unit")

@@ -2,9 +2,8 @@
 
 import csv
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from io import StringIO
 from itertools import chain, repeat
 from typing import Any
 
@@ -29,24 +28,25 @@ _FIRST = {"ratios": "rod_ratio", "bearings": "bearing", "scenes": "scene"}
 # CSV
 
 
-def csv_lines(rows: Iterable[Iterable[Any]], look: Look) -> Iterator[str]:
-    """Yield rows of texts, numbers and None as lines that end in `\\n`; with the decimal comma, `;` parts the cells."""
-    written = StringIO()
-    writer = csv.writer(written, delimiter=";" if look.comma else ",", lineterminator="\n")
-    for row in rows:
-        writer.writerow(row)
-        yield written.getvalue()
-        written.seek(0)
-        written.truncate()
+class _Echo:
+    """A file for `csv.writer`, which then returns each line."""
+
+    def write(self, text: str) -> str:
+        return text
+
+
+def csv_line(look: Look) -> Callable[[Iterable[Any]], str]:
+    """Return what makes a line of texts, numbers and None; with the decimal comma, `;` parts the cells."""
+    return csv.writer(_Echo(), delimiter=";" if look.comma else ",", lineterminator="\n").writerow
 
 
 def csv_cell(value: Any, look: Look) -> Any:
-    """Return a value for `csv_lines`: an apostrophe marks a text that a spreadsheet would take for a formula.
+    """Return a value for `csv_line`: an apostrophe marks a text that a spreadsheet would take for a formula.
 
     Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
     """
     if isinstance(value, str):
-        text = look.charset.data(value)
+        text = look.data(value)
         return f"'{text}" if text.startswith(_FORMULA) else text
     if isinstance(value, tuple):
         return " ".join(str(csv_cell(one, look)) for one in value)
@@ -76,12 +76,11 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
         blocks = [(part, _key_value_cells(part, look)) for part in parts]
         heads, named = ["key_value", "unit", "value", "at_deg"], len(parts)
     first = [_FIRST.get(report.group, "cylinder")] if named > 1 or report.group in ("ratios", "scenes") else []
-    rows = (
-        row
-        for part, columns in blocks
-        for row in zip(*(repeat(_name(part, look)) for _ in first), *(columns.get(head, repeat("")) for head in heads))
-    )
-    return csv_lines(chain([[*first, *heads]], rows), look)
+    line = csv_line(look)
+    yield line([*first, *heads])
+    for part, columns in blocks:
+        name = [repeat(_name(part, look)) for _ in first]
+        yield from map(line, zip(*name, *(columns.get(head, repeat("")) for head in heads)))
 
 
 def _merged(orders: Iterable[list[str]]) -> list[str]:
@@ -173,7 +172,7 @@ def _made_from(given: Provenance | None) -> dict[str, Any]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [vars(one) for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
+    return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
 def _ratio(part: Part, look: Look) -> dict[str, Any]:
@@ -240,7 +239,7 @@ def _column_pieces(column: Column, look: Look) -> Iterator[str]:
 
 def _written(node: Any, look: Look) -> str:
     """Return a node on one line; characters that turn the writing are escaped."""
-    return json.dumps(node, ensure_ascii=not look.charset.has("φ"), allow_nan=False).translate(_ESCAPED)
+    return json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
 
 
 # the JSON Schema of what `-f json` prints

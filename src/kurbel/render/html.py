@@ -20,7 +20,7 @@ GOOD, BAD, LINK = ("#1d6b34", "#7fd49a"), ("#a31515", "#ff9d94"), ("#0b5394", "#
 
 def html(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as a page of its own."""
-    yield from page(look.charset.text(report.title), document(report, look, Html(1)))
+    yield from page(look.text(report.title), document(report, look, Html(1)))
 
 
 def page(title: str, main: Iterable[str], more_style: str = "") -> Iterator[str]:

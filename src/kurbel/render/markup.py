@@ -197,8 +197,8 @@ Writer = Markdown | Html | Latex
 def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
     """Yield the report piece by piece; equal cylinders appear once."""
     report = shown_once(report)
-    yield out.title.format(out.text(look.charset.text(report.title)))
-    yield from (out.paragraph.format(out.sentence(look.charset.text(text))) for text in report.head)
+    yield out.title.format(out.text(look.text(report.title)))
+    yield from (out.paragraph.format(out.sentence(look.text(text))) for text in report.head)
     for table in _tables(report, look, out.across):
         yield from written(table, out)
     notes = [note for note in (report.mirrored, *report.notes) if note]
@@ -225,7 +225,7 @@ def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTabl
     """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
     found = [(name, sheet.heads, columns, True) for sheet in sheets(report, look) for name, columns in sheet.bands]
     for one in report.printed_tables:
-        found.append((look.charset.text(one.title), *place_table(one, look), False))
+        found.append((look.text(one.title), *place_table(one, look), False))
     for caption, names, columns, headed in found:
         most = across or max(len(columns), 1)
         for start in range(0, max(len(columns), 1), most):

@@ -29,8 +29,8 @@ _NARROWEST = 24  # below this a sentence is folded under its head instead of nex
 def page(report: Report, look: Look) -> Iterator[Line]:
     """Yield the lines of the whole page."""
     report = shown_once(report)
-    yield from (line(one, "title") for one in folded(look.charset.text(report.title), look.width))
-    yield from (line(one) for text in report.head for one in folded(look.charset.text(text), look.width))
+    yield from (line(one, "title") for one in folded(look.text(report.title), look.width))
+    yield from (line(one) for text in report.head for one in folded(look.text(text), look.width))
     for sheet in sheets(report, look):
         yield BLANK
         yield from (_rows if look.layout == "rows" else _book)(sheet, look)
@@ -57,7 +57,7 @@ def _rows(sheet: Sheet, look: Look) -> Iterator[Line]:
 
 def _places(table: PlaceTable, look: Look) -> Iterator[Line]:
     """Yield a line for each named place, under the title; without names the first column names the rows."""
-    yield from (line(one, "name") for one in folded(look.charset.text(table.title), look.width))
+    yield from (line(one, "name") for one in folded(look.text(table.title), look.width))
     names, columns = place_table(table, look)
     side = names if table.headed else [one._replace(symbol="") for one in names]
     if len(side) > 1:  # a name that repeats the one above stays blank
@@ -82,7 +82,7 @@ def _blocks(
 
 
 def _block(columns: Sequence[TextColumn], look: Look, gap: int) -> Iterator[Line]:
-    ruled = line(look.charset.text("─") * (sum(one.whole_width + gap for one in columns) - gap), "rule")
+    ruled = line(look.text("─") * (sum(one.whole_width + gap for one in columns) - gap), "rule")
     layout = [(" " * gap * (k > 0), one.whole_width, one.words) for k, one in enumerate(columns)]
 
     def row(texts: Iterable[str], role: str) -> Line:
@@ -129,7 +129,7 @@ def _book(sheet: Sheet, look: Look) -> Iterator[Line]:
     for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
         if start:
             yield BLANK
-        across, ruled = range(start, start + size), line(look.charset.text("─") * (side + size * cell), "rule")
+        across, ruled = range(start, start + size), line(look.text("─") * (side + size * cell), "rule")
         yield from (book_line("", head, across, "head") for head in sheet.heads)
         for band, columns in sheet.bands:
             yield ruled
@@ -209,7 +209,7 @@ def _aligned(shown: Sequence[KeyValueText]) -> list[str]:
 
 def in_two_columns(found: Iterable[tuple[str, str]], look: Look) -> Iterator[Line]:
     """Yield heads in a column, each with its sentence."""
-    heads = [(look.charset.text(head), text) for head, text in found]
+    heads = [(look.text(head), text) for head, text in found]
     column = max(width(head) for head, _ in heads)
     for head, text in heads:
         yield from sentence(f"  {left(head, column)}  ", text, look)
@@ -235,9 +235,9 @@ def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
 
 def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
     """Return a title and sections, each a head line with its entries, as plain text."""
-    lines = [line(one) for one in folded(look.charset.text(title), look.width)]
+    lines = [line(one) for one in folded(look.text(title), look.width)]
     for name, entries in sections:
-        lines += [BLANK, *(line(one) for one in folded(look.charset.text(name), look.width))]
+        lines += [BLANK, *(line(one) for one in folded(look.text(name), look.width))]
         lines += in_two_columns(entries, look)
     return "".join(plain(lines))
 

@@ -26,24 +26,24 @@ LOOKS = 6
 
 def symbol(words: Words, look: Look) -> str:
     """Return a symbol in the characters of the output."""
-    return look.charset.text(look.charset.symbol(words.symbol, words.ascii_symbol or words.symbol))
+    return look.text(look.symbol(words.symbol, words.ascii_symbol or words.symbol))
 
 
 def axis_text(axis: Axis, look: Look) -> str:
     """Return what is written at the end of an axis."""
-    return " in ".join(filter(None, (symbol(axis.name, look), look.charset.unit(axis.unit))))
+    return " in ".join(filter(None, (symbol(axis.name, look), look.unit(axis.unit))))
 
 
 def figure_text(figure: Figure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     text, place = symbol(figure.name, look), ""
     if figure.at_deg is not None:
-        place = f"{angle(figure.at_deg, look.comma)}{look.charset.text('°')}"
+        place = f"{angle(figure.at_deg, look.comma)}{look.text('°')}"
     if figure.value is None:
         return f"{text} {place}".rstrip()
     number, power = single(figure.value, look.digits, look.comma)
-    number = look.charset.counted(_signed(number, look), power)
-    text = f"{text} {number} {look.charset.unit(figure.unit)}".rstrip()
+    number = look.counted(_signed(number, look), power)
+    text = f"{text} {number} {look.unit(figure.unit)}".rstrip()
     return f"{text}, {place}" if place else text
 
 
@@ -52,13 +52,13 @@ def picture_text(picture: Picture, look: Look) -> str:
     figures = [mark.figure for panel in picture.panels for mark in panel.marks]
     figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
-    sentence = f"{look.charset.text(picture.heading)}. {look.charset.text(picture.text)}"
+    sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
 
 
 def _signed(number: str, look: Look) -> str:
     """Return a number with a minus sign in place of a hyphen."""
-    return f"−{number[1:]}" if number.startswith("-") and look.charset.has("−") else number
+    return f"−{number[1:]}" if number.startswith("-") and look.has("−") else number
 
 
 # scales

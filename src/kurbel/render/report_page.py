@@ -36,7 +36,7 @@ def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
         f"{''.join(_item(one, look) for one in section.items)}</section>\n"
         for section in long.sections
     )
-    yield from page(look.charset.text(long.title), chain(_head(long, look, date), sections), f"{style}{css()}\n")
+    yield from page(look.text(long.title), chain(_head(long, look, date), sections), f"{style}{css()}\n")
 
 
 def _head(long: Document, look: Look, date: str) -> Iterator[str]:
@@ -73,13 +73,12 @@ def _figure(picture: Picture, look: Look) -> str:
 
 
 def _text_table(grid: Grid, look: Look) -> TextTable:
-    charset = look.charset
     columns = []
     for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
-        shown = [*map(charset.unit if k in grid.units else charset.text, cells)]
-        columns.append(texts(charset.text(head), "", shown, "number" if k in grid.numbers else "name"))
-    return TextTable(charset.text(grid.title), columns, 1, grid.verdicts)
+        shown = [*map(look.unit if k in grid.units else look.text, cells)]
+        columns.append(texts(look.text(head), "", shown, "number" if k in grid.numbers else "name"))
+    return TextTable(look.text(grid.title), columns, 1, grid.verdicts)
 
 
 def _text(text: str, look: Look) -> str:
-    return escape(look.charset.text(text))
+    return escape(look.text(text))

@@ -116,7 +116,7 @@ def svg(picture: Picture, look: Look) -> str:
 
 def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
     """Return the height of a picture and its items."""
-    heading = folded(look.charset.text(picture.heading), int((WIDTH - 16) / _BOLD))
+    heading = folded(look.text(picture.heading), int((WIDTH - 16) / _BOLD))
     items = "".join(_text(8, 16 + 17 * number, text, "h", plain=True) for number, text in enumerate(heading))
     top, each = 7.0 + 17 * len(heading), WIDTH / picture.across
     tall = _TALL if len(picture.panels) < 3 else _SHORT
@@ -148,7 +148,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     for shade in panel.shades:
         low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
         yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
-    resting = _text(0, -5, frame.look.charset.text(panel.title), plain=True) if panel.plain else ""
+    resting = _text(0, -5, frame.look.text(panel.title), plain=True) if panel.plain else ""
     moving = ""
     for curve, look in zip(panel.curves, looks_of(panel)):
         if curve.x.ndim == 1 or paper:
@@ -178,7 +178,7 @@ def _axes(frame: PanelFrame) -> Iterator[str]:
 def _head(frame: PanelFrame, left: float) -> Iterator[str]:
     """Yield what is above a panel: its title, what runs upward, and which stroke is which quantity."""
     panel, look = frame.panel, frame.look
-    for text, plain in ((look.charset.text(panel.title), True), (axis_text(panel.y, look), False)):
+    for text, plain in ((look.text(panel.title), True), (axis_text(panel.y, look), False)):
         if text:
             yield _text(left, -10, text, plain=plain)
             left += PAPER_SIZES.letter * width(text) + 20

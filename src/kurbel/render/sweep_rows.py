@@ -23,7 +23,7 @@ from kurbel.designs.sweep import Row, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.data import csv_cell, csv_lines
+from kurbel.render.data import csv_cell, csv_line
 from kurbel.render.numbers import single
 from kurbel.render.output import silence, stdout_look, take_mode, whole_file
 
@@ -61,73 +61,85 @@ class Titles(NamedTuple):
         return [row.number, *row.values, *map(row.text, self.last)]
 
 
-# lines of text
+# rows as lines of text
 
 
-def csv_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
-    """Yield the rows as CSV; a list is one cell, its values parted by blanks."""
+class Lines(NamedTuple):
+    """How rows become lines: those of the heads, and what makes the line of a row."""
+
+    heads: list[str]
+    of: Callable[[Row], str]
+
+
+def lines_of(titles: Titles, look: Look, first: Sequence[Row] = ()) -> Lines:
+    """Return how the format of the look writes rows; first: rows that decide the widths of a table."""
+    if look.format == "table":
+        return _table_lines(titles, look, first)
+    return {"csv": _csv_lines, "json": _json_lines, "markdown": _markdown_lines}[look.format](titles, look)
+
+
+def _csv_lines(titles: Titles, look: Look) -> Lines:
+    line = csv_line(look)
     plain = None if look.digits or look.comma else float
-    cells = (  # most are numbers in full, which `csv_cell` would only take longer for
-        [value + 0.0 if type(value) is plain else csv_cell(value, look) for value in titles.values(row)] for row in rows
-    )
-    return csv_lines(chain([[csv_cell(name, look) for name in titles.whole]], cells), look)
+
+    def of(row: Row) -> str:  # most values are numbers in full, which `csv_cell` would only take longer for
+        values = titles.values(row)
+        return line([value + 0.0 if type(value) is plain else csv_cell(value, look) for value in values])
+
+    return Lines([line(csv_cell(name, look) for name in titles.whole)], of)
 
 
-def json_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
-    """Yield one object a line, whose keys are the heads of csv."""
+def _json_lines(titles: Titles, look: Look) -> Lines:
     names = titles.whole
-    for row in rows:
+
+    def of(row: Row) -> str:
         texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
         found = {name: texts.get(name, value) for name, value in zip(names, titles.values(row))}
-        yield json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
+        return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
+
+    return Lines([], of)
 
 
-def markdown_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
-    """Yield a table in Markdown, numbers to four digits."""
-    heads = [*(f"{name} ({look.charset.unit(unit)})" if unit else name for name, unit in titles.names)]
+def _markdown_lines(titles: Titles, look: Look) -> Lines:
+    def line(cells: Iterable[str]) -> str:
+        escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
+        return f"| {' | '.join(escaped)} |\n"
+
+    heads = [*(f"{name} ({look.unit(unit)})" if unit else name for name, unit in titles.names)]
     rules = ["--:"] * (len(heads) + 1) + ["---"] * len(titles.last)
-    for line in chain(([titles.row, *heads, *titles.last], rules), _cells(titles, rows, look)):
-        escaped = (text.replace("\\", "\\\\").replace("|", "\\|") for text in line)
-        yield f"| {' | '.join(escaped)} |\n"
+    return Lines(
+        [line([titles.row, *heads, *titles.last]), line(rules)],
+        lambda row: line(_cell(value, look) for value in titles.values(row)),
+    )
 
 
-def table_rows(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[str]:
-    """Yield a table of numbers to four digits, flush right, heads and units over it."""
+def _table_lines(titles: Titles, look: Look, first: Sequence[Row]) -> Lines:
+    """Return lines of numbers flush right, with heads and units over them."""
     names = [titles.row, *(name for name, _ in titles.names), *titles.last]
-    units = ["", *(look.charset.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
-    cells = _cells(titles, rows, look)
-    first = list(islice(cells, _WIDTH_OF))
-    widths = [max(map(len, column)) for column in zip(names, units, *first)]
+    units = ["", *(look.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
+    cells = [[_cell(value, look) for value in titles.values(row)] for row in first]
+    widths = [max(map(len, column)) for column in zip(names, units, *cells)]
     if titles.last:  # a reason may be long, and nothing follows it
         widths[-1] = 0
-    heads = [[look.charset.text(one) for one in line] for line in ((names, units) if any(units) else (names,))]
-    rule = [look.charset.text("─") * (sum(widths) + 2 * (len(widths) - 1))]
-    for line in chain(heads, (rule,), first, cells):
-        yield "  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() + "\n"
 
+    def line(texts: Iterable[str]) -> str:
+        return "  ".join(text.rjust(width) for text, width in zip(texts, widths)).rstrip() + "\n"
 
-def _cells(titles: Titles, rows: Iterable[Row], look: Look) -> Iterator[list[str]]:
-    """Yield the cells of each row as people read them."""
-    return ([_cell(value, look) for value in titles.values(row)] for row in rows)
+    heads = [line(look.text(one) for one in each) for each in ((names, units) if any(units) else (names,))]
+    rule = look.text("─") * (sum(widths) + 2 * (len(widths) - 1))
+    return Lines([*heads, rule + "\n"], lambda row: line(_cell(value, look) for value in titles.values(row)))
 
 
 def _cell(value: Any, look: Look) -> str:
+    """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
-        return look.charset.unit(value) if isinstance(value, Unit) else look.charset.text(value)
+        return look.unit(value) if isinstance(value, Unit) else look.text(value)
     if isinstance(value, tuple):
         return " ".join(_cell(one, look) for one in value)
     if value is None:
         return ""
     text, power = single(value, look.digits, look.comma)
     return f"{text}e{power}" if power else text
-
-
-_WRITERS: dict[str, Callable[[Titles, Iterable[Row], Look], Iterator[str]]] = {
-    "csv": csv_rows,
-    "json": json_rows,
-    "markdown": markdown_rows,
-    "table": table_rows,
-}
 
 
 # where they go
@@ -159,9 +171,10 @@ class SweepOutput:
         """Write the rows; a reader that leaves early is no fault. Raises UsageError."""
         write = self._parquet_writer() if self._look.format == "parquet" else self._write_lines
         following = iter(rows)
-        first = list(islice(following, 1))  # before anything is opened: there may be none, for whatever reason
+        # before anything is opened: there may be none, for whatever reason
+        first = list(islice(following, _WIDTH_OF if self._look.format == "table" else 1))
         with self._opened() as file:
-            write(chain(first, following), file)
+            write(first, following, file)
 
     def left(self) -> str:
         """Return what an early end leaves, "" for nothing."""
@@ -209,17 +222,14 @@ class SweepOutput:
                 os.unlink(path)
             raise
 
-    def _write_lines(self, rows: Iterable[Row], file: BinaryIO) -> None:
+    def _write_lines(self, first: list[Row], following: Iterator[Row], file: BinaryIO) -> None:
         """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
-        writer = _WRITERS[self._look.format]
-        lines, heads = writer(self.titles, rows, self._look), len(list(writer(self.titles, (), self._look)))
-        if self._look.format == "csv" and not self._headed:
-            next(lines)
-            heads = 0
+        lines = lines_of(self.titles, self._look, first)
         encoder = codecs.getincrementalencoder(self._look.encoding)("replace")  # one byte order mark at most
+        if self._headed or self._look.format != "csv":
+            file.write(encoder.encode("".join(lines.heads)))
         ready: list[bytes] = []
         written = 0.0
-        self.rows -= heads
 
         def put() -> None:
             file.write(b"".join(ready))
@@ -228,15 +238,15 @@ class SweepOutput:
             ready.clear()
 
         try:
-            for line in lines:
-                ready.append(encoder.encode(line))
+            for row in chain(first, following):
+                ready.append(encoder.encode(lines.of(row)))
                 if time.monotonic() - written >= _AT_LEAST_EVERY:
                     put()
                     written = time.monotonic()
         finally:
             put()
 
-    def _parquet_writer(self) -> Callable[[Iterable[Row], BinaryIO], None]:
+    def _parquet_writer(self) -> Callable[[list[Row], Iterator[Row], BinaryIO], None]:
         """Return what writes rows to a file as Parquet. Raises UsageError where pyarrow is missing."""
         try:
             import pyarrow
@@ -247,10 +257,10 @@ class SweepOutput:
         types = [pyarrow.int64(), *(stored[one] for one in (*self.titles.types, *("text" for _ in self.titles.last)))]
         schema = pyarrow.schema(zip(self.titles.whole, types))
 
-        def write(rows: Iterable[Row], file: BinaryIO) -> None:
-            following = iter(rows)
+        def write(first: list[Row], following: Iterator[Row], file: BinaryIO) -> None:
+            rows = chain(first, following)
             with parquet.ParquetWriter(file, schema) as writer:
-                while group := list(islice(following, _IN_A_GROUP)):
+                while group := list(islice(rows, _IN_A_GROUP)):
                     columns = zip(types, zip(*(self.titles.values(row) for row in group)))
                     arrays = [  # of words some may be read as numbers
                         pyarrow.array(
@@ -277,8 +287,9 @@ class KeptRows:
     def __init__(self, file_name: str, titles: Titles, look: Look, rows: range) -> None:
         part = part_of(file_name)
         self._file_name = part if os.path.isfile(part) else file_name
-        self._titles, self._names, self._look, self._rows = titles, titles.whole, look, rows
-        head = next(csv_rows(titles, (), look)) if look.format == "csv" and rows.start == 0 else ""
+        self._names, self._look, self._rows = titles.whole, look, rows
+        self._lines = lines_of(titles, look)
+        head = "".join(self._lines.heads) if rows.start == 0 else ""
         self._headed = bool(head)
         opening = head or '{"row": ' * (look.format == "json")
         begin, count, size = "", -self._headed, 0
@@ -327,8 +338,7 @@ class KeptRows:
     def _compare_answers(self, cells: list[str], sweep: Sweep, conditions: Sequence[Condition]) -> None:
         number = int(cells[0])
         row = next(rows_of(sweep, range(number - 1, number)))
-        *_, line = _WRITERS[self._look.format](self._titles, [row], self._look)
-        self._compare(cells, self._cells(line.rstrip("\n")))
+        self._compare(cells, self._cells(self._lines.of(row).rstrip("\n")))
         if not all(one.holds(row) for one in conditions):
             self._refuse(f"row {number} is in it, which --where leaves out")
 

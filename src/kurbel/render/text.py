@@ -1,7 +1,8 @@
-"""Text for a terminal, a pipe or a page: characters that the output can show, widths in cells, lines, and folding."""
+"""Text for a terminal, a pipe or a page: how it looks, widths in cells, lines, and folding."""
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from textwrap import wrap
 from typing import NamedTuple
@@ -9,6 +10,8 @@ from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.quantity import GREEK
 
+FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
+LAYOUTS = ("book", "rows")
 _ASCII = {
     **GREEK, "∮": "integral ", "₀": "0",
     "√": "sqrt", "∞": "inf",
@@ -25,9 +28,20 @@ _TURNING = dict.fromkeys(TURNING, "�")
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
-class Charset(NamedTuple):
-    """What an output of this encoding can show, and what replaces the rest."""
+@dataclass(frozen=True, eq=False)
+class Look:
+    """How a report is to look, and what its output can show.
 
+    format, layout: of FORMATS and LAYOUTS; comma: decimal comma; digits: significant digits, where None means four in
+    print and all of them in csv and json; width: columns to fill, None for nine angles to a block and nothing folded;
+    encoding: of the output, whose missing characters are replaced.
+    """
+
+    format: str = "table"
+    layout: str = "book"
+    comma: bool = False
+    digits: int | None = None
+    width: int | None = None
     encoding: str = "utf-8"
 
     def has(self, text: str) -> bool:
@@ -41,7 +55,7 @@ class Charset(NamedTuple):
     def text(self, text: str) -> str:
         """Return the text for people, without characters that are missing or would turn the writing.
 
-        >>> Charset("ascii").text("Werte für φ ≤ 90°")
+        >>> Look(encoding="ascii").text("Werte für φ ≤ 90°")
         'Werte fuer phi <= 90 deg'
         """
         return self.data(text.translate(_TURNING))
@@ -58,7 +72,7 @@ class Charset(NamedTuple):
     def unit(self, unit: str, exponent: int = 0) -> str:
         """Return a unit as printed, after the power of ten of its row.
 
-        >>> Charset().unit("m/s^2"), Charset().unit("N", 6), Charset("ascii").unit("N", 6)
+        >>> Look().unit("m/s^2"), Look().unit("N", 6), Look(encoding="ascii").unit("N", 6)
         ('m/s²', '10⁶ N', '10^6 N')
         """
         printed = {"deg": "°"}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
@@ -73,7 +87,7 @@ class Charset(NamedTuple):
     def below(self, exponent: int) -> str:
         """Return what replaces a value that is only known to be less than a power of ten.
 
-        >>> Charset().below(-14), Charset("ascii").below(-14)
+        >>> Look().below(-14), Look(encoding="ascii").below(-14)
         ('< 10⁻¹⁴', '< 1e-14')
         """
         printed = "< " + self._power(exponent)
@@ -147,5 +161,5 @@ def measures() -> re.Pattern[str]:
 
     of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
     units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
-    printed = {"%", "°", *units, *map(Charset().unit, units)} - {""}
+    printed = {"%", "°", *units, *map(Look().unit, units)} - {""}
     return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")

@@ -106,8 +106,8 @@ def part_name(report: Report, part: Part, look: Look) -> str:
     """Return the heading of the results of a part; nothing for the only one, which the title names."""
     if part is not report.whole and report.group == "ratios":
         ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
-        return look.charset.text(f"L/R = {decimal(ratio, look.comma)}")
-    return look.charset.text(str(part.name)) if len(report.all_parts) > 1 else ""
+        return look.text(f"L/R = {decimal(ratio, look.comma)}")
+    return look.text(str(part.name)) if len(report.all_parts) > 1 else ""
 
 
 def _scale(column: Column, look: Look) -> Scale:
@@ -124,8 +124,8 @@ def _numbers(column: Column, scale: Scale, look: Look, pad: str) -> TextColumn:
 
     ends = (end((value for value in column.values if value is not None), default=None) for end in (min, max))
     wide = max(len(text(end)) for end in ends) + len(pad)
-    symbol = look.charset.symbol(column.symbol, column.ascii_symbol)
-    unit = look.charset.unit(column.unit, scale.exponent)
+    symbol = look.symbol(column.symbol, column.ascii_symbol)
+    unit = look.unit(column.unit, scale.exponent)
     return TextColumn(symbol, unit, column.values, wide, text, marked=frozenset(column.marked), pad=pad)
 
 
@@ -139,7 +139,7 @@ def place_table(table: PlaceTable, look: Look) -> tuple[list[TextColumn], list[T
     """
     blank = "_" if table.headed else " "
     names = [
-        texts(head, "", [look.charset.text(name.replace("_", blank)) for name in column], "name")
+        texts(head, "", [look.text(name.replace("_", blank)) for name in column], "name")
         for head, column in zip(table.heads, zip(*table.names))
     ]
     sharing: dict[str, list[Value]] = {}
@@ -156,16 +156,16 @@ def _place_column(column: Column, scales: dict[str, Scale], look: Look) -> TextC
 
     def text(value: Value) -> str:
         if value is None:
-            return look.charset.text("–")
+            return look.text("–")
         if column.alone and not own:
-            return look.charset.counted(*alone(value, look.digits or column.alone, look.comma))
+            return look.counted(*alone(value, look.digits or column.alone, look.comma))
         if column.unit == "deg" and not own:
             return angle(value, look.comma)
         return cell(value, scale, look.comma)
 
     exponent = 0 if column.unit == "deg" else scale.exponent
-    symbol = look.charset.symbol(column.symbol, column.ascii_symbol)
-    return texts(symbol, look.charset.unit(column.unit, exponent), [text(value) for value in column.values])
+    symbol = look.symbol(column.symbol, column.ascii_symbol)
+    return texts(symbol, look.unit(column.unit, exponent), [text(value) for value in column.values])
 
 
 # key values
@@ -188,13 +188,12 @@ def key_value_text(one: KeyValue, look: Look) -> KeyValueText:
     def text(value: float) -> str:
         if one.unit == "deg" and (look.digits is None or isinstance(one.value, tuple)):
             return angle(value, look.comma)
-        return charset.counted(*single(value, look.digits, look.comma))
+        return look.counted(*single(value, look.digits, look.comma))
 
-    charset = look.charset
     if one.value is None or one.value == ():
-        number = charset.text("–")
+        number = look.text("–")
     elif one.noise:
-        number = charset.below(NOISE_POWER)
+        number = look.below(NOISE_POWER)
     elif not isinstance(one.value, tuple):
         number = text(one.value)
     elif len(one.value) > _MOST_LISTED:
@@ -202,10 +201,10 @@ def key_value_text(one: KeyValue, look: Look) -> KeyValueText:
     else:
         number = ("; " if look.comma else ", ").join(map(text, one.value))
     return KeyValueText(
-        charset.symbol(one.symbol, one.ascii_symbol),
+        look.symbol(one.symbol, one.ascii_symbol),
         number,
-        charset.unit(one.unit),
-        "" if one.at_deg is None else angle(one.at_deg, look.comma) + charset.text("°"),
+        look.unit(one.unit),
+        "" if one.at_deg is None else angle(one.at_deg, look.comma) + look.text("°"),
         sentence_text(one.text, look),
         not isinstance(one.value, tuple) and one.value is not None and not one.noise,
     )
@@ -227,6 +226,5 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
 
 def sentence_text(text: str, look: Look) -> str:
     """Return a sentence in the characters of the output, its numbers with the decimal comma where that is wanted."""
-    squared = re.sub(r"(?<=[a-z])\^2", "²", text)
-    text = look.charset.text(squared if look.charset.has(squared) else text)
+    text = look.text(re.sub(r"(?<=[a-z])\^2", "²", text))
     return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text

@@ -19,7 +19,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called
-from kurbel.report.tables import Column, Input, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
+from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
 from kurbel.solver.figures import Results
 
 _AT_ONCE = 8192
@@ -227,12 +227,12 @@ def provenance(machine: Machine) -> Provenance:
     """Return what the results of a machine are made from: files with their SHA-256, values set over them, versions."""
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
-        inputs.append(Input(origin.name, sha256(origin.content).hexdigest()))
+        inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))
     for name in machine.trace_files:
         digest = None
         with suppress(OSError), open(name, "rb") as file:
             digest = sha256(file.read()).hexdigest()
-        inputs.append(Input(name, digest))
+        inputs.append(InputFile(name, digest))
     numpy = sys.modules.get("numpy")
     return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": numpy.__version__} if numpy else {})
 

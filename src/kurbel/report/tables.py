@@ -1,7 +1,6 @@
 """What a report is made of, whatever it will be rendered as."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Union
 
 from kurbel.declared.reading import shown
@@ -90,19 +89,17 @@ class Part(NamedTuple):
     of: str = ""
 
 
-@dataclass(frozen=True, eq=False)
-class Input:
+class InputFile(NamedTuple):
     """A file that was read, and the SHA-256 of its bytes; None where it is gone since."""
 
     file: str
     sha256: str | None
 
 
-@dataclass(frozen=True, eq=False)
-class Provenance:
+class Provenance(NamedTuple):
     """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
 
-    inputs: tuple[Input, ...]
+    inputs: tuple[InputFile, ...]
     overrides: tuple[str, ...]
     versions: dict[str, str]
 
