@@ -28,11 +28,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.turning import Load
+from kurbel.machine.parts import Masses, Piston
+from kurbel.machine.turning import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from machines import STEAM_CARD

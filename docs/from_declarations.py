@@ -15,11 +15,10 @@ from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Key, Keys, required
-from kurbel.declared.kinds import KINDS, MOST_ITEMS, MOST_POINTS, range_of
 from kurbel.declared.shaft import STRESSES
 from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import SYSTEMS
-from kurbel.declared.units import kinds, unit_names
+from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id

@@ -7,8 +7,7 @@ from typing import Any
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
 

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.errors import NoSolutionError, RuleError
-from kurbel.machine.friction import Friction, Rings
 from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Card, Chamber, Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
 from machines import constant_pressure, one_cylinder

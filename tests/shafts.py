@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.shaft import FreeBody, Vector

@@ -11,8 +11,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.machine.shaft_line import ShaftPart
-from kurbel.machine.shaft_list import line_of
+from kurbel.machine.shaft_line import ShaftPart, line_of
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -13,7 +13,7 @@ from kurbel import loads
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.masses import Masses
+from kurbel.machine.parts import Masses
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.quantities import every_quantity

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,11 @@ from indicated import Engine, absolute, columns_file, cycles, indicated
 from kurbel.cli import kurbel
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
+from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.warnings import Note, machine_notes
 from kurbel.solver.case import Case
+from kurbel.traces.checks import CHECKS, Reading
+from kurbel.traces.correct import Setting, Trace, corrected
 from representative import few
 
 AMBIENT = 1.01325
@@ -106,11 +110,11 @@ def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, 
 
 
 WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
-    "90 deg late": (FINE, late(90), "", "absolute", "the peak stands 103.6 deg after the firing dead centre"),
+    "90 deg late": (FINE, late(90), "", "absolute", "the peak is 103.6 deg after the firing dead centre"),
     "180 deg late": (FINE, late(180), "", "absolute", "in the gas exchange: write 'angle_zero: 180 deg'"),
-    "90 deg early": (FINE, late(-90), "", "absolute", "the peak stands 76.4 deg before the firing dead centre"),
+    "90 deg early": (FINE, late(-90), "", "absolute", "the peak is 76.4 deg before the firing dead centre"),
     "one turn late": (FINE, late(360), "", "absolute", "write 'angle_zero: 360 deg'; p_i stays"),
-    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak stands 74.8 deg after the firing dead centre"),
+    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak is 74.8 deg after the firing dead centre"),
     "gauge as absolute": (FINE, late(0) - AMBIENT, "", "absolute", "these look like gauge pressures"),
     "absolute as gauge": (FINE, late(0), "", "gauge", "about the ambient: absolute?"),
     "with clearance": (FINE, late(0), ", clearance: 1/14", "gauge", "about the ambient: absolute?"),
@@ -121,7 +125,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
     "a hundredth, gauge": (FINE, (late(0) - AMBIENT) / 100, ", clearance: 1/14", "gauge", "100 times too small"),
     "kPa as bar": (FINE, (late(0) - AMBIENT) * 100, "", "gauge", "100 times too large"),
     "backward": (FINE, absolute(ENGINE, -FINE), "", "absolute", "does its angle count against the rotation?"),
-    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "does it stand on its head? write 'scale: -1'"),
+    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "is it inverted? write 'scale: -1'"),
     "no level": (FINE, late(0) - 7.3, "", "absolute", "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
     "no level, gauge": (FINE, late(0) - 7.3, "", "gauge", "the perfect vacuum being at -1.013 bar; write 'pegging"),
     "drift": (FINE, late(0) + 3 * FINE / 720, "", "absolute", "the pressure jumps by -2.9"),
@@ -138,7 +142,7 @@ WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
         absolute(ENGINE, np.arange(0.0, 720.0, 0.5)),
         "",
         "absolute",
-        "samples stand at the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
+        "samples have the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
     ),
     "dead centre": (FINE, late(-6), ", clearance: 1/14", "absolute", "its compression goes by p V^1."),
     "level": (FINE, late(0) - 0.5, ", clearance: 1/14", "absolute", "its compression goes by p V^1.5"),
@@ -175,11 +179,11 @@ def test_what_it_would_change_is_the_true_figure(tmp_path: Path) -> None:
 
 
 def test_four_strokes_told_as_two(tmp_path: Path) -> None:
-    """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ by twos."""
+    """The angle begins anew in every turn and 'cycle: four-stroke' is forgotten: the turns differ in pairs."""
     _, each = cycles(ENGINE, 3, 0.5, noise=0.05)
     file = written(tmp_path, np.tile(np.arange(0.0, 360.0, 0.5), 6), each.ravel())
     (note,) = notes_of(machine_text(file, cycle="two-stroke"))
-    assert "its turns differ by twos" in note
+    assert "its turns differ in pairs" in note
     assert notes_of(machine_text(file, cycle=obeyed(note, "", "", "")[2])) == []
 
 
@@ -224,7 +228,7 @@ def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -
         "flywheel: {inertia: 1 kg m2}\n"
     )
     (tmp_path / "m.yaml").write_text(shaft + machine_text(written(tmp_path, FINE, late(90))))
-    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak stands" in one]
+    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak is" in one]
     ran = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-f", "json"])
     assert ran.exit_code == 0, ran.output
     found = json.loads(ran.stdout)
@@ -279,6 +283,31 @@ def test_a_measured_stirling_engine(tmp_path: Path) -> None:
     assert [note.text for note in noted(machine) if "left out" not in note.text] == []
     notes = [note.text for note in noted(loads(text % (STIRLING, 60 / period, zero)))]
     assert any("the cycles wander" in note for note in notes)
+
+
+def drawn_trace(random: np.random.Generator) -> tuple[Trace, Setting]:
+    """Any trace in any chamber: few samples or many, even or not, of noise, pulses, nothing or an engine."""
+    cycle, count = float(random.choice([360, 720])), int(random.choice([3, 4, 8, 37, 400]))
+    inside = np.sort(random.uniform(0, cycle, count)) if random.random() < 0.5 else np.arange(1, count + 1) * 1.0
+    angles = np.concatenate(([0.0], inside * (1 if random.random() < 0.5 else cycle / (inside[-1] + 1)), [cycle]))
+    angles = np.sort(np.clip(angles, 0, cycle))
+    shapes = [0 * angles, random.standard_normal(len(angles)), absolute(ENGINE, angles), 1.0 * (angles > cycle / 2)]
+    pressures = shapes[random.integers(len(shapes))] * 10 ** random.uniform(-8, 14)
+    laps = pressures * (1 + 0.1 * random.standard_normal((int(random.integers(1, 5)), 1)))
+    clearance = random.choice([None, 0.07, 1e-6, 1e6])
+    trace = Trace(angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5, column=2)
+    ambient, gauge = random.choice([0.0, 101325.0]), bool(random.random() < 0.5)
+    return trace, Setting(SliderCrank(0.05, 0.2), cycle, bool(random.random() < 0.5), float(ambient), not gauge)
+
+
+def test_no_trace_stops_a_check() -> None:
+    """Every check ends with a sentence or none, and what numpy warns of is a fault."""
+    random = np.random.default_rng(11)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(400):
+            reading = Reading(*(drawn := drawn_trace(random)), corrected(*drawn))
+            assert all(isinstance(check(reading), str) for check in CHECKS)
 
 
 # what is judged wrongly, or not at all

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine
-    from kurbel.machine.piston import Piston as Piston
+    from kurbel.machine.parts import Piston as Piston
     from kurbel.machine_file import load as load
     from kurbel.machine_file import loads as loads
     from kurbel.mechanisms import Mechanism as Mechanism
@@ -57,7 +57,7 @@ _HOMES = {
     "KurbelError": "kurbel.errors",
     "Machine": "kurbel.machine",
     "Mechanism": "kurbel.mechanisms",
-    "Piston": "kurbel.machine.piston",
+    "Piston": "kurbel.machine.parts",
     "SliderCrank": "kurbel.mechanisms.slider_crank",
     "draw": "kurbel.notebook",
     "load": "kurbel.machine_file",

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs.plan import Plan, read_axis, read_input, shard
-from kurbel.designs.sampling import _digits, latin_hypercube, sobol
+from kurbel.designs.plan import Plan, latin_hypercube, read_axis, read_input, shard
 from kurbel.errors import UsageError
 
 
@@ -109,19 +108,6 @@ def test_shards_are_the_whole() -> None:
 
 
 @pytest.mark.slow
-def test_the_sequence_of_sobol_is_that_of_joe_and_kuo() -> None:
-    from scipy.stats import qmc  # takes most of a second
-
-    assert (_digits(256, 13) / 2.0**32 == qmc.Sobol(13, scramble=False).random(256)).all()
-
-
-def test_the_sequence_of_sobol_has_one_point_in_every_strip() -> None:
-    points = sobol(64, 3, 5)
-    assert all((np.sort(np.floor(64 * column)) == np.arange(64)).all() for column in points.T)
-    with pytest.raises(UsageError, match="is known for 13"):
-        sobol(4, 14, 0)
-
-
 def test_a_latin_hypercube_has_one_point_in_every_strip() -> None:
     points = latin_hypercube(100, 4, 1)
     assert all((np.sort(np.floor(100 * column)) == np.arange(100)).all() for column in points.T)

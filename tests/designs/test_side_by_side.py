@@ -12,17 +12,12 @@ import numpy as np
 import pytest
 
 from kurbel import Machine, load, loads
-from kurbel.designs.answers import Values, answers_of, is_slow
-from kurbel.designs.columns import Answer, answered_alone, asked_answers
+from kurbel.designs.answers import Answer, Values, answered_alone, answers_of, asked_answers, is_slow
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
-from kurbel.machine.batch import Structures
-from kurbel.machine.friction import Friction, Guide
-from kurbel.machine.indicator import Indicator
-from kurbel.machine.piston import Piston
-from kurbel.machine.rectangle import Rectangle
-from kurbel.machine.resistance import RamForce
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot, Structures
+from kurbel.machine.indicator import Indicator, Rectangle
+from kurbel.machine.parts import Friction, Guide, Piston, RamForce
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.solver.case import Case

@@ -319,7 +319,6 @@ def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
         (("--vary", "rod_ratio=3,4", "--where", "nonsense"), "expected a column, a relation and a value"),
         (("--vary", "rod_ratio=3,4", "--where", "T_mx < 5 N"), "no column 'T_mx'"),
         (("--vary", "rod_ratio=3,4", "--top", "3"), "--top N takes the first rows of --sort"),
-        (("--vary", "rod_ratio=3,4", "--sobol"), "give --sample N too"),
         (("--vary", "rod_ratio=3,4", "--resume"), "give --output FILE"),
         (("--vary", "rod_ratio=3,4", "--shard", "3/2"), "write K/N"),
         (("--vary", "rod_ratio=3,4", "-f", "parquet"), "Parquet is a file"),

@@ -18,7 +18,7 @@ from click.testing import CliRunner
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.designs import uncertainty
-from kurbel.designs.columns import Answer
+from kurbel.designs.answers import Answer
 from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
 from kurbel.machine_file import source
 from kurbel.quantities import every_quantity

@@ -11,9 +11,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.declared.forms import points
-from kurbel.declared.kinds import KINDS
+from kurbel.declared.forms import values
 from kurbel.declared.unit_systems import SI
+from kurbel.declared.units import KINDS
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import events, load, loads
 from kurbel.traces import read
@@ -77,7 +77,7 @@ def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None
 
 
 def test_bounds_are_those_of_the_file_not_of_python() -> None:
-    from kurbel.machine.piston import Piston
+    from kurbel.machine.parts import Piston
 
     assert Piston(1e-200).bore == 1e-200
 
@@ -205,7 +205,7 @@ def test_json_of_the_schema_is_finite() -> None:
 
 
 def test_more_points_than_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(points, "MOST_POINTS", 500)
+    monkeypatch.setattr(values, "MOST_POINTS", 500)
     flow = ", ".join(f"[{i * 0.5}, 1]" for i in range(501))
     with pytest.raises(KurbelError, match="501 points; more than 500 are not taken, thin them out"):
         loads(f"effort: {{unit: N m, points: [{flow}]}}")

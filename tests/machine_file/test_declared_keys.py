@@ -13,7 +13,7 @@ import pytest
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Key
 from kurbel.errors import MachineFileError, RuleError
-from kurbel.machine.masses import ConnectingRod
+from kurbel.machine.parts import ConnectingRod
 from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
 from kurbel.mechanisms.slider_crank import SliderCrank

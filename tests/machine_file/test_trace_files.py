@@ -83,6 +83,13 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "against the rotation": (rows((-ANGLES[::-1]) % 720, PRESSURES[::-1]), ", angle_sense: against"),
     "falling angles": (rows(720 - ANGLES), ", angle_sense: against"),
     "line feeds of old Macs": (rows().replace("\n", "\r"), ""),
+    "line feeds of DOS": (rows().replace("\n", "\r\n"), ""),
+    "tabs": (rows(between="\t"), ", delimiter: tab"),
+    "blanks": (rows(between="   "), ", delimiter: space"),
+    "semicolons by their sign": (rows(between=";"), ', delimiter: ";"'),
+    "other columns": (rows(form="9,%s"), ", angle_column: 2, pressure_column: 4"),
+    "a heading in Latin-1": ("Kurbelwinkel [°]\n".encode("latin-1") + rows().encode(), ", skip_rows: 1"),
+    "comments and empty lines": ("# bar\n\n" + rows().replace("\n20,", "\n\n20,") + "# end\n", ""),
 }
 
 
@@ -213,7 +220,7 @@ def test_what_is_no_text_is_named(tmp_path: Path, begin: bytes, said: str) -> No
         (", pegging: {angle: 5 deg}", "'pressure' is missing"),
         (", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
         (", clearance: 0.1, compression_ratio: 11", "say the same thing"),
-        (", decimal: comma", "a comma cannot stand both in numbers and between columns"),
+        (", decimal: comma", "a comma cannot be both in numbers and between columns"),
     ],
 )
 def test_keys_that_contradict_or_lack_one_another(tmp_path: Path, keys: str, said: str) -> None:

@@ -15,7 +15,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Physical
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.resistance import Moment, RamForce
+from kurbel.machine.parts import Moment, RamForce
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.kinds import MECHANISMS

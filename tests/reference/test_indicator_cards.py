@@ -10,8 +10,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
 from machines import constant_pressure, one_cylinder

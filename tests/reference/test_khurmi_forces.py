@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from kurbel.declared.units import GRAVITY
-from kurbel.machine.masses import Masses
+from kurbel.machine.parts import Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import one_cylinder, single_acting
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.parts import ConnectingRod, Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import one_cylinder
 

@@ -8,9 +8,8 @@ import mpmath
 import pytest
 
 from kurbel.errors import NoSolutionError
-from kurbel.machine.friction import Friction, Rings
 from kurbel.machine.indicator import Constant, Indicator
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver import friction as rules
 from machines import constant_pressure, one_cylinder

@@ -8,8 +8,7 @@ import pytest
 
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.indicator import Constant, Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import ConnectingRod, Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import AT, STEAM_CARD, one_cylinder
 

@@ -12,8 +12,7 @@ import pytest
 
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import constant_pressure, one_cylinder, single_acting
 

@@ -12,10 +12,8 @@ import numpy as np
 import pytest
 
 from kurbel.declared.units import GRAVITY
-from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Card, Constant, Indicator, Line
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
 from machines import AT, STEAM_CARD, one_cylinder

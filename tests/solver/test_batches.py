@@ -11,7 +11,7 @@ import pytest
 
 from kurbel import loads
 from kurbel.machine import Machine
-from kurbel.machine.variants import record_of, values_of
+from kurbel.machine.batch import record_of, values_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case
 

@@ -13,8 +13,7 @@ from scipy.integrate import fixed_quad
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import batch
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot, batch
 from kurbel.machine_file import loads
 from kurbel.solver.bearings import Bearing, unreached
 from kurbel.solver.case import Case

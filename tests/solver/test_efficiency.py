@@ -17,12 +17,9 @@ from kurbel.cli import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.flywheel import Flywheel
-from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Card, Constant, Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.resistance import RamForce
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, RamForce
+from kurbel.machine.turning import Flywheel
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning

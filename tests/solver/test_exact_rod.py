@@ -12,12 +12,9 @@ from hypothesis import strategies as st
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.flywheel import Flywheel
-from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.resistance import RamForce
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, RamForce
+from kurbel.machine.turning import Flywheel
 from kurbel.machine_file import loads
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank

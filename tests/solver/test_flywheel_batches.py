@@ -12,10 +12,8 @@ import pytest
 from kurbel import load
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.machine.batch import batch
-from kurbel.machine.flywheel import Flywheel
-from kurbel.machine.turning import Load
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot, batch
+from kurbel.machine.turning import Flywheel, Load
 from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parents[2] / "configs"

@@ -11,10 +11,8 @@ import numpy as np
 import pytest
 
 from kurbel.machine import Machine
-from kurbel.machine.flywheel import Flywheel
-from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiece
-from kurbel.machine.shaft_list import line_of
-from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
+from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPart, ShaftPiece, line_of
+from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Angles, Pieces

@@ -12,11 +12,9 @@ import pytest
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.friction import Friction
 from kurbel.machine.ideal_cards import Compressor, Otto
 from kurbel.machine.indicator import Card, Constant, Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped

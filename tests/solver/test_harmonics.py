@@ -19,8 +19,7 @@ from kurbel.accuracy.oracle import CylinderOracle
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import ConnectingRod, Masses, Piston
 from kurbel.machine.turning import Harmonics
 from kurbel.machine_file import load, loads
 from kurbel.mechanisms.slider_crank import SliderCrank

@@ -12,7 +12,7 @@ from kurbel.errors import RuleError
 from kurbel.machine import STANDARD_ATMOSPHERE, Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.indicator import Card, Indicator
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import process_in

@@ -12,10 +12,8 @@ from hypothesis import strategies as st
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.friction import Friction, Rings
 from kurbel.machine.indicator import Card, Constant, Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Masses, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces

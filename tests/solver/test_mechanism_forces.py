@@ -11,11 +11,8 @@ import pytest
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.friction import Friction, Rings
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.resistance import Moment, RamForce
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Moment, Piston, RamForce, Rings
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank

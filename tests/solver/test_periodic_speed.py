@@ -15,11 +15,9 @@ from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.turning import Load
+from kurbel.machine.parts import ConnectingRod, Masses, Piston
+from kurbel.machine.turning import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.collocation import Unsettled, periodic, radau
 from kurbel.numerics.pieces import Pieces

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from kurbel.machine import Machine
-from kurbel.machine.friction import Friction
 from kurbel.machine.ideal_cards import Diesel
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces

@@ -14,11 +14,9 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.batch import batch
+from kurbel.machine.batch import Lot, batch
 from kurbel.machine.indicator import Card, Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.variants import Lot
+from kurbel.machine.parts import Masses, Piston
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.errors import RuleError
-from kurbel.machine.masses import ConnectingRod, Masses
+from kurbel.machine.parts import ConnectingRod, Masses
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.stress import PARTS, CrankshaftStrength, places
 from machines import constant_pressure

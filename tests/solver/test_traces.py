@@ -17,10 +17,8 @@ from scipy.integrate import quad
 from indicated import columns_file
 from kurbel.errors import MachineFileError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.friction import Friction
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.masses import Masses
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file import load, loads
 from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -218,28 +216,6 @@ def machine_of(tmp_path: Path, text: str | bytes, keys: str = "", more: str = ""
 def columns_of(machine: Machine) -> tuple[list[float], list[float]]:
     samples = machine.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
     return samples.angles.tolist(), samples.pressures.tolist()
-
-
-@pytest.mark.parametrize(
-    ("text", "keys"),
-    [
-        ("0,1\n120,2\n240,3\n360,1\n", ""),
-        ("0;1\n120;2\n240;3\n360;1\n", ", delimiter: semicolon"),
-        ("0;1,0\n120,0;2\n240;3\n360;1\n", ', delimiter: ";", decimal: comma'),
-        ("0\t1\n120\t2\n240\t3\n360\t1\n", ", delimiter: tab"),
-        ("0   1\n 120  2\n240 3\n360\t1\n", ", delimiter: space"),
-        ("angle,p\n# bar\n0,1\n120,2\n\n240,3\n360,1\n", ", skip_rows: 1"),
-        (
-            "1,0,9,0\n1,120,9,2\n".replace("9,0", "9,1") + "1,240,9,3\n1,360,9,1\n",
-            ", angle_column: 2, pressure_column: 4",
-        ),
-        ("\ufeff0,1\r\n120,2\r\n240,3\r\n360,1\r\n", ""),
-        ("Kurbelwinkel [°]\n0,1\n120,2\n240,3\n360,1".encode("latin-1"), ", skip_rows: 1"),
-    ],
-    ids=["comma", "semicolon", "decimal comma", "tab", "blanks", "heading", "columns", "byte order mark", "latin 1"],
-)
-def test_layouts_of_files(tmp_path: Path, text: str | bytes, keys: str) -> None:
-    assert columns_of(machine_of(tmp_path, text, keys)) == ([0, 120, 240, 360], [1e5, 2e5, 3e5, 1e5])
 
 
 GOOD = [f"{angle},{1 + angle / 100}" for angle in range(0, 361, 10)]
@@ -441,7 +417,7 @@ def test_motored_peak_away_from_the_dead_centre(late: float, text: str) -> None:
 def test_motored_traces_are_known_by_their_shape(late: float) -> None:
     """Too late, a motored trace does positive work; its two sides are alike all the same."""
     (warning,) = warned(finely_motored(late))
-    assert warning.startswith("piston, head end: no combustion shows, and the peak stands")
+    assert warning.startswith("piston, head end: no combustion shows, and the peak is")
     assert f"{abs(late):.2g} deg {'after' if late > 0 else 'before'}" in warning
 
 

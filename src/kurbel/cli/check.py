@@ -124,7 +124,7 @@ def _as_text(outcomes: list[_Outcome], look: Look) -> Iterator[str]:
 
 def _as_json(outcomes: list[_Outcome], look: Look) -> Iterator[str]:
     """Return all findings, those of files that cannot be read, too."""
-    from kurbel.machine_file.positions import located
+    from kurbel.machine_file.events import located
     from kurbel.render.data import findings_json
     from kurbel.report.check import faults_found, findings
 

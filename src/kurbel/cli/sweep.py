@@ -45,7 +45,6 @@ _what_varies = stacked(
         "--sample", type=click.IntRange(1, 10**8), metavar="N", help="Points of a Latin hypercube of distributions."
     ),
     click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
-    click.option("--sobol", is_flag=True, help="The sequence of Sobol instead of a Latin hypercube."),
 )
 _what_is_told = stacked(
     click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
@@ -118,7 +117,6 @@ class _Asked(NamedTuple):
     side_by_side: bool
     sample: int | None
     seed: int
-    sobol: bool
     columns: tuple[str, ...] | None
     with_angles: bool
     conditions: tuple[str, ...]
@@ -162,7 +160,6 @@ class _Asked(NamedTuple):
             (not (self.vary or self.cases), "Missing option '--vary', which says what varies; or give --cases."),
             (self.cases and self.case_name, "--cases has every load case, --case one; leave one of them out."),
             (self.top and not self.sort, "--top N takes the first rows of --sort ID; give --sort too."),
-            (self.sobol and not self.sample, "--sobol is a way to draw a sample; give --sample N too."),
             (self.resume and not named, "--resume goes on in a file; give --output FILE."),
             (self.resume and self._written not in _LINES, "--resume goes on in csv or json lines."),
             (self.resume and not self._in_order, "--resume cannot go on where rows are sorted, chosen or summed up."),
@@ -214,7 +211,7 @@ class _Asked(NamedTuple):
 
         refuse_overwriting(self.file_name, (self.file,))
         system = self.units or ("si" if self._written in ("csv", "json", "parquet") else "metric")
-        plan = self.vary, self.side_by_side, self.sample, self.seed, self.sobol
+        plan = self.vary, self.side_by_side, self.sample, self.seed
         origin = source.read(self.file)._replace(case=self.case_name).set_over(self.overrides)
         most = None if self.yes else MOST_ROWS
         return Spec(origin, *plan, self.columns or (), self.with_angles, system, most=most, cases=self.cases)

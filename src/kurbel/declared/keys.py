@@ -285,9 +285,7 @@ class Described:
     KEYS: ClassVar[Keys] = {}
 
     def __init_subclass__(cls) -> None:
-        given = vars(cls).get("KEYS", {})
-        inherited: Keys = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
-        own = {**inherited, **{name: key._replace(attribute=name) for name, key in given.items()}}
+        own: Keys = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
         for name, value in vars(cls).items():
             if isinstance(value, dataclasses.Field) and "key" in value.metadata:
                 key = value.metadata["key"]

@@ -5,8 +5,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from kurbel.declared.kinds import KINDS
-from kurbel.declared.units import unit_factor
+from kurbel.declared.units import KINDS, unit_factor
 
 SYSTEMS: dict[str, dict[str, Any]] = {
     system: {name: getattr(kind, system) or kind.si for name, kind in KINDS.items()}

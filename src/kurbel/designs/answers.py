@@ -1,16 +1,21 @@
-"""The answers of many machines: those of one structure in batches, the others one after another."""
+"""What each design answers: key values of any command; machines of one structure in batches, the others one by one."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterator, Sequence
 from itertools import compress
-from typing import Any, Union
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.designs.columns import Answer, answered_alone, answers_in
-from kurbel.errors import KurbelError
+from kurbel.declared.quantity import Quantity, ambiguity, called, joined
+from kurbel.declared.reading import shown
+from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Structures, batch
-from kurbel.machine.variants import Lot
+from kurbel.machine.batch import Lot, Structures, batch
+from kurbel.near_words import did_you_mean
+from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.quantities import every_quantity
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import too_large
 from kurbel.solver.case import Case
 
 _ALONE = ("torsion",)
@@ -25,6 +30,115 @@ _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
 
 Values = Union[Sequence[Any], str]
 """What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
+
+
+class Answer(NamedTuple):
+    """A key value of a command; subject: whose it is, as the report of that command names it.
+
+    alone: it was asked of this subject alone, `LP.c_max`; angle: where an extreme stands, not its size.
+    """
+
+    quantity: Quantity
+    command: str
+    subject: str
+    alone: bool = False
+    angle: bool = False
+
+    @property
+    def kind(self) -> str:
+        """Of which kind it is, which decides the unit."""
+        return "angle" if self.angle else self.quantity.kind
+
+    def part_of(self, found: Any) -> Any:
+        """Return of a value what is asked: a number, a tuple or None."""
+        if self.angle:
+            return found.degrees if isinstance(found, Extreme) else None
+        return number_of(found)
+
+
+def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
+    """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: the usual ones.
+
+    Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
+    with_angles: beside each that is an extreme the angle where it stands.
+
+    Raises UsageError for one that there is not, or that this machine has not.
+    """
+    case = Case(machine)
+    once: dict[Answer, tuple[Answer, ...]] = {}
+    with np.errstate(all="ignore"):
+        declared = every_quantity().all_key_values
+        found = (one for name in joined(names, declared) for one in _named(case, name)) if names else _usual(case)
+        for one, value in found:
+            angle = (one._replace(angle=True),) if with_angles and _stands(value) else ()
+            once.setdefault(one._replace(alone=False), (one, *angle))
+    return tuple(part for parts in once.values() for part in parts)
+
+
+def _stands(value: Any) -> bool:
+    """Return whether a value stands at an angle, or other designs may have one that does."""
+    return isinstance(value, (Extreme, KurbelError))
+
+
+def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
+    """Yield who answers what a command tells unasked, each with what this machine has there: see `_answer`."""
+    command = "forces" if case.machine.cylinders else "flywheel"
+    for subject in subjects_of(case, command):
+        for quantity in subject.lists.key_values(command).values():
+            value = None if quantity.residual else _answer(subject, quantity, unasked=True)
+            if value is not None:
+                yield Answer(quantity, command, subject.name), value
+
+
+def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
+    """Return who answers a key value, each with what this machine has there: see `_answer`."""
+    declared = every_quantity().all_key_values
+    ids = called(name, declared)
+    owner, _, own = name.rpartition(".")
+    of_owner = _named(case, own) if not ids and called(own, declared) else ()
+    if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
+        return found
+    if not ids or ambiguity(name, ids):
+        near = did_you_mean(name, tuple(one.id for one in declared))
+        raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
+    command = every_quantity().commands_of(ids[0])
+    command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
+    for word in dict.fromkeys(command):
+        found = [
+            (Answer(quantity, word, subject.name), value)
+            for subject in subjects_of(case, word)
+            if (quantity := subject.lists.key_values(word).get(ids[0]))
+            and (value := _answer(subject, quantity)) is not None
+        ]
+        if found:
+            return found
+    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check says why")
+
+
+def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
+    """Return what a machine has for a key value, None for nothing; or the error, where other designs may have it."""
+    try:
+        return None if unasked and not subject.says(quantity) else subject.answer(quantity)
+    except KurbelError as error:
+        return error
+
+
+def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
+    """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
+    found = answers_in(Case(machine), answers)
+    for one, value in zip(answers, found):
+        if value is not None and not np.isfinite(value).all():
+            raise too_large(one.quantity)
+    return found
+
+
+def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
+    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
+    known: dict[tuple[str, str], Any] = {}
+    for command in dict.fromkeys(one.command for one in answers):
+        known |= {(command, subject.name): subject for subject in subjects_of(case, command)}
+    found = ((one, known.get((one.command, one.subject))) for one in answers)
+    return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]
 
 
 def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int] | None = None) -> dict[int, Values]:

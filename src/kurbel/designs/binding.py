@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.records import TOO_EXTREME, Maker, too_extreme
+from kurbel.declared.forms.structures import TOO_EXTREME, Maker, too_extreme
 from kurbel.declared.keys import Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
 from kurbel.machine import Machine
+from kurbel.machine.batch import Lot, changed
 from kurbel.machine.origin import Origin
-from kurbel.machine.variants import Lot, changed
 from kurbel.machine_file.given import leaves, tree_of
 from kurbel.machine_file.overrides import by_numbers, dotted, path_of
 from kurbel.machine_file.reader import read_values, reading_of

@@ -8,15 +8,16 @@ import re
 from collections.abc import Iterable, Sequence
 from decimal import Decimal, InvalidOperation
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from statistics import NormalDist
+from typing import NamedTuple
 
+import numpy as np
+
+from kurbel.arrays import Array
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.errors import UsageError
 from kurbel.machine_file.overrides import path_of
-
-if TYPE_CHECKING:
-    from kurbel.arrays import Array
 
 MOST_ROWS = 10_000_000
 """Rows that are computed without being asked whether they are meant."""
@@ -40,8 +41,6 @@ class Distribution(NamedTuple):
         """Return the value below which this share of all lies, 0 < share < 1."""
         if self.name == "uniform":
             return self.first + share * (self.second - self.first)
-        from statistics import NormalDist
-
         return NormalDist(self.first, self.second).inv_cdf(share)
 
 
@@ -166,7 +165,7 @@ class Plan:
     """The rows of a sweep, by their number from 0 on; the last axis of a grid runs fastest.
 
     axes: the keys that go together on each: their first values make the first place on it, the second ones the second,
-    … side_by_side: all lists are one axis. sample, seed, sobol: size, seed and kind of the sample of the distributions.
+    … side_by_side: all lists are one axis. sample, seed: size and seed of the sample of the distributions.
     Raises UsageError for lists that do not fit together.
     """
 
@@ -176,10 +175,9 @@ class Plan:
         side_by_side: bool = False,
         sample: int | None = None,
         seed: int = 0,
-        sobol: bool = False,
     ) -> None:
         self.inputs = tuple(one for axis in axes for one in axis)
-        self._sample, self._seed, self._sobol = sample, seed, sobol
+        self._sample, self._seed = sample, seed
         self._drawn = [one for one in self.inputs if one.distribution is not None]
         listed = [axis for axis in axes if axis[0].distribution is None]
         self._axes = [tuple(one for axis in listed for one in axis)] if side_by_side and listed else listed
@@ -203,10 +201,8 @@ class Plan:
                 raise UsageError(f"{where}: the lists must be of one length; {each}")
 
     @cached_property
-    def _points(self) -> "Array":
-        from kurbel.designs.sampling import latin_hypercube, sobol
-
-        return (sobol if self._sobol else latin_hypercube)(self._sample or 0, len(self._drawn), self._seed)
+    def _points(self) -> Array:
+        return latin_hypercube(self._sample or 0, len(self._drawn), self._seed)
 
     def texts(self, row: int) -> tuple[str, ...]:
         """Return the texts of the keys in a row, in the order of the inputs."""
@@ -218,6 +214,15 @@ class Plan:
         for column, one in enumerate(self._drawn):
             found[one.key] = one.text(float(self._points[point, column]))
         return tuple(found[one.key] for one in self.inputs)
+
+
+def latin_hypercube(count: int, width: int, seed: int) -> Array:
+    """Return (count, width) numbers between 0 and 1: in every column one in each of `count` equal strips, at random."""
+    random = np.random.default_rng(seed)
+    strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
+    # neither 0 nor 1, so that no distribution is asked for its end
+    within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
+    return np.asarray((strips + within) / count)
 
 
 def shard(text: str, rows: int) -> range:

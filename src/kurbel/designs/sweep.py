@@ -10,14 +10,13 @@ import numpy as np
 from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Values, answers_of, is_slow
+from kurbel.designs.answers import Answer, Values, answers_of, asked_answers, is_slow
 from kurbel.designs.binding import Binder, CasesBinder, written_texts
-from kurbel.designs.columns import Answer, asked_answers
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.batch import Lot
 from kurbel.machine.origin import Origin
-from kurbel.machine.variants import Lot
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
 from kurbel.solver.case import Case
@@ -46,7 +45,6 @@ class Spec(NamedTuple):
     side_by_side: bool = False
     sample: int | None = None
     seed: int = 0
-    sobol: bool = False
     columns: tuple[str, ...] = ()
     with_angles: bool = False
     system: str = "si"
@@ -104,7 +102,7 @@ class Sweep:
         self.spec = spec
         cases = [(Input("case", case_names(spec.origin)),)] if spec.cases else []
         axes = [*cases, *map(read_axis, spec.vary), *((one,) for one in spec.given)]
-        self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed, spec.sobol)
+        self.plan = Plan(axes, spec.side_by_side, spec.sample, spec.seed)
         self.rows = self.plan.rows
         if spec.most and self.rows > spec.most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")

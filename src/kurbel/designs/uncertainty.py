@@ -16,16 +16,15 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Values, answers_of, is_slow
+from kurbel.designs.answers import Answer, Values, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
-from kurbel.designs.columns import Answer
-from kurbel.designs.sampling import latin_hypercube
+from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.events import located
 from kurbel.machine_file.given import tree_of
 from kurbel.machine_file.overrides import path_of
-from kurbel.machine_file.positions import located
 from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case

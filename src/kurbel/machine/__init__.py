@@ -34,12 +34,10 @@ from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
-from kurbel.machine.equal import EqualCylinders, in_order
-from kurbel.machine.flywheel import Flywheel
 from kurbel.machine.origin import Origin
-from kurbel.machine.shaft_line import ShaftLine, ShaftPart
-from kurbel.machine.shaft_list import line_of, shaft_faults
-from kurbel.machine.turning import Coupling, Effort, Harmonics, Load
+from kurbel.machine.several import EqualCylinders, in_order
+from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
+from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.near_words import did_you_mean
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]

@@ -15,11 +15,7 @@ from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.friction import Friction
-from kurbel.machine.masses import ConnectingRod, Masses
-from kurbel.machine.piston import Piston
-from kurbel.machine.resistance import Moment, RamForce
-from kurbel.machine.rod_point import RodPoint
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Moment, Piston, RamForce, RodPoint
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 

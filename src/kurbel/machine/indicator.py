@@ -2,17 +2,116 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
-from kurbel.declared.forms import Choice, Keyed, OneOf, Points, UnitName
+from kurbel.declared.forms import Choice, Keyed, OneOf, Physical, Points, UnitName
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.kinds import Factor, Point, size_faults
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.forms.figures import Bound
+from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.errors import Fault, refuse
-from kurbel.machine.drawn import Drawn
+from kurbel.declared.unit_systems import show
+from kurbel.declared.units import Factor, Point, size_faults, written_unit
+from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
-from kurbel.machine.rectangle import Rectangle, Rectangular
+
+
+@dataclass(frozen=True, eq=False)
+class Rectangle:
+    """A card of horizontal lines, for any working cycle; pressures in Pa.
+
+    level: the pressure on every stroke, None for the ambient; mean: what the expansion line of a chamber that drives
+    stands above it, or, where it is negative, the compression line of one that is driven: p_i. notes: what is to be
+    said of such a card.
+    """
+
+    level: float | None = None
+    mean: float = 0.0
+
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke", "four-stroke")
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """That a card which only keeps the work is none that was indicated."""
+        if not self.mean:
+            return ()
+        return (
+            f"a rectangular card of the mean pressure {show(self.mean, 'pressure')} stands for the true one: "
+            "work and power hold, forces over the angle do not",
+        )
+
+    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+        """Yield what is below the vacuum; lift makes the pressure absolute, in Pa."""
+        if self.level is not None:
+            below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
+            yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
+
+
+class Rectangular(Physical):
+    """A pressure that becomes the `level` or the `mean` of a rectangular card."""
+
+    def __init__(self, field: str) -> None:
+        super().__init__("pressure")
+        self.field = field
+
+    def parse(self, text: str, folder: str) -> Rectangle:  # type: ignore[override]
+        """Return the card of the pressure that stands here; raises RuleError."""
+        if self.field == "level" and not NUMBER.match(plain(text)):
+            refused(f"expected {self.expected()}, or a card below it, got '{shown(text)}'")
+        return Rectangle(**{self.field: super().parse(text, folder)})
+
+    def of_numbers(self, numbers: Any) -> Rectangle:
+        """Return the card of many machines, of their pressures (machines,)."""
+        return Rectangle(**{self.field: numbers})
+
+
+class _OnPaper(Physical):
+    """A length that keeps the unit in which it is written, so that many are read one by one."""
+
+    @property
+    def is_number(self) -> bool:
+        return False
+
+    def parse(self, text: str, folder: str) -> Bound:
+        """Return the length in m, with its unit."""
+        return Bound(super().parse(text, folder), written_unit(text))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drawn(Record):
+    """The paper of a card: its length, and the scale of the spring in m/Pa.
+
+    Points are in millimetres, or in inches where the length is.
+    """
+
+    length: float = field(
+        _OnPaper("length", above=0),
+        "Length of the card on the paper",
+        "l",
+        required=True,
+    )
+    spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0, required=True)
+
+    @property
+    def unit(self) -> str:
+        """The unit of the points."""
+        return "in" if isinstance(self.length, Bound) and self.length.unit.startswith("in") else "mm"
+
+    @property
+    def factor(self) -> Factor:
+        """What turns heights above the atmospheric line into Pa."""
+        return (1.0, 1e3 * self.spring) if self.unit == "mm" else (254.0, 1e4 * self.spring)
+
+    @property
+    def whole(self) -> float:
+        """The length of the card in the unit of its points."""
+        return round(1e3 * self.length if self.unit == "mm" else self.length * 1e4 / 254, 9)
+
+    def rectangle(self, mean_height: float | None = None, area: float | None = None) -> Rectangle:
+        """Return the card of the mean height in m, or of the area in m² by planimeter: p_i = a/(l · spring)."""
+        height = (area or 0.0) / self.length if mean_height is None else mean_height
+        return Rectangle(mean=height / self.spring)
+
 
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
 

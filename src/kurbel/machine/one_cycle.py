@@ -7,7 +7,7 @@ from typing import Any
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import CYCLES
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Piston
 from kurbel.traces.correct import Trace
 
 

@@ -1,14 +1,190 @@
-"""What works on the shaft: load, a turning-moment diagram known from elsewhere, an elastic coupling."""
+"""What turns with the shaft and works on it: flywheel, load, a turning-moment diagram, an elastic coupling."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from kurbel.declared.forms import Points, UnitName
-from kurbel.declared.kinds import Factor, Point, size_faults
 from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import CYCLES
+
+CAST_IRON = 7250.0
+"""Density in kg/m³ of what rims are cast of."""
+
+
+def _between(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return D = (D_a + D_i)/2 and h = (D_a − D_i)/2."""
+    outer, inner = given["outer_diameter"], given["inner_diameter"]
+    return {"mean_diameter": (outer + inner) / 2, "depth": (outer - inner) / 2}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rim(Record):
+    """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
+
+    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
+    _outer = alternative(
+        "length",
+        "Outer diameter of the rim",
+        "D_a",
+        above=0,
+        instead="mean_diameter",
+        needs="inner_diameter",
+        gives=_between,
+        key="outer_diameter",
+    )
+    _inner = alternative(
+        "length",
+        "Inner diameter of the rim, 0 of a disc",
+        "D_i",
+        least=0,
+        needs="outer_diameter",
+        key="inner_diameter",
+    )
+    depth: float = field(
+        "length",
+        "Depth of its section along the radius",
+        "h",
+        default=0.0,
+        above=0,
+        absent="a thin rim",
+        instead="inner_diameter",
+        needs="mean_diameter",
+    )
+    width: float | None = field(
+        "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b", above=0
+    )
+    mass: float | None = field(
+        "mass", "Mass of the rim, which tells its moment of inertia as the width does", "m", above=0, instead="width"
+    )
+    density: float = field(
+        "density",
+        "Density of its material",
+        "ρ",
+        default=CAST_IRON,
+        above=0,
+        absent="7250 kg/m³, cast iron",
+        also=("material",),
+    )
+    allowable_tension: float | None = field(
+        "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z", above=0
+    )
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        if "outer_diameter" in given and "inner_diameter" in given:
+            inner, outer = given["inner_diameter"], given["outer_diameter"]
+            sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
+            yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})
+
+    def rules(self) -> Iterator[Rule]:
+        beyond = self.depth > self.mean_diameter
+        yield Rule("depth", beyond, "{depth} is more than the mean diameter ({mean_diameter}), that of a disc")
+        if self.sized_by:
+            message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
+            without = f"tells no moment of inertia without the depth of the rim; {message}"
+            yield Rule(self.sized_by, self.depth == 0, without)
+
+    @property
+    def sized_by(self) -> str:
+        """What tells its moment of inertia: `mass` or `width`, or an empty text."""
+        return "mass" if self.mass is not None else "width" if self.width is not None else ""
+
+    @property
+    def inertia(self) -> float | None:
+        """J = m (D² + h²)/4 in kg m², which is π/32 ρ b (D_a⁴ − D_i⁴); None where its size is not known."""
+        mass = self.mass
+        if self.width is not None:
+            mass = self.density * self.width * math.pi * self.mean_diameter * self.depth
+        return None if mass is None else mass * self._square / 4
+
+    @property
+    def _square(self) -> float:
+        """D² + h² = (D_a² + D_i²)/2 in m²."""
+        return self.mean_diameter**2 + self.depth**2
+
+    def section(self, inertia: float) -> float:
+        """Return the area A in m² of a rim with J = ρ A π D (D² + h²)/4, arms and hub left out; inertia in kg m²."""
+        return 4 * inertia / (math.pi * self.density * self.mean_diameter * self._square)
+
+    def speed(self, omega: float) -> float:
+        """Return the speed v in m/s of the middle of the rim at an angular velocity in rad/s."""
+        return omega * self.mean_diameter / 2
+
+    def stress(self, omega: float) -> float:
+        """Return the hoop stress ρ v² in Pa of a rim that turns freely, at an angular velocity in rad/s."""
+        return self.density * self.speed(omega) ** 2
+
+
+def _of_rim(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the moment of inertia of a rim whose sizes are given."""
+    rim = given["rim"]
+    return {"rim": rim} | ({"inertia": rim.inertia} if rim.sized_by else {})
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Flywheel(Record):
+    """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
+
+    inertia: float | None = field("inertia", "Moment of inertia; or give `gd2`", "J", least=0)
+    _gd2 = alternative(
+        "gd2",
+        "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
+        "GD²",
+        least=0,
+        instead="inertia",
+        gives=lambda given: {"inertia": given["gd2"] / 4},
+        key="gd2",
+    )
+    _mass = alternative(
+        "mass",
+        "Mass, with the radius of gyration another form of the moment of inertia m k²",
+        "m",
+        least=0,
+        instead="inertia",
+        needs="radius_of_gyration",
+        gives=lambda given: {"inertia": given["mass"] * given["radius_of_gyration"] ** 2},
+        key="mass",
+    )
+    _gyration = alternative(
+        "length",
+        "Radius of gyration",
+        "k",
+        above=0,
+        instead="gd2",
+        needs="mass",
+        key="radius_of_gyration",
+    )
+    fluctuation: float | None = field(
+        "ratio",
+        "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
+        "δ",
+        above=0,
+        below=2,
+        example="1/80",
+    )
+    _rim = alternative(
+        Rim,
+        "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
+        absent="no section",
+        gives=_of_rim,
+        key="rim",
+    )
+    rim: Rim | None = None
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        rim = given.get("rim")
+        if isinstance(rim, Rim) and rim.sized_by:
+            message = "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
+            yield Rule(("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message)
+
+    def rules(self) -> Iterator[Rule]:
+        needed = "a flywheel needs 'inertia', 'gd2', 'mass', a 'rim' with its sizes, or the wanted 'fluctuation'"
+        yield Rule((), self.inertia is None and self.fluctuation is None, needed)
 
 
 @dataclass(frozen=True, eq=False)

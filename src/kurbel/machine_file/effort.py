@@ -1,43 +1,72 @@
 """The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
 
-from typing import Any, ClassVar
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import FilePath, Number, Points, UnitName
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.kinds import Factor, Point, size_faults
+from kurbel.declared.forms import FilePath, Points, UnitName
+from kurbel.declared.keys import Key
+from kurbel.declared.reading import REFUSED
+from kurbel.declared.record import Record, Rule, alternative
+from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
 from kurbel.machine.turning import Effort, Harmonics
-from kurbel.machine_file.trace import layout_keys
+from kurbel.machine_file.trace import (
+    ANGLE_COLUMN,
+    ANGLE_STEP,
+    ANGLE_UNIT,
+    DECIMAL,
+    DELIMITER,
+    RECORDED_SPEED,
+    SKIP_ROWS,
+    layout_of,
+    layout_rules,
+)
 from kurbel.traces.cycles import Samples, samples_of_file
-from kurbel.traces.read import Layout
 
 _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
-class Known(Described):
+def _of_file(key: Key) -> Key:
+    return key._replace(needs="file")
+
+
+class Known(Record):
     """What becomes an `Effort`, or `Harmonics`."""
 
-    KEYS: ClassVar[Keys] = {
-        "unit": Key(UnitName("torque"), "Unit of the torques", required=True),
-        "points": Key(
-            Points("deg", "torque"),
-            "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
-            "M",
-            instead="file",
-        ),
-        "file": Key(FilePath(), "File with a column of angles in degrees and one of torques", example="effort.csv"),
-        **{name: key._replace(needs="file") for name, key in layout_keys("torque").items()},
-        "mean": Key(Number(), "Mean torque beside the harmonics, in the unit", "M_m", needs="harmonics"),
-        "harmonics": Key(
-            Points("order", "cos", "sin", least=1),
-            "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
-            needs="mean",
-        ),
-    }
+    unit = alternative(UnitName("torque"), "Unit of the torques", required=True)
+    points = alternative(
+        Points("deg", "torque"),
+        "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
+        "M",
+        instead="file",
+    )
+    file = alternative(FilePath(), "File with a column of angles in degrees and one of torques", example="effort.csv")
+    angle_column, angle_unit = _of_file(ANGLE_COLUMN), _of_file(ANGLE_UNIT)
+    recorded_speed, angle_step = _of_file(RECORDED_SPEED), _of_file(ANGLE_STEP)
+    torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")
+    skip_rows, delimiter, decimal = _of_file(SKIP_ROWS), _of_file(DELIMITER), _of_file(DECIMAL)
+    angle_zero = alternative(
+        "angle", "Angle of the firing or inner dead centre as the file counts", absent="0 deg", needs="file"
+    )
+    mean = alternative("ratio", "Mean torque beside the harmonics, in the unit", "M_m", needs="harmonics")
+    harmonics = alternative(
+        Points("order", "cos", "sin", least=1),
+        "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+        needs="mean",
+    )
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        if REFUSED in given.values():
+            return
+        one = sum(name in given for name in ("points", "file", "harmonics")) == 1
+        yield Rule((), not one, "give one of 'points', 'file' or 'harmonics'")
+        if "file" in given:
+            yield from layout_rules("torque", given)
 
     @classmethod
     def of_keys(
@@ -50,8 +79,6 @@ class Known(Described):
         **layout: Any,
     ) -> Effort | Harmonics:
         """Return the effort that these keys describe, its file read; raises RuleError."""
-        if sum(one is not None for one in (points, file, harmonics)) != 1:
-            refused("give one of 'points', 'file' or 'harmonics'")
         if harmonics is not None:
             return _by_harmonics(unit, mean, harmonics)
         return Effort.of_points(unit, points or []) if file is None else _from_file(unit, file, **layout)
@@ -70,7 +97,7 @@ def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float,
 
 def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:
     up, down = unit
-    samples = samples_of_file(file, Layout.of_keys("torque", **layout), "torque", lambda torques: torques * up / down)
+    samples = samples_of_file(file, layout_of("torque", layout), "torque", lambda torques: torques * up / down)
     if len(samples.values) > 1:
         lap = samples.angles[-1] - samples.angles[0]
         refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")

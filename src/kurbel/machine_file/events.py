@@ -1,17 +1,19 @@
-"""From YAML text to dictionaries, lists and texts, event by event, with a guard at every event.
+"""From YAML text to dictionaries, lists and texts, event by event, with a guard at every event; and back to places.
 
 No recursion and no nodes: libyaml's own loader crashes on deep nesting and is slow on long lists. What a machine file
 has no use for (anchors, aliases, tags, further documents) is refused when its event comes by, before anything is built
 from it. Numbers stay text: what a scalar means is decided by the key that it stands under.
 """
 
+import re
 from typing import Any
 
 import yaml
 
-from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
+from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, Path, Step
+from kurbel.machine.origin import lines_of
 
 DEPTH_LIMIT = 32
 _LIKE = "; a cylinder may be 'like: NAME' of another"
@@ -54,8 +56,6 @@ def run(text: str, builder: "Builder") -> bool:
     except StopReading:
         return False
     except yaml.MarkedYAMLError as error:
-        from kurbel.machine_file.syntax import explain
-
         builder.reading.faults.append(explain(error, text))
         return False
     return True
@@ -193,3 +193,117 @@ class Builder:
     def _report(self, event: Any, path: Path, message: str) -> None:
         mark = event.start_mark
         self.reading.note(Fault(path, message).at(mark.line, mark.column))
+
+
+_Place = tuple[int, int]
+
+
+def located(text: str, faults: list[Fault]) -> list[Fault]:
+    """Return faults that have a path each with its place; the text has been read without a syntax error before.
+
+    Where the key is not meant, a text or number is pointed at itself, a mapping or list by its key. Of a path that does
+    not exist, the part that does is pointed at.
+    """
+    locator = _Locator({fault.path[:length] for fault in faults for length in range(len(fault.path) + 1)})
+    run(text, locator)
+    return [fault.at(*locator.place_of(fault)) for fault in faults]
+
+
+class _Locator(Builder):
+    """Builds the tree once more and notes where the nodes on the way to the wanted paths begin."""
+
+    def __init__(self, wanted: set[Path]) -> None:
+        super().__init__(Reading())
+        self._wanted = wanted
+        self._keys: dict[Path, _Place] = {}
+        self._values: dict[Path, _Place] = {}
+
+    def place_of(self, fault: Fault) -> _Place:
+        """Return the place, from 0, of the longest part of a path that the text has."""
+        for length in range(len(fault.path), 0, -1):
+            part = fault.path[:length]
+            exact = part == fault.path and not fault.at_key
+            place = (self._values.get(part) if exact else None) or self._keys.get(part)
+            if place:
+                return place
+        return self._keys.get((), (0, 0))
+
+    def _place(self, value: Any, event: Any) -> None:
+        is_key = bool(self._open) and self._key is None and isinstance(self._open[-1], dict)
+        path = (*self._steps[1:], str(value)) if is_key else self._here()
+        if path in self._wanted:
+            # an empty value is pointed at by its key, as is a mapping or a list; items of a list have no key
+            noted = self._values if not is_key and isinstance(value, str) and value else self._keys
+            noted.setdefault(path, (event.start_mark.line, event.start_mark.column))
+            if not is_key:
+                self._wanted.discard(path)
+        if not self._wanted:
+            raise StopReading
+        super()._place(value, event)
+
+
+_GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
+
+
+def explain(error: Any, text: str) -> Fault:
+    """Return the fault that an error of the YAML scanner or parser stands for."""
+    lines = lines_of(text)
+    mark = error.problem_mark or error.context_mark
+    begin = error.context_mark or mark
+    # the end of the text lies below the last line when that one is complete
+    line, column = (mark.line, mark.column) if mark.line < len(lines) else (len(lines) - 1, len(lines[-1]))
+    context, problem, sign = error.context or "", error.problem or "", lines[line][column : column + 1]
+    at_begin = "quoted scalar" in context and "end of stream" in problem
+    if "tab character" in problem or sign == "\t":
+        message = "a tab stands where the indentation belongs; indent with spaces"
+    elif at_begin:
+        message = "the quotation mark that opens here is never closed"
+    elif "flow sequence" in context or "flow mapping" in context:
+        bracket, opened = "]" if "sequence" in context else "}", f"line {begin.line + 1}, column {begin.column + 1}"
+        message = f"a comma or '{bracket}' is missing; the bracket was opened at {opened}"
+    elif sign == ":" and not lines[line][:column].strip():
+        message = "a key is missing before the colon"
+    elif ("mapping values" in problem or "':'" in problem) and (glued := _glued(lines, begin.line, line)):
+        return glued
+    elif at_begin := "could not find expected ':'" in problem:
+        message = _without_colon(lines[begin.line])
+    else:
+        message = _words(context, problem, lines[line], column)
+    return Fault((), message).at(*((begin.line, begin.column) if at_begin else (line, column)))
+
+
+def _glued(lines: list[str], first: int, last: int) -> Fault | None:
+    """Return the fault of a key without a space after its colon, in or just above these lines."""
+    for number in range(last, max(first - 2, -1), -1):
+        found = _GLUED.match(lines[number])
+        if found:
+            key, value = found.groups()
+            message = f"a space is missing after the colon; write '{shown(key)}: {shown(value.strip())}'"
+            return Fault((), message).at(number, found.start(2))
+    return None
+
+
+def _without_colon(line: str) -> str:
+    key, _, value = line.strip().partition(" ")
+    written = f"{shown(key)}: {shown(value.strip())}" if value else "key: value"
+    return f"a colon is missing in this line; write '{written}'"
+
+
+def _words(context: str, problem: str, line: str, column: int) -> str:
+    if "mapping values" in problem:
+        if ":" in line[:column]:
+            return "a second colon in one line; put a text with a colon into quotation marks"
+        return "this key is indented deeper than the line above it; give both the same indentation"
+    if "block mapping" in context or "block collection" in context:
+        return "this line does not fit the lines above it; keys of one mapping have the same indentation"
+    if "cannot start any token" in problem or "node content" in problem:
+        if not line[column:].strip():
+            return "a value is missing here: close the '[' or '{' that is open, or put the text into quotation marks"
+        return f"a value cannot begin with '{line[column : column + 1]}'; put a text into quotation marks"
+    if "sequence entries" in problem:
+        return "a list with '-' begins on a line of its own; or write it as [ …, … ]"
+    if "escape" in problem:
+        return "unknown escape in a text; within double quotation marks write '\\\\' for a backslash"
+    if "document start" in problem:
+        return f"'{line[column : column + 1]}' stands after the end of the machine; remove it"
+    return f"this is no YAML: {problem or context}"

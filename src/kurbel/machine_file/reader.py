@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from kurbel.declared.forms import Record
-from kurbel.declared.forms.records import Maker
+from kurbel.declared.forms.structures import Maker
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
 from kurbel.errors import Fault, UsageError
 from kurbel.machine import Machine
@@ -122,7 +122,7 @@ def _located(text: str, faults: list[Fault], overrides: "list[Override]") -> lis
     """Return the faults with their places in the text, or with the override that they are of."""
     if not faults:
         return []
-    from kurbel.machine_file.positions import located
+    from kurbel.machine_file.events import located
 
     if overrides:
         from kurbel.machine_file.overrides import named

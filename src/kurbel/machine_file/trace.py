@@ -1,69 +1,65 @@
 """The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from os.path import basename
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import (
-    Choice,
-    ColumnRange,
-    Count,
-    FilePath,
-    Number,
-    OneOf,
-    Physical,
-    Points,
-    Record,
-    UnitName,
-    not_negative,
-    positive,
-)
-from kurbel.declared.keys import Described, Key, Keys
-from kurbel.declared.kinds import Factor, Point
+from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, Physical, Points, UnitName
+from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.reading import REFUSED
+from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
-from kurbel.traces.read import DECIMALS, DELIMITERS, Layout
+from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
+
+# how a file of columns is laid out
+
+ANGLE_COLUMN = alternative(int, "Column of the angles, counted from 1", absent="1")
+ANGLE_UNIT = alternative(("deg", "rad", "s", "ms"), "What the angle column counts: an angle, or time", absent="deg")
+RECORDED_SPEED = alternative("speed", "Constant speed at which times were recorded", above=0, needs="angle_unit")
+ANGLE_STEP = alternative(
+    "angle", "Crank angle from one row to the next, instead of a column of angles", above=0, instead="angle_column"
+)
+SKIP_ROWS = alternative(Count(least=0), "Number of lines above the first figures", absent="0")
+DELIMITER = alternative(
+    (*DELIMITERS, *DELIMITERS.values()), "Sign between two columns", absent="comma", also=("separator", "sep")
+)
+DECIMAL = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point")
 
 
-def layout_keys(what: str) -> Keys:
-    """Return the keys of how a file of columns, angles and what was measured, is laid out."""
-    return {
-        "angle_column": Key(Count(), "Column of the angles, counted from 1", absent="1"),
-        "angle_unit": Key(
-            Choice(("deg", "rad", "s", "ms")), "What the angle column counts: an angle, or time", absent="deg"
-        ),
-        "recorded_speed": positive("speed", "Constant speed at which times were recorded", needs="angle_unit"),
-        "angle_step": positive(
-            "angle", "Crank angle from one row to the next, instead of a column of angles", instead="angle_column"
-        ),
-        f"{what}_column": Key(Count(), f"Column of the {what}s, counted from 1", absent="2"),
-        "skip_rows": Key(Count(least=0), "Number of lines above the first figures", absent="0"),
-        "delimiter": Key(
-            Choice((*DELIMITERS, *DELIMITERS.values())),
-            "What stands between two columns",
-            absent="comma",
-            also=("separator", "sep"),
-        ),
-        "decimal": Key(Choice(tuple(DECIMALS)), "Decimal point or decimal comma", absent="point"),
-        "angle_zero": Key(
-            Physical("angle"), "Angle of the firing or inner dead centre as the file counts", absent="0 deg"
-        ),
-    }
+def layout_rules(what: str, given: Mapping[str, Any]) -> Iterator[Rule]:
+    """Yield what contradicts in the keys of a layout, of pressures or torques."""
+    key = f"{what}_columns" if f"{what}_columns" in given else f"{what}_column"
+    columns, own = given.get(key, 2), given.get("angle_column", 1)
+    clash = own in (columns if isinstance(columns, tuple) else (columns,)) and "angle_step" not in given
+    yield Rule(key, clash, f"column {own} is that of the angles")
+    timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
+    message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
+    yield Rule("angle_unit", timed and not speed, message)
+    message = "a speed is for times only; write 'angle_unit: s'"
+    yield Rule("recorded_speed", speed and not timed, message)
 
 
-class Pegging(Described):
+def layout_of(what: str, keys: dict[str, Any]) -> Layout:
+    """Return the layout that keys describe, those of pressures or torques."""
+    columns = keys.pop(f"{what}_columns", None) or (keys.pop(f"{what}_column", 2),)
+    words = {sign: word for word, sign in DELIMITERS.items()}
+    delimiter = keys.pop("delimiter", "comma")
+    return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
+
+
+class Pegging(Record):
     """What becomes a `KnownLevel`."""
 
-    KEYS: ClassVar[Keys] = {
-        "angle": Key(Physical("angle"), "Crank angle from the (firing) dead centre", required=True),
-        "pressure": Key(Physical("pressure"), "Pressure there, as `pressures` says", required=True),
-    }
+    angle = alternative("angle", "Crank angle from the (firing) dead centre", required=True)
+    pressure = alternative("pressure", "Pressure there, as `pressures` says", required=True)
 
     @classmethod
     def of_keys(cls, angle: float, pressure: float) -> KnownLevel:
@@ -72,66 +68,72 @@ class Pegging(Described):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motored(Described):
+class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
-    motored: str
-    loss_angle: float
-
-    KEYS: ClassVar[Keys] = {
-        "motored": Key(
-            FilePath(), "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
-        ),
-        "loss_angle": not_negative(
-            "angle",
-            "Angle by which heat loss and leakage put its peak before the dead centre",
-            required=True,
-            example="0.7 deg",
-        ),
-    }
+    motored: str = field(
+        FilePath(), "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
+    )
+    loss_angle: float = field(
+        "angle",
+        "Angle by which heat loss and leakage put its peak before the dead centre",
+        least=0,
+        required=True,
+        example="0.7 deg",
+    )
 
 
-class Measured(Described):
+class Measured(Record):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
-    KEYS: ClassVar[Keys] = {
-        "file": Key(
-            FilePath(),
-            "File with a column of angles in degrees and one of pressures; or give `points`",
-            required=True,
-            example="indicator.csv",
-        ),
-        "points": Key(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file"),
-        "unit": Key(UnitName("pressure"), "Unit of the pressures", required=True),
-        **layout_keys("pressure"),
-        "pressure_columns": Key(
-            ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
-        ),
-        "angle_zero": Key(
-            OneOf(Physical("angle"), Record(Motored)),
-            "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
-            absent="0 deg",
-        ),
-        "angle_sense": Key(
-            Choice(("with", "against")), "Whether angles count with the rotation, or against it", absent="with"
-        ),
-        "scale": Key(Number(), "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1"),
-        "offset": Key(Physical("pressure"), "Pressure that is added after the scale", absent="0 bar"),
-        "pegging": Key(
-            OneOf(Choice(("ambient",)), Record(Pegging)),
-            "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
-            absent="pressures as measured",
-        ),
-        "drift": Key(
-            Choice(("linear",)), "Drift that is taken off every cycle, so that it closes", absent="none is taken off"
-        ),
-        "clearance": Key(
-            CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
-        ),
-        "compression_ratio": Key(
-            Number(above=1), "The same as the largest volume over the smallest", "ε", instead="clearance", example="17"
-        ),
-    }
+    file = alternative(
+        FilePath(),
+        "File with a column of angles in degrees and one of pressures; or give `points`",
+        required=True,
+        example="indicator.csv",
+    )
+    points = alternative(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file")
+    unit = alternative(UnitName("pressure"), "Unit of the pressures", required=True)
+    angle_column, angle_unit, recorded_speed, angle_step = ANGLE_COLUMN, ANGLE_UNIT, RECORDED_SPEED, ANGLE_STEP
+    pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2")
+    skip_rows, delimiter, decimal = SKIP_ROWS, DELIMITER, DECIMAL
+    angle_zero = alternative(
+        OneOf(Physical("angle"), RecordForm(Motored)),
+        "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
+        absent="0 deg",
+    )
+    pressure_columns = alternative(
+        ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
+    )
+    angle_sense = alternative(
+        ("with", "against"), "Whether angles count with the rotation, or against it", absent="with"
+    )
+    scale = alternative("ratio", "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1")
+    offset = alternative("pressure", "Pressure that is added after the scale", absent="0 bar")
+    pegging = alternative(
+        OneOf(Choice(("ambient",)), RecordForm(Pegging)),
+        "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
+        absent="pressures as measured",
+    )
+    drift = alternative(
+        ("linear",), "Drift that is taken off every cycle, so that it closes", absent="none is taken off"
+    )
+    clearance = alternative(
+        CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
+    )
+    compression_ratio = alternative(
+        "ratio",
+        "The same as the largest volume over the smallest",
+        "ε",
+        above=1,
+        instead="clearance",
+        example="17",
+    )
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        if "file" in given and REFUSED not in given.values():
+            yield from layout_rules("pressure", given)
 
     @classmethod
     def of_keys(
@@ -166,7 +168,7 @@ class Measured(Described):
             samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)
             laid_out = Layout(columns=(0,))
         else:
-            laid_out = Layout.of_keys("pressure", **layout)
+            laid_out = layout_of("pressure", layout)
             samples = samples_of_file(file, laid_out, "pressure", pressures, against)
         files, notes = (file,) if file else (), samples.notes
         if isinstance(angle_zero, Motored):
@@ -202,7 +204,7 @@ def dead_centre(given: Motored, layout: Layout, base: Callable[[Array], Array], 
     zero = sense * (peak.place + given.loss_angle)
     note = (
         f"angle_zero is {zero:.4g} deg, uncertain by {doubt:.2g} deg: the peak of a parabola through "
-        f"{peak.samples} samples of {basename(given.motored)} stands at {sense * peak.place:.4g} deg, the dead centre "
+        f"{peak.samples} samples of {basename(given.motored)} is at {sense * peak.place:.4g} deg, the dead centre "
         f"{given.loss_angle:g} deg later"
     )
     return zero, note

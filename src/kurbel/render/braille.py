@@ -85,13 +85,12 @@ def braille(picture: Picture, look: Look) -> Iterator[Line]:
 def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     has_dots = look.has("⣿")
     dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
-
-    def framed(side: int) -> PanelFrame:
-        return PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
-
-    texts = [] if panel.plain else [text for _, text in framed(0).ticks_up(int(tall / 4))]
-    side = max(map(width, texts), default=-1) + 1
-    frame = framed(side)
+    side, needed, ticks = -1, 0, []  # columns of the texts at the left, which are others in a narrower frame
+    while side < needed:
+        side = needed
+        frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
+        ticks = [] if panel.plain else frame.ticks_up(int(tall / 4))
+        needed = max((width(text) + 1 for _, text in ticks), default=0)
     canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
     _draw(canvas, frame, dot)
     axis = "" if panel.plain else axis_text(panel.y, look)
@@ -101,7 +100,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
         yield from rows[used[0] : used[-1] + 1]
         return
-    at = {int(place // 2): text for place, text in frame.ticks_up(int(tall / 4))}
+    at = {int(place // 2): text for place, text in ticks}
     for number, row in enumerate(canvas.lines()):
         yield (*line(right(at.get(number, ""), side - 1) + " ", "unit"), *row)
     yield from _below(frame, side, canvas.columns)

@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
-from kurbel.render.numbers import angle, decimal, single
+from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
 from kurbel.render.text import width
 from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Shade, Words
 
@@ -120,11 +120,10 @@ def tick_texts(axis: Axis, values: list[float], look: Look) -> list[str]:
     if axis.log:
         return [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
     if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
-        texts = [f"{value:.4g}" for value in values]
+        texts = [decimal(f"{value:.4g}", look.comma) for value in values]
     else:
-        decimals = max((len(f"{one:.9g}".partition(".")[2]) for one in values if "e" not in f"{one:.9g}"), default=0)
-        texts = [f"{value:.{decimals}f}" for value in values]
-    return [_signed(decimal(text, look.comma), look) for text in texts]
+        texts = [cell(value, angle_scale(values), look.comma) for value in values]
+    return [_signed(text, look) for text in texts]
 
 
 # a panel in its place

@@ -384,28 +384,41 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     Raises UsageError for a picture that does not exist, or that this machine does not have, NoSolutionError where the
     machine locks itself or stalls.
     """
+    name, cylinders = case.machine.name, tuple(one.drive.name for one in case.cylinders)
     if options.cylinder:
-        options = options._replace(cylinder=cylinder_meant(options.cylinder, _cylinder_names(case)))
+        options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
     if not names:
-        found = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
-        first = next(found, None)
-        if first is None:
-            raise UsageError(f"{case.machine.name}: there is nothing to draw; kurbel check says what is missing")
+        first = next(filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES)), [])
+        if not first:
+            raise UsageError(f"{name}: there is nothing to draw; kurbel check says what is missing")
         yield from first
     elif "all" in names:
         for kind in PICTURES:
             yield from pictures_if_any(case, kind, options)
     else:
-        for kind in [_named(case, name, options) for name in names]:
-            if not (found_here := list(_drawn(case, kind, options))):
-                raise UsageError(_missing(case, kind, options))
-            yield from found_here
+        known = {kind.id: kind for kind in PICTURES}
+        if unknown := [id for id in names if id not in known]:
+            hint = did_you_mean(unknown[0], tuple(known))
+            raise UsageError(f"no picture '{shown(unknown[0])}'{hint} ({name} has {_having(case, options)})")
+        for id in names:
+            if drawn := _drawn(case, known[id], options):
+                yield from drawn
+            elif options.cylinder in (None, *cylinders):
+                having = _having(case, options)
+                raise UsageError(f"{name} has no picture '{id}': what it shows is left out; it has {having}")
+            else:
+                there = ", ".join(cylinders)
+                raise UsageError(f"--cylinder: there is no '{shown(options.cylinder or '')}'; there are {there}")
+
+
+def _having(case: Case, options: PictureOptions) -> str:
+    return ", ".join(kind.id for kind in pictures_of(case, options))
 
 
 def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
     """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
     with suppress(UsageError):
-        return list(_drawn(case, kind, options))
+        return _drawn(case, kind, options)
     return []
 
 
@@ -424,36 +437,14 @@ def _has(case: Case, kind: PictureKind, options: PictureOptions) -> bool:
             return True
 
 
-def _named(case: Case, name: str, options: PictureOptions) -> PictureKind:
-    known = {kind.id: kind for kind in PICTURES}
-    if name not in known:
-        hint, having = did_you_mean(name, tuple(known)), _having(case, options)
-        raise UsageError(f"no picture '{shown(name)}'{hint} ({case.machine.name} has {having})")
-    return known[name]
-
-
-def _missing(case: Case, kind: PictureKind, options: PictureOptions) -> str:
-    names = _cylinder_names(case)
-    if options.cylinder is not None and options.cylinder not in names:
-        return f"--cylinder: there is no '{shown(options.cylinder)}'; there are {', '.join(names)}"
-    having = _having(case, options)
-    return f"{case.machine.name} has no picture '{kind.id}': what it shows is left out; it has {having}"
-
-
-def _having(case: Case, options: PictureOptions) -> str:
-    return ", ".join(kind.id for kind in pictures_of(case, options))
-
-
-def _cylinder_names(case: Case) -> tuple[str, ...]:
-    return tuple(one.drive.name for one in case.cylinders)
-
-
-def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[Picture]:
+def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
+    found = []
     with np.errstate(all="ignore"):
         for source, name in _sources(case, kind, options):
             if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
                 across = min(kind.across, len(panels))
-                yield Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across)
+                found.append(Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across))
+    return found
 
 
 def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:

@@ -15,7 +15,7 @@ from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
-from kurbel.machine.piston import Piston
+from kurbel.machine.parts import Piston
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces

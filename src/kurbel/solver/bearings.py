@@ -26,7 +26,7 @@ from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.alike import work_alike
-from kurbel.machine.variants import taken
+from kurbel.machine.batch import taken
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved

@@ -21,6 +21,7 @@ from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces
+from kurbel.quantity import key_value
 from kurbel.solver.chain import Chain, ChainEquation, passing, response
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.harmonics import amplitudes
@@ -108,14 +109,14 @@ class ElasticCoupling(SpeedLine):
         """Natural frequency of both masses on the coupling over ω_n."""
         return self.result(self._order)
 
-    @property
+    @key_value("M_K,max", "torque")
     def M_coupling_max(self) -> Extreme:
-        """Largest torque in the coupling in N m."""
+        """Largest torque in the elastic coupling."""
         return Extreme(*map(self.result, (self.effort.mean + self._torque_extremes[0], self._torque_extremes[1])))
 
-    @property
+    @key_value("M_K,min", "torque")
     def M_coupling_min(self) -> Extreme:
-        """Smallest torque in the coupling in N m."""
+        """Smallest torque in the elastic coupling."""
         return Extreme(*map(self.result, (self.effort.mean + self._torque_extremes[2], self._torque_extremes[3])))
 
     @cached_property
@@ -123,9 +124,12 @@ class ElasticCoupling(SpeedLine):
         """Logarithm of what is left of a small disturbance after a cycle."""
         return self.result(self._found.growth)
 
-    @cached_property
+    @key_value("V", "ratio")
     def amplification(self) -> Any:
-        """Swing of the torque in the coupling over that in a rigid one, J₂ (M − L)/(J₁ + J₂) + L; None without any."""
+        """Swing of the torque in the coupling over that in a rigid one.
+
+        That is J₂ (M − L)/(J₁ + J₂) + L; None where it does not swing.
+        """
         of, (own, driven) = self.effort.pieces.of, self.chain.inertias
         rigid = (self._torques[0] * of(driven) - self._torques[1] * of(own)) / of(own + driven)
         high, _, low, _ = (one[0] for one in self.effort.pieces.extremes(rigid[None]))

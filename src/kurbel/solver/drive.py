@@ -12,8 +12,8 @@ from kurbel.arrays import Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.resistance import RamForce
-from kurbel.machine.variants import taken
+from kurbel.machine.batch import taken
+from kurbel.machine.parts import RamForce
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas

@@ -115,9 +115,8 @@ class TurningEffort:
         cuts = Angles(np.repeat(np.arange(count), len(breaks)), np.tile(breaks, count))
         if not self.groups:
             return Pieces.between(cuts, count, self.cycle)
-        return common([(group[0].pieces, position(one)) for group in self.groups for one in group], self.cycle).split(
-            cuts
-        )
+        parts = [(group[0].pieces, position(one)) for group in self.groups for one in group]
+        return common(parts, self.cycle).split(cuts)
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""

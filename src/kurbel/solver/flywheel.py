@@ -263,8 +263,11 @@ class MachineTurning(Results):
         """
         if self._wanted is None or not self._turns:
             return None
-        left = self.dE / (self._wanted * self.omega**2) - self._driven_rigidly
-        return where(left > 0, left, 0.0)
+        return self.effort.result(np.maximum(self._needed_in_all - self._driven_rigidly, 0.0))
+
+    @property
+    def _needed_in_all(self) -> Array:
+        return np.asarray(self.excess.dE / (self._wanted * self.omega**2))
 
     @key_value("GD²_δ", "gd2", plain="GD2_delta", unless=lambda turning: turning.is_the_needed)
     def GD2_needed(self) -> Any:
@@ -303,9 +306,8 @@ class MachineTurning(Results):
     @property
     def _needs_no_inertia(self) -> bool:
         """Whether the wanted δ is met by no flywheel at all, the effort being uniform; any inertia then turns alike."""
-        if self.J is None or self._wanted is None or self.effort.inertia_terms:
-            return False
-        return not some(self.J != 0) and not some(self.J_needed != 0) and not self.excess.dE.any()
+        uniform = not self.effort.inertia_terms and not self.excess.dE.any()
+        return self._wanted is not None and uniform and not some(self.J != 0)
 
     def _line(self, flywheel: Any) -> SpeedLine:
         """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
@@ -402,8 +404,7 @@ class MachineTurning(Results):
         """Natural frequency of the coupled masses over the angular velocity."""
         if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
             return None
-        flywheel = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
-        own = self._before_coupling(flywheel)
+        own = self._before_coupling(self._needed_in_all if self._given is None else self._given)
         if not every(own != 0):
             return None
         found = natural_order(self.machine.coupling, own, self.omega)
@@ -424,7 +425,7 @@ class MachineTurning(Results):
     def _driven_rigidly(self) -> Any:
         return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
-    @property
+    @part(ElasticCoupling)
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
 
@@ -433,21 +434,6 @@ class MachineTurning(Results):
         if self.machine.coupling is None or self.rigid:
             return None
         return self.speed if isinstance(self.speed, ElasticCoupling) else None
-
-    @key_value("M_K,max", "torque")
-    def M_coupling_max(self) -> Extreme | None:
-        """Largest torque in the elastic coupling."""
-        return self.elastic.M_coupling_max if self.elastic else None
-
-    @key_value("M_K,min", "torque")
-    def M_coupling_min(self) -> Extreme | None:
-        """Smallest torque in the elastic coupling."""
-        return self.elastic.M_coupling_min if self.elastic else None
-
-    @key_value("V", "ratio")
-    def amplification(self) -> Any:
-        """Swing of the torque in the coupling over that in a rigid one."""
-        return self.elastic.amplification if self.elastic else None
 
     # the wanted δ, held against the speed line
 

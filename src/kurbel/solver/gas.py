@@ -23,12 +23,11 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import within_cycle
+from kurbel.machine.batch import Chambers, count_of, taken
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam, after_polytrope
-from kurbel.machine.indicator import STROKES, Card
-from kurbel.machine.piston import Piston
-from kurbel.machine.rectangle import Rectangle
-from kurbel.machine.variants import Chambers, count_of, taken
+from kurbel.machine.indicator import STROKES, Card, Rectangle
+from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 from kurbel.numerics.extreme import Extreme

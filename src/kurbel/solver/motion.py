@@ -10,7 +10,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.variants import taken
+from kurbel.machine.batch import taken
 from kurbel.mechanisms import Mechanism, Offer
 from kurbel.numerics.arithmetic import every, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest

@@ -184,14 +184,12 @@ class RigidLine(SpeedLine):
             if effort.count is None:
                 found.refuse()
             failed = failed | found.failed | (law.mean == 0)  # of a batch: its load is nothing on the mean
-            pieces, (u, lag) = refined(
-                found.pieces, self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
-            )
+            sample = self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
+            pieces, (u, lag) = refined(found.pieces, sample)
         else:
             pieces, u, lag = self._under_constant_load(effort)
-        super().__init__(
-            effort, pieces, u, 1 / (1 + pieces.mean(lag)), failed, -1.0 if law else 1.000001 * _SLOWEST - 1
-        )
+        least_u = -1.0 if law else 1.000001 * _SLOWEST - 1
+        super().__init__(effort, pieces, u, 1 / (1 + pieces.mean(lag)), failed, least_u)
 
     def _speeds(self, source: Pieces, energy: Array, constant: Array) -> Sample:
         """Return what samples u and ω_n/ω − 1, of which the mean over time is made; energy: z less a constant in J."""
@@ -210,19 +208,18 @@ class RigidLine(SpeedLine):
         That mean falls with C and is convex: Newton's method from below, where the machine all but stands still. One
         that turns too fast even there stays there.
         """
-        pieces, source, E = effort.pieces, effort.pieces, effort.true_excess.E
+        pieces, E = effort.pieces, effort.true_excess.E
         while True:
-            excess, energy = pieces.carried(E, source), self._equation.known(pieces)[1]
+            excess, energy = pieces.carried(E, effort.pieces), self._equation.known(pieces)[1]
             least = np.maximum.reduceat(((_SLOWEST**2 - 1) * energy - excess).max(axis=0), pieces.first)
             swing, constant = pieces.largest(excess), least
             for _ in range(100):
-                ratio = np.maximum((excess + pieces.of(constant)) / energy, _SLOWEST**2 - 1)
-                root = np.sqrt(1 + ratio)
-                lag, slope = pieces.mean(-ratio / (root * (1 + root))), pieces.mean(-0.5 / (root**3 * energy))
-                constant, before = np.maximum(constant - lag / slope, least), constant
+                _, lag = self._speeds(effort.pieces, E, constant)(pieces)
+                slope = pieces.mean(-0.5 * (1 + lag) ** 3 / energy)
+                constant, before = np.maximum(constant - pieces.mean(lag) / slope, least), constant
                 if (np.abs(constant - before) <= 1e-15 * swing).all():
                     break
-            fine, (u, lag) = refined(pieces, self._speeds(source, E, constant))
+            fine, (u, lag) = refined(pieces, self._speeds(effort.pieces, E, constant))
             if fine is pieces:
                 return pieces, u, lag
             pieces = fine

@@ -36,8 +36,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.machine.batch import taken
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.machine.variants import taken
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved

@@ -184,16 +184,6 @@ class Vibration:
         return np.asarray((high - low) / 2)
 
     @property
-    def remainder(self) -> Array:
-        """About what higher orders add to the torque in any segment in N m, (s,).
-
-        What falls off as 1/ν², as behind a jump through a damper, or faster, is in all of them together no more than in
-        the upper half of these.
-        """
-        upper = self.acting.orders > self.acting.orders[-1] / 2
-        return np.asarray(np.abs(self.torques[..., upper]).sum(axis=2).max(axis=0))
-
-    @property
     def loss(self) -> Array:
         """Mean power in W lost in dampers, in the material, and in a load that rises with the speed, (s,)."""
         chain, speeds = self.chain, np.abs(self._frequencies * self.angles) ** 2
@@ -431,8 +421,15 @@ class ShaftVibration(Results):
 
     @property
     def remainder(self) -> float | None:
-        """About what orders beyond those summed add to any torque in N m; None without a remainder."""
-        return float(self._summed.remainder[0]) if self._every and self._summed else None
+        """About what orders beyond those summed add to any torque in N m; None without a remainder.
+
+        What falls off as 1/ν², as behind a jump through a damper, or faster, is in all of them together no more than in
+        the upper half of these.
+        """
+        if not self._every or not self._summed:
+            return None
+        orders = self._summed.acting.orders
+        return float(np.abs(self._summed.torques[:, 0, orders > orders[-1] / 2]).sum(axis=1).max())
 
     @cached_property
     def pieces(self) -> tuple[SegmentTorque, ...]:

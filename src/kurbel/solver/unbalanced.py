@@ -25,7 +25,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.machine.variants import values_of
+from kurbel.machine.batch import values_of
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, unless_cancelled
 from kurbel.numerics.enclosing import ClosedCurve

@@ -60,9 +60,9 @@ class Reading:
         self.after = trace.angles - trace.angles[0] + self.place[0]
         self.step = trace.period / (len(self.p) - 1)
         widths = np.append(np.diff(trace.angles), 0.0) + np.append(0.0, np.diff(trace.angles))
-        order = np.argsort(self.p, kind="stable")
-        passed = np.cumsum(widths[order])
-        self.low = float(self.p[order][np.searchsorted(passed, _LOW * passed[-1])])
+        order = np.argsort(self.p)
+        share = np.cumsum(widths[order]) / (2 * trace.period)
+        self.low = float(self.p[order[np.searchsorted(share, _LOW)]])
         self.top = int(np.argmax(self.p))
         self.peak = float(self.p[self.top])
         # a single top sample may be noise; the closing one would count twice
@@ -166,7 +166,7 @@ def _turns_in_pairs(reading: Reading) -> str:
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
     if np.abs(odd - even).max() <= _TURNS_DIFFER * max(np.ptp(odd), np.ptp(even)):
         return ""
-    peaks = f"differ by twos, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
+    peaks = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
         return (
             f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
@@ -193,7 +193,7 @@ def _wandering_cycles(reading: Reading) -> str:
         return ""
     off = wandered / (trace.period * (len(each) - 1))
     change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
-    remedy = f" If it is told by time: a 'recorded_speed' about {change} brings both together"
+    remedy = f" If the file counts time: a 'recorded_speed' about {change} brings both together"
     first, last = (in_bar(reading.p_i(pressures=one)) for one in (each[0], each[-1]))
     return (
         f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
@@ -211,35 +211,24 @@ def _rounded_angles(reading: Reading) -> str:
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
     even = reading.after[0] + reading.step * np.arange(len(trace.angles))
-    return (
-        f"{twins} samples stand at the angle of the one before: rounded angles? {key}; "
-        f"{reading.then(reading.p_i(even))}"
-    )
-
-
-def _closing_sample(reading: Reading) -> str:
-    """A cycle that comes back to where it began, up to its last sample but one, has no drift."""
-    p, trace = reading.p, reading.trace
-    if trace.completed or len(p) < _FEWEST or trace.angles[-1] - trace.angles[-4] > 3 * LAST:
-        return ""
-    jump = float(p[0] - p[-1])
-    before = abs(float(extrapolated(trace.angles, reading.p[np.newaxis])[0]))
-    if abs(jump) <= max(_LEAST * reading.setting.ambient, _bends(reading), 3 * before):
-        return ""
-    closed = np.append(p[:-1], p[0])
-    angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
-    return (
-        f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} and "
-        f"comes back to it just before: leave that sample out; {reading.then(reading.p_i(pressures=closed))}"
-    )
+    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(reading.p_i(even))}"
 
 
 def _drift(reading: Reading) -> str:
+    """Judge the jump where the cycle closes: of the closing sample alone, or of a drift over the cycle."""
     p, trace = reading.p, reading.trace
     jump = float(drift_of(trace, p[np.newaxis])[0])
     closes = abs(float(p[0]) - reading.low)
     if abs(jump) <= max(_RANGE * closes, _LEAST * reading.setting.ambient, _bends(reading)):
         return ""
+    dense = len(p) >= _FEWEST and trace.angles[-1] - trace.angles[-4] <= 3 * LAST
+    if dense and 3 * abs(float(extrapolated(trace.angles, p[np.newaxis])[0])) < abs(jump) and not trace.completed:
+        angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
+        return (
+            f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} "
+            f"and comes back to it just before: leave that sample out; "
+            f"{reading.then(reading.p_i(pressures=np.append(p[:-1], p[0])))}"
+        )
     levelled = reading.p_i(pressures=without_drift(trace, p[np.newaxis])[0])
     if abs(levelled - reading.p_i()) <= _WORTH_IT * abs(reading.p_i()):
         return ""
@@ -288,7 +277,7 @@ def _inverted(reading: Reading) -> str:
     if middle - float(p.min()) < _ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
         return ""
     return (
-        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: does it stand on its head? write "
+        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: is it inverted? write "
         f"'scale: {-reading.trace.scale:g}'; {reading.then(-reading.p_i())}"
     )
 
@@ -313,7 +302,7 @@ def _unit(reading: Reading) -> str:
         if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
             return ""
         can = f"four strokes compress more than from {in_bar(low)}"
-    factor, unit = _likely_unit(reading, least, 2 * compressed, max(most, ambient), _ENGINE if flat else 0.0)
+    factor, unit = _likely_unit(reading, least, max(2 * compressed, 1.0), max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
     times = max(factor, 1 / factor)
@@ -376,7 +365,7 @@ def _backward(reading: Reading) -> str:
     if turned <= 0 or not _is_usual(reading, -reading.peak_at):
         return ""
     return (
-        f"the peak stands {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
+        f"the peak is {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
         f"count against the rotation? write 'angle_sense: against'; {reading.then(turned)}"
     )
 
@@ -403,7 +392,7 @@ def _peak_elsewhere(reading: Reading) -> str:
     where = "firing dead centre" if cycle == 720 else "dead centre"
     gas_exchange = ", in the gas exchange" if abs(reading.peak_at) > 180 else ""
     return (
-        f"the peak stands {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
+        f"the peak is {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
         f"{gas_exchange}: write {key}; {effect}"
     )
 
@@ -417,8 +406,8 @@ def _motored_peak(reading: Reading) -> str:
         return ""
     key, effect = reading.put_later(after)
     return (
-        f"no combustion shows, and the peak stands {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
-        f"the dead centre; that of a motored engine stands at it or just before: check angle_zero; with "
+        f"no combustion shows, and the peak is {abs(after):.2g} deg {'after' if after > 0 else 'before'} "
+        f"the dead centre; that of a motored engine is at it or just before: check angle_zero; with "
         f"{key} {effect.replace('is then', 'is')}"
     )
 
@@ -516,12 +505,12 @@ def _common_exponent(reading: Reading) -> float:
 
     now, later = apart(0.0), 1.0
     for _ in range(3):
-        later *= now / (now - apart(later))
+        later *= now / (now - apart(later) or math.nan)
     return later
 
 
 CHECKS: tuple[Callable[[Reading], str], ...] = (
-    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _closing_sample, _drift),
+    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
     *(_inverted, _unit),
     *(_backward, _peak_elsewhere, _motored_peak),
     *(_level, _exponents),

@@ -206,7 +206,7 @@ def drift_of(trace: Trace, samples: Array) -> Array:
 
 def extrapolated(angles: Array, samples: Array) -> Array:
     """Return the same in Pa where the closing sample is missing, or not trusted: by lines through both ends."""
-    to_end, from_begin = angles[:-1] - angles[-1], angles[:-1] - angles[0]
+    to_end, from_begin = angles[:-1] - angles[-1], angles - angles[0]
     last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
     before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
     after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]

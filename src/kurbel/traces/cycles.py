@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, NoReturn
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.declared.kinds import MOST_POINTS, out_of_size
+from kurbel.declared.units import MOST_POINTS, out_of_size
 from kurbel.errors import Fault, RuleError
 from kurbel.traces.correct import PERIODS
 from kurbel.traces.read import LIMITS, Layout, read_table

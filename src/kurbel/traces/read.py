@@ -13,14 +13,14 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.kinds import MOST_POINTS
 from kurbel.declared.numerals import familiar
-from kurbel.errors import Fault, RuleError, refuse, refused
+from kurbel.declared.units import MOST_POINTS
+from kurbel.errors import Fault, RuleError, refused
 
 LARGEST_FILE = 64 * 2**20
 """Bytes; a million samples have about twenty million."""
@@ -56,26 +56,6 @@ class Layout(NamedTuple):
     skip_rows: int = 0
     delimiter: str = "comma"
     decimal: str = "point"
-
-    @classmethod
-    def of_keys(cls, what: str, **keys: Any) -> "Layout":
-        """Return the layout that the keys describe; raises RuleError for those that contradict one another."""
-        several = keys.pop(f"{what}_columns", None)
-        key, columns = (f"{what}_columns", several) if several else (f"{what}_column", (keys.pop(f"{what}_column", 2),))
-        layout = cls(columns, **keys)
-        words = {sign: word for word, sign in DELIMITERS.items()}
-        layout = layout._replace(delimiter=words.get(layout.delimiter, layout.delimiter))
-        faults = []
-        if layout.angle_step is None and layout.angle_column in columns:
-            faults.append(Fault((key,), f"column {layout.angle_column} is that of the angles"))
-        if layout.angle_unit in SECONDS and layout.recorded_speed is None:
-            faults.append(
-                Fault(("angle_unit",), "times become angles by a speed; write 'recorded_speed: 1500 rpm', say")
-            )
-        if layout.angle_unit not in SECONDS and layout.recorded_speed is not None:
-            faults.append(Fault(("recorded_speed",), "the speed is asked for times only; write 'angle_unit: s'"))
-        refuse(*faults)
-        return layout
 
     @property
     def wanted(self) -> tuple[int, ...]:
@@ -125,7 +105,7 @@ def read_table(file: str, layout: Layout) -> Table:
     """Return angles and columns of a file; raises RuleError with the line of the first that cannot be read."""
     text = text_of(file)
     if layout.ambiguous and '"' not in text:
-        refused("a comma cannot stand both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
+        refused("a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
     numbers = _numbers(text, layout)
     if not numbers.size:
         lines = "line" if layout.skip_rows == 1 else f"{layout.skip_rows} lines"

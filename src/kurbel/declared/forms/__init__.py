@@ -1,13 +1,22 @@
 """What may stand under a key of the machine file; each form reads, explains and describes itself."""
 
-from kurbel.declared.forms.alike import Alike
 from kurbel.declared.forms.figures import Expectations, Limits
-from kurbel.declared.forms.points import Points
-from kurbel.declared.forms.records import Record, Variant
-from kurbel.declared.forms.scalars import Choice, Count, Number, Physical, Truth, UnitName, not_negative, positive
-from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf
-from kurbel.declared.forms.texts import ColumnRange, FilePath, FiringOrder, Text
-from kurbel.declared.forms.uncertainties import Settings, Uncertainties
+from kurbel.declared.forms.structures import Alike, Inline, Keyed, Listing, OneOf, Record, Variant
+from kurbel.declared.forms.values import (
+    Choice,
+    ColumnRange,
+    Count,
+    FilePath,
+    FiringOrder,
+    Number,
+    Physical,
+    Points,
+    Settings,
+    Text,
+    Truth,
+    Uncertainties,
+    UnitName,
+)
 
 __all__ = [
     "Alike",
@@ -32,6 +41,4 @@ __all__ = [
     "Uncertainties",
     "UnitName",
     "Variant",
-    "not_negative",
-    "positive",
 ]

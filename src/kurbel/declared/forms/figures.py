@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kurbel.declared.forms.scalars import Number, Physical
+from kurbel.declared.forms.values import Number, Physical
 from kurbel.declared.keys import Form, Schema
 from kurbel.declared.numerals import NUMBER, familiar
 from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown

@@ -1,0 +1,365 @@
+"""What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kurbel.declared.forms import Listing, OneOf, Physical
+from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.keys import Form
+from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.errors import Fault
+from kurbel.machine.indicator import Chamber, Indicator
+from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import total
+
+if TYPE_CHECKING:
+    from kurbel.machine.crankshaft import Crankshaft
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConnectingRod(Record):
+    """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
+
+    mass: float = field("mass", "Mass of the rod", least=0, required=True)
+    share: float = field("ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2")
+    center_of_gravity: float | None = field(
+        "length",
+        "Distance of its centre of gravity from the crosshead pin",
+        "a",
+        least=0,
+        instead="share",
+        needs="inertia",
+    )
+    inertia: float | None = field(
+        "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
+    )
+
+    def rules(self) -> Iterator[Rule]:
+        yield from self.contradictions()
+
+    @property
+    def exact(self) -> bool:
+        """Whether the rod is described by centre of gravity and moment of inertia."""
+        return self.center_of_gravity is not None
+
+    def at_crosshead(self, length: float) -> float:
+        """Mass in kg that goes to and fro: the share, or m (1 − a/L) with the length L of the rod in m."""
+        if self.center_of_gravity is None:
+            return self.mass * self.share
+        return self.mass * (1 - self.center_of_gravity / length)
+
+    def at_pin(self, length: float) -> float:
+        """Mass in kg that turns with the crank pin: what the share leaves, or m a/L with the length L in m."""
+        if self.center_of_gravity is None:
+            return self.mass * (1 - self.share)
+        return self.mass * self.center_of_gravity / length
+
+    def excess_inertia(self, length: float) -> float:
+        """I_r − m a (L − a) in kg m²: what the two masses have too little of; for an exact rod of length L in m.
+
+        >>> round(ConnectingRod(2.0, center_of_gravity=0.1, inertia=0.0242).excess_inertia(0.25) * 23000, 1)
+        -133.4
+        """
+        assert self.center_of_gravity is not None
+        assert self.inertia is not None
+        return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
+
+
+_ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
+_PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
+
+
+def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
+    each = {name: given[name] for name in _PARTS if given.get(name) is not None}
+    sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
+    return {
+        "parts": total(*sums.values()),
+        "crosshead": sums.get("crosshead"),
+        "undivided": "reciprocating" in sums,
+    }
+
+
+def _rod(given: Mapping[str, Any]) -> dict[str, Any]:
+    rod = given["connecting_rod"]
+    return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
+
+
+def _part(text: str, key: str) -> Any:
+    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum, key=key)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Masses(Record):
+    """Moving masses in kg: what reciprocates besides the connecting rod, the connecting rod, and what turns.
+
+    parts: the sum of piston, piston rod, crosshead and others; rotating: at the radius of the crank pin, beside what of
+    the connecting rod turns with it; crosshead: what of the sum is the crosshead's, None where that is not known;
+    undivided: the sum was given as one and includes the connecting rod's share.
+    """
+
+    _sum_given = alternative(
+        "mass",
+        "All that goes to and fro, with its share of the connecting rod; instead of the parts",
+        "m",
+        least=0,
+        gives=_sum,
+        key="reciprocating",
+    )
+    _piston = _part("Piston, or a list of pistons", "piston")
+    _piston_rod = _part("Piston rod", "piston_rod")
+    _crosshead = _part("Crosshead", "crosshead")
+    _other = _part("Whatever else goes to and fro", "other")
+    _connecting_rod = alternative(
+        OneOf(Physical("mass", least=0), RecordForm(ConnectingRod)),
+        "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
+        instead="reciprocating",
+        also=("con_rod", "conrod"),
+        gives=_rod,
+        key="connecting_rod",
+    )
+
+    parts: float = 0.0
+    connecting_rod: ConnectingRod | None = None
+    rotating: float = field(
+        "mass",
+        "Unbalanced mass of the crank, as one at its pin, without the connecting rod",
+        "m_rot",
+        default=0.0,
+        least=0,
+        absent="0",
+    )
+    crosshead: float | None = None
+    undivided: bool = False
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
+        yield Rule((), not given, none)
+
+    def at_pin(self, rod_length: float) -> float:
+        """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""
+        return self.rotating + (self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0)
+
+    @property
+    def reciprocating(self) -> float:
+        """m in kg: all parts and the connecting rod's share (R 298); an exact rod needs `at_crosshead`."""
+        assert self.connecting_rod is None or not self.connecting_rod.exact
+        return self.at_crosshead(math.inf)
+
+    def at_crosshead(self, rod_length: float) -> float:
+        """m in kg: all parts and what of a connecting rod of this length in m goes to and fro with them."""
+        return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rings(Record):
+    """Piston rings."""
+
+    count: int = field(int, "Number of rings", least=1, required=True)
+    height: float = field("length", "Height of one ring along the bore", "h", above=0, required=True)
+    pressure: float = field("pressure", "Pressure of the ring on the wall", "p_r", least=0, required=True)
+    coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Guide(Record):
+    """The shoe with which a crosshead presses on its guide."""
+
+    length: float = field("length", "Length of the shoe along the stroke", above=0, required=True)
+    width: float = field("length", "Width of the shoe", above=0, required=True)
+
+
+_PINS = {
+    "crank_pin": ("crank_pin_diameter", "pin_diameter"),
+    "crosshead_pin": ("crosshead_pin_diameter", ""),
+    "journals": ("journal_diameter", "journal_diameter"),
+}
+"""Where pins and journals rub: the keys of their diameters here, and in `crankshaft`."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Friction(Record):
+    """Friction of the moving parts of a cylinder; what is None is left out."""
+
+    crosshead: float | None = field("ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0)
+    rings: Rings | None = field(Rings, "Piston rings")
+    constant: float | None = field("force", "Force against the motion, the same over the stroke", "F_0", least=0)
+    guide: Guide | None = field(Guide, "Shoe of the crosshead", needs="crosshead")
+    crank_pin: float | None = field(
+        "ratio", "Coefficient of friction of the connecting rod on the crank pin", "f_Z", least=0
+    )
+    crank_pin_diameter: float | None = field(
+        "length", "Diameter of the crank pin", "d_z", above=0, absent="that of `crankshaft`", needs="crank_pin"
+    )
+    crosshead_pin: float | None = field(
+        "ratio",
+        "Coefficient of friction of the connecting rod on the crosshead pin",
+        "f_H",
+        least=0,
+        needs="crosshead_pin_diameter",
+    )
+    crosshead_pin_diameter: float | None = field(
+        "length", "Diameter of the crosshead pin", "d_H", above=0, needs="crosshead_pin"
+    )
+    crosshead_pin_length: float | None = field(
+        "length", "Length of the crosshead pin", "l_H", above=0, absent="no pressure on it", needs="crosshead_pin"
+    )
+    journals: float | None = field(
+        "ratio", "Coefficient of friction of the journals in the main bearings", "f_j", least=0
+    )
+    journal_diameter: float | None = field(
+        "length", "Diameter of the journals", "d_j", above=0, absent="that of `crankshaft`", needs="journals"
+    )
+
+    def rules(self) -> Iterator[Rule]:
+        yield from self.contradictions()
+        none = not self.of_pins and self.crosshead is None and self.rings is None and self.constant is None
+        given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin' or 'journals'"
+        yield Rule((), none, f"no friction is given; leave 'friction' out or give {given}")
+
+    @property
+    def of_pins(self) -> tuple[str, ...]:
+        """The keys of the pins and journals whose coefficient is given."""
+        given = (self.crank_pin, self.crosshead_pin, self.journals)
+        return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
+
+    def faults_beside(self, shaft: "Crankshaft | None") -> Iterator[Fault]:
+        """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft."""
+        for name in self.of_pins:
+            here, there = _PINS[name]
+            in_shaft = there and shaft is not None and vars(shaft)[there] is not None
+            given = vars(self)[here] is not None
+            if not given and not in_shaft:
+                needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
+                yield Fault((name,), f"{needed}, or give '{there}' in 'crankshaft'" if there else needed)
+            elif given and in_shaft:
+                yield Fault((here,), f"'{there}' in 'crankshaft' says the same; leave one of them out")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RamForce(Record):
+    """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
+
+    work: float = field(
+        "force", "Force against the motion on the working stroke", "P_a", default=0.0, least=0, absent="0"
+    )
+    back: float = field(
+        "force", "Force against the motion on the return stroke", "P_r", default=0.0, least=0, absent="0", key="return"
+    )
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Moment(RamForce):
+    """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
+
+    work: float = field(
+        "torque", "Moment against the motion on the working stroke", "M_a", default=0.0, least=0, absent="0"
+    )
+    back: float = field(
+        "torque",
+        "Moment against the motion on the return stroke",
+        "M_r",
+        default=0.0,
+        least=0,
+        absent="0",
+        key="return",
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class RodPoint(Record):
+    """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
+
+    origin: `crank_pin`, or the other pin as the mechanism calls it; across: positive to the side to which the crank
+    pin stands at φ = 90°.
+    """
+
+    origin: str = field(
+        ("crank_pin", "crosshead_pin", "rocker_pin"),
+        "Pin from which the distance counts",
+        required=True,
+        example="crank_pin",
+        key="from",
+    )
+    along: float = field("length", "Distance along the rod, toward its other pin", required=True)
+    across: float = field(
+        "length",
+        "Distance from the rod's line, positive to the side of the outstroke",
+        default=0.0,
+        absent="0",
+    )
+
+    def from_crank_pin(self, mechanism: Mechanism) -> float:
+        """Return the distance along the rod in m from the crank pin toward the other one."""
+        return self.along if self.origin == "crank_pin" else mechanism.coupler_length - self.along
+
+    def rules_on(self, mechanism: Mechanism) -> Iterator[Rule]:
+        """Yield what keeps the point from being one of this mechanism."""
+        endless = np.isinf(mechanism.coupler_length)
+        yield Rule((), endless, f"this {mechanism.name} has no connecting rod of a length, of which it were a point")
+        other = np.logical_not(endless) & (self.origin not in ("crank_pin", mechanism.far_pin))
+        yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Piston(Record):
+    """A piston: bore and rods, and what the indicator shows on its two sides."""
+
+    bore: float = field("length", "Diameter of the cylinder", "d", above=0, required=True)
+    head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0, absent="0")
+    crank_end_rod: float = field(
+        "length",
+        "Diameter of the rod through the crank end",
+        default=0.0,
+        least=0,
+        absent="0",
+        also=("piston_rod", "rod_diameter"),
+    )
+    indicator: Indicator | None = field(
+        Indicator, "Pressures on the two sides", absent="no gas force", also=("pressure", "card", "trace")
+    )
+    name: str = field(str, "Name of the piston", default="piston", absent="piston")
+
+    def rules(self) -> Iterator[Rule]:
+        for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod)):
+            yield Rule(key, rod >= self.bore, f"{{{key}}} is no thinner than the bore ({{bore}})")
+
+    @property
+    def head_area(self) -> float:
+        """Effective area at the head end in m²."""
+        return math.pi / 4 * (self.bore - self.head_end_rod) * (self.bore + self.head_end_rod)
+
+    @property
+    def crank_area(self) -> float:
+        """Effective area at the crank end in m²."""
+        return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
+
+    @property
+    def chambers(self) -> "dict[str, Chamber]":
+        """What the indicator shows, by the key of the end."""
+        ends = ("head_end", "crank_end") if self.indicator else ()
+        return {end: chamber for end in ends if (chamber := getattr(self.indicator, end)) is not None}
+
+    def cycle_beside(self, cycle: str) -> str:
+        """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.
+
+        A pump or a compressor works in two strokes, whatever drives it: its cards then run twice in 720°.
+        """
+        given = [chamber.cycles for chamber in self.chambers.values()]
+        fits = all(cycle in each for each in given)
+        return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
+
+    def indicator_rules(self, cycle: str, ambient: Any) -> Iterator[Rule]:
+        """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
+        lift = 0.0 if self.indicator and self.indicator.absolute else ambient
+        for end, chamber in self.chambers.items():
+            yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
