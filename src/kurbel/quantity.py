@@ -38,11 +38,9 @@ class Quantity(NamedTuple):
 
     `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
     is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
-    what it is. `commands` print it, if the machine has it. Its value is the attribute of its id in the results of the
-    command, or what `asks` names: a method of the results, its argument, and which part of what it returns.
+    what it is. `commands` print it, if the machine has it.
     `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
     `<id>_min`; `called` names it in their sentences.
-    `unless`: an attribute of the results; where it is true, the quantity adds nothing and is printed only on request.
     `after`: the id after which it is printed, if not where it is declared. A `residual` would be zero without rounding:
     tables do not show rounding. A quantity that is `listed`, a list of values, cannot have a bound.
     `group`: quantities of one kind and one group are shown in one unit; '' for that of its column.
@@ -60,9 +58,7 @@ class Quantity(NamedTuple):
     commands: tuple[str, ...] = ()
     extremes: tuple[str, ...] = ()
     called: str = ""
-    unless: str = ""
     after: str = ""
-    asks: tuple[str, ...] = ()
     residual: bool = False
     listed: bool = False
     peak: bool = False
@@ -92,9 +88,8 @@ class Quantity(NamedTuple):
         """
         if self.group:
             return self.group
-        name = self.asks[1] if len(self.asks) > 1 else self.id
-        stem, _, end = name.rpartition("_")
-        return stem if end in ("max", "min", "peak", "mean") else name
+        stem, _, end = self.id.rpartition("_")
+        return stem if end in ("max", "min", "peak", "mean") else self.id
 
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""

@@ -8,10 +8,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked

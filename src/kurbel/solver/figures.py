@@ -99,9 +99,10 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
     rows = [Row(PHI, lambda one: one.phi)]
-    for item in _definitions(state):
-        for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-            rows += printed_by([row], *state.commands) if row.quantity.commands == ITS_OWN else [row]
+    for owner in [one for one in reversed(state.__mro__) if issubclass(one, AtAngles)]:
+        for item in vars(owner).values():
+            for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
+                rows += printed_by([row], *owner.commands) if row.quantity.commands == ITS_OWN else [row]
     rows += [Row(one.quantity, one.of, one.unless) for one in offers]
     return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
 
