@@ -235,7 +235,7 @@ class MachineBalance(Results):
         return BalanceColumns(self, phi, within)
 
     def _told(self, values: Any) -> Any:
-        """Return numbers (machines,) of every machine, or that of the only one."""
+        """Return complex numbers (machines,) of every machine, or that of the only one."""
         return values[0].item() if self.count is None else values
 
     # what moves, all of it over ω²

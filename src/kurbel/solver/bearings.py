@@ -31,7 +31,7 @@ from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
 from kurbel.quantity import column, key_value
-from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.figures import AtAngles, Results, told
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
@@ -173,13 +173,9 @@ class Bearing(Results):
         fine, load, (x, y, shell_x, shell_y) = _with_magnitude(pieces, journal, (shell.real, shell.imag))
         return _Cycle(fine, load, x + 1j * y, shell_x + 1j * shell_y)
 
-    def _told(self, values: Array) -> Any:
-        """Return what was found of every machine (machines,), or of the only one as a number."""
-        return float(values[0]) if self.count is None else values
-
     def _extremes(self, pieces: Pieces, values: Array) -> Extremes:
         """Return the extremes of samples (nodes, pieces)."""
-        return pieces.extremes(values[None]).each(self._told)[0]
+        return pieces.extremes(values[None]).each(lambda values: told(values, self.count))[0]
 
     @property
     def breaks(self) -> Array:
@@ -203,7 +199,7 @@ class Bearing(Results):
     @key_value("F_L,m", "force")
     def load_mean(self) -> Any:
         """Mean load over time."""
-        return self._told(self._cycle.pieces.mean(self._cycle.load))
+        return told(self._cycle.pieces.mean(self._cycle.load), self.count)
 
     @key_value("F_L,m,½", "force")
     def load_high(self) -> Any:
@@ -214,13 +210,13 @@ class Bearing(Results):
         load = load if pieces is whole else pieces.carried(load, whole)
         above = np.where(pieces.rule.weights @ load > pieces.of(largest), 1.0, 0.0)  # the weights sum to 2
         time, sums = pieces.integral(np.stack((np.broadcast_to(above, load.shape), load * above)))
-        return self._told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)))
+        return told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)), self.count)
 
     # the surfaces
 
     def _unloaded(self, load: ComplexArray) -> tuple[Any, ...]:
         """Return the arc in degrees of a surface that is never loaded, and its middle; None where there is none."""
-        found = (self._told(one) for one in unloaded(self._cycle.pieces, load, self.contact))
+        found = (told(one, self.count) for one in unloaded(self._cycle.pieces, load, self.contact))
         return tuple(None if self.count is None and math.isnan(one) else one for one in found)
 
     @cached_property
@@ -349,7 +345,7 @@ class RodPin(Bearing):
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
         rate = self._own.carried(self._pieces, 1 + slope if self._pin == "crank_pin" else slope)
-        return self._extremes(self._pieces, rate).peak, self._told(self._pieces.mean(np.abs(rate)))
+        return self._extremes(self._pieces, rate).peak, told(self._pieces.mean(np.abs(rate)), self.count)
 
     def _work(self) -> Any:
         forces = self._own.forces
@@ -411,7 +407,7 @@ class MainBearing(Bearing):
 
     @property
     def _rate(self) -> tuple[Extreme, Any]:
-        return Extreme(1.0, self._told(np.zeros(self.count or 1))), 1.0
+        return Extreme(1.0, told(np.zeros(self.count or 1), self.count)), 1.0
 
     def _work(self) -> Any:
         given = [one.cylinder.friction for one in self.followed]
@@ -419,7 +415,7 @@ class MainBearing(Bearing):
         if coefficient is None or self.size.diameter is None:
             return None
         pieces, load, _ = _with_magnitude(*self._on_pieces(rubbed=False))
-        return self._told(pieces.integral(load)) * coefficient * self.size.diameter / 2
+        return told(pieces.integral(load), self.count) * coefficient * self.size.diameter / 2
 
 
 def _pin_load(state: State) -> Vector:

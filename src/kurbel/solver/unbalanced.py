@@ -34,7 +34,7 @@ from kurbel.solver.weights import OwnThrow, Weight
 _SAMPLES = 256
 """Equal angles of a turn from which the orders of a mechanism are found, four times as many where a rod is short, …"""
 _MOST_SAMPLES = 1 << 20
-"""… up to these."""
+"""… up to these of all machines together: a batch of more raises an error, and its machines are computed alone."""
 _SHOWN = 1e-9
 """Of the largest order: smaller ones are not listed."""
 _FEWEST = 8
@@ -56,14 +56,13 @@ def orders_of(throw: OwnThrow, curvature: Curvature, count: int) -> ComplexArray
     more of them than can be computed, L/R < 1.00000001.
     """
     samples = _SAMPLES
-    while samples <= _MOST_SAMPLES:
+    while samples * count <= _MOST_SAMPLES:
         degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
         values = np.broadcast_to(curvature(throw.mechanism, CrankAngle.of(degrees)), (samples, count))
-        waves, size = np.fft.rfft(values, axis=0)[1:] / samples, _EPS * np.abs(values).max(axis=0)
+        waves, least = np.fft.rfft(values, axis=0)[1:] / samples, _EPS * np.abs(values).max(axis=0)
         # cosines and sines each: an even function is without sines
-        waves = np.where(np.abs(waves.real) > size, waves.real, 0) + 1j * np.where(
-            np.abs(waves.imag) > size, waves.imag, 0
-        )
+        cos, sin = (np.where(np.abs(part) > least, part, 0.0) for part in (waves.real, waves.imag))
+        waves = cos + 1j * sin
         last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
         if last <= samples // 4:
             return np.asarray(waves[:last])
