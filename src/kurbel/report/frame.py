@@ -124,12 +124,14 @@ def report_on(
     """
     every = (*subjects, *((whole,) if whole else ()))
     rows = [_rows(frame, one) for one in every]
-    _refuse_absent(frame, every, [columns for columns, _ in rows])
+    printed = {column.id for columns, _ in rows for column in columns}
+    for name in frame.columns or ():
+        if name not in printed:
+            raise UsageError(f"--columns: {_absent(name, frame.command, every)}")
     nowhere = [why for _, why in rows if why]
-    tabular = any(columns for columns, _ in rows)
-    if nowhere and not tabular:
+    if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
-    with_values = frame.prose or not (tabular or any(one.tables for one in every))
+    with_values = frame.prose or not (printed or any(one.tables for one in every))
     parts = [
         Part(
             one.name,
@@ -144,7 +146,9 @@ def report_on(
         for one, (columns, why) in zip(every, rows)
     ]
     last = parts.pop() if whole else None
-    said = (*notes, *_nothing_compared(frame, rows), *(f"{why}." for why in nowhere))
+    # the balance says itself what it leaves out
+    uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
+    said = (*notes, *((_UNCOMPARED,) if uncompared else ()), *(f"{why}." for why in nowhere))
     return Report(
         f"{machine.name}. {title}",
         frame.command,
@@ -158,6 +162,10 @@ def report_on(
     )
 
 
+_UNCOMPARED = (
+    "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
+    "piston with pressures; this machine has neither."
+)
 _Rows = tuple[tuple[Column, ...], str]
 """The columns of a subject, and why it has no row."""
 
@@ -178,24 +186,6 @@ def _rows(frame: Frame, subject: Subject) -> _Rows:
         chosen = [one for one in usual if subject.says(one)]
     wanted = tuple(dict.fromkeys((known["phi"], *chosen)))
     return shown_columns(subject.at, wanted, angles, frame.system), ""
-
-
-def _nothing_compared(frame: Frame, rows: Sequence[_Rows]) -> Iterator[str]:
-    compared = any(column.id.endswith("_book") for columns, _ in rows for column in columns)
-    # the balance says itself what it leaves out
-    if frame.compare and not compared and frame.command != "balance":
-        yield (
-            "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
-            "and of a piston with pressures; this machine has neither."
-        )
-
-
-def _refuse_absent(frame: Frame, subjects: Sequence[Subject], columns: Iterable[Sequence[Column]]) -> None:
-    """Raise UsageError for a requested column that no subject has."""
-    printed = {column.id for some in columns for column in some}
-    for name in frame.columns or ():
-        if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
