@@ -20,7 +20,7 @@ from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
@@ -67,18 +67,14 @@ class Subject:
                 yield quantity, value
 
 
-def _value(results: Any, quantity: Quantity) -> Any:
+def _value(results: Results, quantity: Quantity) -> Any:
     """Return a key value of results, in SI; None where they have none."""
-    if not isinstance(results, Results):
-        return answered((results,), quantity)
     row = results.rows.key_values.get(quantity.id)
     return None if row is None else row.of(results)
 
 
-def _says_nothing(results: Any, quantity: Quantity) -> bool:
+def _says_nothing(results: Results, quantity: Quantity) -> bool:
     """Return whether a quantity says nothing new of results."""
-    if not isinstance(results, Results):
-        return False
     row = results.rows.key_values.get(quantity.id) or results.rows.columns.get(quantity.id)
     return bool(row and row.unless and row.unless(results))
 

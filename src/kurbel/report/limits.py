@@ -7,11 +7,11 @@ from typing import NamedTuple, Union
 import numpy as np
 
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
-from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
+from kurbel.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import Subject, too_large
