@@ -59,10 +59,10 @@ class _Slot(NamedTuple):
         alone = len(self.varied) == 1 and not self.varied[0][1]
         return alone and self.form.is_number and not isinstance(self.given.made, Indivisible)
 
-    def read(self, texts: Sequence[str], folder: str) -> Any:
-        """Return what texts of its varied keys become, or Unbound, unraised."""
+    def read(self, texts: Sequence[str], whole: Reading) -> Any:
+        """Return what texts of its varied keys become, or Unbound, unraised; whole: how the file was read."""
         tree = self.given.mapping[self.name]
-        reading = Reading(folder)
+        reading = Reading(whole.folder, key_values=whole.key_values)
         try:
             for (_, inner), text in zip(self.varied, texts):
                 tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
@@ -133,7 +133,7 @@ class Binder:
         if slot.numeric and (plain := slot.form.numbers(own[0])) is not None:
             return np.array(plain)
         texts = list(zip(*own))
-        known = {one: slot.read(one, self._reading.folder) for one in dict.fromkeys(texts)}
+        known = {one: slot.read(one, self._reading) for one in dict.fromkeys(texts)}
         for row, text in enumerate(texts):
             if isinstance(known[text], Unbound):
                 failures.setdefault(row, str(known[text]))
@@ -228,14 +228,17 @@ class _Maker(Maker):
         other = Given(given.form, given.mapping, given.path, values)
         if self._count == 1:
             return super()._record(other)
+        inside = len(self._rules)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
+        # what a part breaks is not told of the whole
+        broken = [rule.broken for _, _, rule in self._rules[inside:]]
+        below = np.any(broken, axis=0) if broken else np.zeros(self._count, dtype=bool)
         record = given.form.load().of_keys(**values)
         rules = [*given.form.load().rules_of_keys(values)]
         if isinstance(record, Described):
             rules += [*record.rules(), Rule((), too_extreme(record, values), TOO_EXTREME)]
-        before = self.broken.copy()  # what a part breaks is not told of the whole
         for rule in rules:
-            rows = np.broadcast_to(rule.broken, self._count) & ~before
+            rows = np.broadcast_to(rule.broken, self._count) & ~below
             if rows.any():
                 self._rules.append((given, record, rule._replace(broken=rows)))
                 self.broken |= rows
