@@ -231,8 +231,9 @@ class _Maker(Maker):
         inside = len(self._rules)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
         # what a part breaks is not told of the whole
-        broken = [rule.broken for _, _, rule in self._rules[inside:]]
-        below = np.any(broken, axis=0) if broken else np.zeros(self._count, dtype=bool)
+        below = np.zeros(self._count, dtype=bool)
+        for _, _, rule in self._rules[inside:]:
+            below |= rule.broken
         record = given.form.load().of_keys(**values)
         rules = [*given.form.load().rules_of_keys(values)]
         if isinstance(record, Described):
@@ -251,12 +252,13 @@ class _Maker(Maker):
             for row in np.flatnonzero(rule.broken).tolist():
                 faults = given.form.flattened(RuleError(rule.fault(record, row)), given.mapping).faults
                 found.setdefault(row, []).extend(one.below(given.path) for one in faults)
-        return {row: _as_read(faults) for row, faults in found.items()}
+        return {row: _as_read(faults, self.reading.alike) for row, faults in found.items()}
 
 
-def _as_read(faults: Sequence[Fault]) -> list[Fault]:
-    """Return faults as a reading notes them, which stops where there are too many."""
+def _as_read(faults: Sequence[Fault], alike: dict[Path, Path]) -> list[Fault]:
+    """Return faults as a reading notes them: those that were taken over once, and not too many of them."""
     reading = Reading()
+    reading.alike = alike
     try:
         for fault in faults:
             reading.note(fault)
