@@ -1,32 +1,26 @@
-"""The few operations besides + − × ÷ that formulas need, for floats, arrays, `Varied` and high-precision numbers."""
+"""The few operations besides + − × ÷ that formulas need, for floats and for arrays of many machines."""
 
 import math
 from typing import Any
 
+import numpy as np
+
 
 def is_number(value: Any) -> bool:
-    """Return whether a value is a float, or a number that brings its own operations."""
-    return isinstance(value, (float, int)) or hasattr(value, "sqrt")
+    """Return whether a value is one number."""
+    return isinstance(value, (float, int))
 
 
 def sqrt(value: Any) -> Any:
-    """Return the square root of a float, an array, or any number with its own `sqrt` (Decimal, mpf, Varied)."""
-    if isinstance(value, (float, int)):
-        return math.sqrt(value)
-    if hasattr(value, "sqrt"):
-        return value.sqrt()
-    import numpy as np
-
-    return np.sqrt(value)
+    """Return the square root of a float or an array."""
+    return math.sqrt(value) if is_number(value) else np.sqrt(value)
 
 
 def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
-    if not getattr(condition, "ndim", 0):
-        return value if condition else otherwise
-    import numpy as np
-
-    return np.where(condition, value, otherwise)
+    if np.ndim(condition):
+        return np.where(condition, value, otherwise)
+    return value if condition else otherwise
 
 
 def bearing(sin: Any, cos: Any) -> Any:
@@ -35,36 +29,24 @@ def bearing(sin: Any, cos: Any) -> Any:
     >>> bearing(1.0, 0.0)
     90.0
     """
-    if isinstance(sin, (float, int)) and isinstance(cos, (float, int)):
+    if is_number(sin) and is_number(cos):
         return math.degrees(math.atan2(sin, cos))
-    import numpy as np
-
     return np.degrees(np.arctan2(sin, cos))
 
 
 def sin(value: Any) -> Any:
     """Return the sine of a float or an array in radians."""
-    return _of(value, "sin")
+    return math.sin(value) if is_number(value) else np.sin(value)
 
 
 def arcsin(value: Any) -> Any:
     """Return the arc of a sine, a float or an array, in radians."""
-    return _of(value, "asin", "arcsin")
+    return math.asin(value) if is_number(value) else np.arcsin(value)
 
 
 def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
-    return _of(value, "ulp", "spacing")
-
-
-def _of(value: Any, name: str, in_numpy: str = "") -> Any:
-    if isinstance(value, (float, int)):
-        return getattr(math, name)(value)
-    if hasattr(value, name):
-        return getattr(value, name)()
-    import numpy as np
-
-    return getattr(np, in_numpy or name)(value)
+    return math.ulp(value) if is_number(value) else np.spacing(value)
 
 
 def every(condition: Any) -> bool:
@@ -83,11 +65,8 @@ def total(*terms: Any) -> Any:
     >>> total(1e16, 1.0, -1e16)
     1.0
     """
-    if all(isinstance(term, (float, int)) for term in terms):
+    if all(map(is_number, terms)):
         return math.fsum(terms)
-    own = next((term for term in terms if hasattr(term, "total")), None)
-    if own is not None:
-        return own.total(terms)
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
         before, whole = whole, whole + term
@@ -114,8 +93,6 @@ def unless_cancelled(whole: Any, sizes: Any, rounding: float = _ROUNDING) -> Any
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
     """
-    import numpy as np
-
     if np.iscomplexobj(whole):
         return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
     return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)

@@ -12,7 +12,7 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.alike import gathered, work_alike
+from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
