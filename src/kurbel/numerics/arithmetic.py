@@ -1,26 +1,35 @@
-"""The few operations besides + − × ÷ that formulas need, for floats and for arrays of many machines."""
+"""The few operations besides + − × ÷ that formulas need, for floats, arrays and high-precision numbers.
+
+numpy is imported where an array comes, so that the help of the command line loads without it.
+"""
 
 import math
 from typing import Any
 
-import numpy as np
-
 
 def is_number(value: Any) -> bool:
-    """Return whether a value is one number."""
-    return isinstance(value, (float, int))
+    """Return whether a value is a float, or a number that brings its own operations."""
+    return isinstance(value, (float, int)) or hasattr(value, "sqrt")
 
 
 def sqrt(value: Any) -> Any:
-    """Return the square root of a float or an array."""
-    return math.sqrt(value) if is_number(value) else np.sqrt(value)
+    """Return the square root of a float, an array, or any number with its own `sqrt` (as those of mpmath)."""
+    if isinstance(value, (float, int)):
+        return math.sqrt(value)
+    if hasattr(value, "sqrt"):
+        return value.sqrt()
+    import numpy as np
+
+    return np.sqrt(value)
 
 
 def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
-    if np.ndim(condition):
-        return np.where(condition, value, otherwise)
-    return value if condition else otherwise
+    if not getattr(condition, "ndim", 0):
+        return value if condition else otherwise
+    import numpy as np
+
+    return np.where(condition, value, otherwise)
 
 
 def bearing(sin: Any, cos: Any) -> Any:
@@ -29,24 +38,34 @@ def bearing(sin: Any, cos: Any) -> Any:
     >>> bearing(1.0, 0.0)
     90.0
     """
-    if is_number(sin) and is_number(cos):
+    if isinstance(sin, (float, int)) and isinstance(cos, (float, int)):
         return math.degrees(math.atan2(sin, cos))
+    import numpy as np
+
     return np.degrees(np.arctan2(sin, cos))
 
 
 def sin(value: Any) -> Any:
     """Return the sine of a float or an array in radians."""
-    return math.sin(value) if is_number(value) else np.sin(value)
+    return _of(value, "sin", "sin")
 
 
 def arcsin(value: Any) -> Any:
     """Return the arc of a sine, a float or an array, in radians."""
-    return math.asin(value) if is_number(value) else np.arcsin(value)
+    return _of(value, "asin", "arcsin")
 
 
 def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
-    return math.ulp(value) if is_number(value) else np.spacing(value)
+    return _of(value, "ulp", "spacing")
+
+
+def _of(value: Any, of_float: str, of_array: str) -> Any:
+    if isinstance(value, (float, int)):
+        return getattr(math, of_float)(value)
+    import numpy as np
+
+    return getattr(np, of_array)(value)
 
 
 def every(condition: Any) -> bool:
@@ -65,7 +84,7 @@ def total(*terms: Any) -> Any:
     >>> total(1e16, 1.0, -1e16)
     1.0
     """
-    if all(map(is_number, terms)):
+    if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
@@ -93,6 +112,8 @@ def unless_cancelled(whole: Any, sizes: Any, rounding: float = _ROUNDING) -> Any
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
     """
+    import numpy as np
+
     if np.iscomplexobj(whole):
         return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
     return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)

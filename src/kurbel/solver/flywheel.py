@@ -441,7 +441,7 @@ class MachineTurning(Results):
         if self.J_needed is None or not self._turns or self._needs_no_inertia:
             return None
         if self.is_the_needed:
-            return self.delta
+            return self.speed and self.speed.delta
         if self.effort.count is not None:
             return self._line(self.J_needed).delta
         delta = self._delta_with(self.J_needed)
