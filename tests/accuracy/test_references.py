@@ -203,12 +203,14 @@ def test_speed_is_independent_of_the_nodes(load: str) -> None:
 
 
 def test_roots_and_extremes_where_a_function_bends() -> None:
-    """x³ has its root where it is flat; of a step of width 1e-9 it is found as well."""
+    """A cube is flat at its root; a step of width 1e-9 is steep there."""
     edges = PRECISE.of(np.array([-1.0, 2.0]))
     found, _ = roots(lambda x, _: (x - mp.sqrt(2) / 2) ** 3, edges, PRECISE)
     assert abs(found[0] - mp.sqrt(2) / 2) < 1e-9
     found, _ = roots(lambda x, _: (x - 1 / mpmath.mpf(3)) / (abs(x - 1 / mpmath.mpf(3)) + 1e-9), edges, PRECISE)
     assert abs(found[0] - 1 / mpmath.mpf(3)) < 1e-29
+    found, _ = roots(lambda x, _: x - 0.25, np.array([0.0, 1.0]), FLOATS)  # at one of the steps
+    assert found.tolist() == [0.25]
     assert extremes(lambda x, _: x * (1 - x), np.array([0.0, 0.7, 2.0]), FLOATS) == pytest.approx([0.25, -2.0])
 
 

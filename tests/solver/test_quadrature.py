@@ -70,8 +70,7 @@ def edges_of(forces: CylinderForces) -> np.ndarray:
 
 def error_of_friction(forces: CylinderForces) -> float:
     precise = precise_integral(friction_power(forces), edges_of(forces))
-    assert forces.crosshead_work is not None
-    return abs(forces.crosshead_work / precise - 1)
+    return abs(forces.friction_works["crosshead"] / precise - 1)
 
 
 def bearing_load(strength: CrankshaftStrength, bearing: str) -> Function:
@@ -143,7 +142,7 @@ def test_friction_between_samples_where_the_rod_swings_round_within_a_hair(step:
     nodes = edges[0] + (edges[1] - edges[0]) * (1 + GAUSS[0]) / 2
     values = friction_power(forces)(nodes.ravel()).reshape(nodes.shape)
     precise = float((np.radians(edges[1] - edges[0]) / 2 * values * GAUSS[1]).sum())
-    assert forces.crosshead_work == pytest.approx(precise, rel=2e-12)
+    assert forces.friction_works["crosshead"] == pytest.approx(precise, rel=2e-12)
 
 
 def test_friction_of_random_cylinders() -> None:

@@ -71,7 +71,7 @@ def roots(function: Function, edges: Array, numbers: Numbers, parts: int = 24) -
     """
     at = spread(edges, np.arange(parts + 1) / parts)
     values = function(at, within(edges))
-    piece, step = np.nonzero(values[:, :-1] * values[:, 1:] < 0)
+    piece, step = np.nonzero((values[:, :-1] > 0) != (values[:, 1:] > 0))
     inside = within(edges)[piece, 0]
     low, high, f_low, f_high = at[piece, step], at[piece, step + 1], values[piece, step], values[piece, step + 1]
     found, change = high, high
@@ -81,7 +81,7 @@ def roots(function: Function, edges: Array, numbers: Numbers, parts: int = 24) -
         new = (low + high) / 2 if count % 3 == 2 else (low * f_high - high * f_low) / (f_high - f_low)
         found, change = new, new - found
         f_found = function(found, inside)
-        left = f_found * f_low > 0
+        left = (f_found > 0) == (f_low > 0)
         low, f_low = np.where(left, found, low), np.where(left, f_found, f_low)
         high, f_high = np.where(left, high, found), np.where(left, f_high, f_found)
     return found, inside

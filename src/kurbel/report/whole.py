@@ -119,9 +119,9 @@ def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[str, str, s
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            ("Friction of the crosshead", _lost(forces.crosshead_work)),
-            ("Friction of the piston rings", _lost(forces.ring_work)),
-            ("Friction given as a force", _lost(forces.constant_work)),
+            ("Friction of the crosshead", _lost(forces.friction_works.get("crosshead"))),
+            ("Friction of the piston rings", _lost(forces.friction_works.get("rings"))),
+            ("Friction given as a force", _lost(forces.friction_works.get("constant"))),
             ("What the output works against", forces.resistance_work),
         ]
     except KurbelError:
