@@ -5,8 +5,8 @@ Arguments of all functions: `sin`, `cos` of the crank angle; `kappa` = cos ψ of
 floats, arrays of any shape or mpmath numbers; only + − × ÷ and the square root are used. Results have the shape of
 `sin`.
 
-The textbook formulas subtract nearly equal terms beside the dead centres; here every sum that can be has terms of one
-sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also beside their zeros.
+The textbook formulas subtract nearly equal terms near the dead centres; here every sum that can be has terms of one
+sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also near their zeros.
 """
 
 import math

@@ -436,10 +436,10 @@ def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] 
     parts, largest = np.stack((load.real, load.imag, *others)), pieces.largest(np.abs(load))
 
     def both(some: Pieces, found: Array) -> Array:
-        size, beside = np.hypot(*found[:2]), some.of(largest)
-        towards = _directed(found[0] + 1j * found[1], beside)
-        weakest = np.min(size, axis=0, where=size > _NO_LOAD * beside, initial=math.inf)
-        share = np.where(np.isfinite(weakest), weakest / np.maximum(beside, _TINIEST), 0.0)
+        size, most = np.hypot(*found[:2]), some.of(largest)
+        towards = _directed(found[0] + 1j * found[1], most)
+        weakest = np.min(size, axis=0, where=size > _NO_LOAD * most, initial=math.inf)
+        share = np.where(np.isfinite(weakest), weakest / np.maximum(most, _TINIEST), 0.0)
         weight = np.minimum(1.0, _SURE * share)
         return np.stack((size, towards.real * weight, towards.imag * weight))
 
@@ -555,7 +555,7 @@ class ShaftBearings:
         for forces in self._cylinders:
             own = forces.drive.cylinder
             first = next(one for one in self._cylinders if work_alike(one.drive.cylinder, own))
-            # whole cycles are taken off, which is exact: beside a large position an angle would lose its digits
+            # whole cycles are taken off, which is exact: next to a large position an angle would lose its digits
             every.append(Follower(first, own, np.fmod(own.crank_position, forces.drive.cycle)))
         for number, one in enumerate(every):
             if _loads(one.forces):

@@ -73,7 +73,7 @@ def wheels_of(machine: Machine) -> tuple[float, ...]:
 def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[Weight]:
     """Yield the weights on the crank, those of each throw and those of the whole machine.
 
-    Of a locomotive they stand in its wheels. Raises UsageError where a place is missing.
+    Of a locomotive they are in its wheels. Raises UsageError where a place is missing.
     """
     wheels = wheels_of(machine)
     for throw in throws:
