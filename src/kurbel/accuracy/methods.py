@@ -197,7 +197,8 @@ def periodic(motor: Motor, edges: Array, count: int, numbers: Numbers) -> tuple[
                 np.asarray(rate, dtype=float)
                 @ np.linalg.inv(chebyshev.chebvander(np.asarray(2 * nodes - 1, dtype=float), count - 1)).T
             )
-            rough = np.abs(lengths * tail[:, -2:]).max(axis=1) > 1e-14 * rigid[:, -1]
+            least = np.asarray(kinetic, dtype=float).min(axis=1)
+            rough = np.abs(lengths * tail[:, -2:]).max(axis=1) > 1e-14 * least
             return numbers.sqrt(2 * kinetic / inertia)[:, -1], rough
     raise NoAnswer("no solution")
 

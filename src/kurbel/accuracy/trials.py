@@ -320,7 +320,7 @@ def _fine_mesh(motor: Motor, edges: Array) -> Array:
     """Return more edges: elements whose solution is no polynomial are halved, until ω agrees at the first edges."""
     kept = np.asarray(edges[1:], dtype=float)
     found = np.full(len(kept), math.inf)
-    for _ in range(30):
+    while len(edges) < 1000:
         floats, before = np.asarray(edges, dtype=float), found
         omega, rough = periodic(motor, floats, 14, FLOATS)
         found = omega[np.searchsorted(floats[1:], kept)]
