@@ -15,8 +15,7 @@ from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.render.formats import render
 from kurbel.render.output import write_file
-from kurbel.report.accuracy import accuracy_report, extremes_report
-from kurbel.report.accuracy_picture import accuracy_picture
+from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
 from kurbel.report.tables import Report
 
 FOLDER = Path(__file__).parent

@@ -22,7 +22,7 @@ from kurbel.cli import kurbel
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.report import accuracy
-from kurbel.report.accuracy_picture import accuracy_picture, dots
+from kurbel.report.accuracy import accuracy_picture, dots
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from representative import few
 

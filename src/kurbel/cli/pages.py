@@ -216,7 +216,7 @@ def accuracy(
     report = accuracy_report(machine, quick, loads, _uncertain(machine))
     output.write(report)
     if picture is not None:
-        from kurbel.report.accuracy_picture import accuracy_picture
+        from kurbel.report.accuracy import accuracy_picture
 
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0
