@@ -5,7 +5,7 @@ numbers are arrays (machines,), and the rows that break a rule. Words, counts an
 that differ in these are made apart.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -230,15 +230,16 @@ class _Maker(Maker):
             return super()._record(other)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
         record = given.form.load().of_keys(**values)
-        rules = [*given.form.load().rules_of_keys(values)]
+        stages: list[Iterable[Rule]] = [given.form.load().rules_of_keys(values)]
         if isinstance(record, Described):
-            rules += [*record.rules(), Rule((), too_extreme(record, values), TOO_EXTREME)]
-        before = self.broken.copy()  # what a part breaks is not told of the whole
-        for rule in rules:
-            rows = np.broadcast_to(rule.broken, self._count) & ~before
-            if rows.any():
-                self._rules.append((given, record, rule._replace(broken=rows)))
-                self.broken |= rows
+            stages += [record.rules(), [Rule((), too_extreme(record, values), TOO_EXTREME)]]
+        for rules in stages:
+            before = self.broken.copy()  # what a part or a stage breaks is not told of the whole or the next
+            for rule in rules:
+                rows = np.broadcast_to(rule.broken, self._count) & ~before
+                if rows.any():
+                    self._rules.append((given, record, rule._replace(broken=rows)))
+                    self.broken |= rows
         return record
 
     def failures(self) -> dict[int, list[Fault]]:

@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, Physical, Points, UnitName
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refuse, refused
@@ -132,7 +132,7 @@ class Measured(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if "file" in given and REFUSED not in given.values():
+        if "file" in given and not has_refused(given.values()):
             yield from layout_rules("pressure", given)
 
     @classmethod
