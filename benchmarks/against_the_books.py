@@ -10,8 +10,7 @@ import subprocess
 import sys
 
 METHODS = {
-    "book, 18 divisions": "by hand, 18 divisions of the half turn",
-    "10° table": "spreadsheet, a row every 10°",
+    "10° table": "by hand or spreadsheet, a row every 10°",
     "1° table": "spreadsheet, a row every degree",
     "kurbel": "kurbel",
 }

@@ -33,8 +33,8 @@ def columns_only(subject: Subject) -> None:
     """All columns of one cylinder."""
     assert subject.at
     answer = subject.at(ANGLES)
-    for column in subject.lists.columns("forces").values():
-        answer(column)
+    for id in subject.lists.columns("forces"):
+        _ = answer[id]
 
 
 def naive_motion(crank: float, rod: float, omega: float) -> list[tuple[float, float, float]]:

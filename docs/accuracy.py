@@ -23,6 +23,9 @@ FOLDER = Path(__file__).parent
 PICTURE = "accuracy.svg"
 
 
+EQUIDISTANT = ("trapezium rule", "Simpson's rule", "largest ordinate")
+
+
 def errors(
     report: Report, table_id: str, wanted: Callable[[tuple[str, ...]], bool] = lambda names: True
 ) -> list[float]:
@@ -62,7 +65,7 @@ def explanation(report: Report) -> str:
     data = errors(engine, "data_error")
     model = errors(engine, "model_error", lambda names: names[1] == "first-order formulas")
     rough = errors(engine, "model_error", lambda names: names[1] == "infinite rod")
-    book = errors(engine, "numerical_error", lambda names: names[1].startswith("book"))
+    hand = errors(engine, "numerical_error", lambda names: names[1] in EQUIDISTANT and names[2] == "36")
     own = errors(engine, "numerical_error", lambda names: names[1] == "kurbel")
     return f"""Which error should an engineer worry about? For the first machine below, a steam engine with L/R = 5:
 
@@ -71,14 +74,14 @@ def explanation(report: Report) -> str:
 | of the data: 0.1° of dead centre, 0.5 % noise of the pressure | {power(min(data))} | {power(max(data))} |
 | of the model: infinite rod | {power(min(rough))} | {power(max(rough))} |
 | of the model: first-order formulas | {power(min(model))} | {power(max(model))} |
-| of reading the diagrams: the book's 9 and 18 divisions | {power(min(book))} | {power(max(book))} |
+| of reading the diagrams every 10°, as tables by hand do | {power(min(hand))} | {power(max(hand))} |
 | of the arithmetic: kurbel | {power(min(own))} | {power(max(own))} |
 
 - **Data.** A dead centre that is found 0.1° too late, or an indicator with half a percent of noise, changes the answers
   by {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
 - **Model.** The infinite rod costs up to {max(rough):.0%}, the formulas of first order up to {power(max(model))}.
   A computer has no reason left to use either.
-- **Reading.** 9 or 18 divisions of the half turn, as the book has them, miss by up to {max(book):.0%}: the peaks and
+- **Reading.** 18 divisions of the half turn, as the book has them, miss by up to {max(hand):.1%}: the peaks and
   jumps between two divisions are not seen.
 - **Arithmetic.** The smallest error of the data is {power(min(data) / max(own))} times kurbel's largest here. Its worst
   answer in all scenes is off by {worst(report)}. Whatever differs from a measurement is not the arithmetic.
@@ -86,9 +89,11 @@ def explanation(report: Report) -> str:
 The picture shows, for every quantity, time over error for all machines below, with lines between the answers of one
 method for one machine: the error falls to the right, the grey line is 2⁻⁵³, the rounding of one float. A method
 further right *and* lower than the dot of the same machine would be better than kurbel's own; the last sentence of the
-report says whether there is one. References have 40 digits and come from other methods than kurbel's: textbook formulas
-in decimal arithmetic, areas as fractions, golden sections for extremes, Gauss rules halved until 22 digits agree, and
-Lobatto IIIC in 40 digits for the speed line."""
+report says whether there is one, and names it. The strong methods share their idea with kurbel's: cut the cycle at the
+corners of the cards, and between them use Gauss rules, root searches or a fit of Chebyshev polynomials. How many points
+they need is not known beforehand; kurbel finds that out for each machine. References are textbook formulas in 40 digits
+of mpmath, with Gauss rules whose pieces are halved until 25 digits agree, roots by false position, and collocation for
+the speed line."""
 
 
 def main() -> None:

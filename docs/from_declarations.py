@@ -11,17 +11,17 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.declared.factors import FACTORS
 from kurbel.declared.forms import Record
 from kurbel.declared.keys import Described, Key, Keys, required
-from kurbel.declared.shaft import STRESSES
-from kurbel.declared.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
+from kurbel.report.balance import ELLIPSES, ORDERS, WEIGHTS
+from kurbel.report.loads import STRESSES
+from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
+from kurbel.report.zusammenstellung import FACTORS
 
 _WRITTEN = "Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand."
 

@@ -7,7 +7,7 @@ from importlib import import_module
 
 from click.testing import CliRunner
 
-OPTIONAL = ("kurbel", "rich", "typst", "scipy", "hashlib", "decimal", "fractions", "cmath", "unicodedata")
+OPTIONAL = ("kurbel", "rich", "typst", "scipy", "mpmath", "hashlib", "decimal", "fractions", "cmath", "unicodedata")
 
 
 def modules_after(*commands: list[str]) -> set[str]:

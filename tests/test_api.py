@@ -95,7 +95,7 @@ def test_a_cylinder_has_its_extremes_as_the_flywheel_has() -> None:
     assert cylinder.T_max.value == pytest.approx(case.flywheel.T_max.value, rel=1e-12)  # type: ignore[union-attr]
     assert cylinder.c_max == cylinder.motion.c_max
     assert kurbel.solve(kurbel.loads("{crank: 1 m, rod: 2 m}")).cylinders[0].T_max is None
-    with pytest.raises(AttributeError, match="no attribute T_mx"):
+    with pytest.raises(AttributeError, match="no attribute 'T_mx'"):
         _ = cylinder.T_mx
     assert copy.copy(cylinder).T_max == cylinder.T_max
 

@@ -14,9 +14,9 @@ from click.testing import CliRunner
 from kurbel import load, loads, solve
 from kurbel.cli import kurbel
 from kurbel.declared.forms.figures import Expected
-from kurbel.declared.quantity import by_id
 from kurbel.errors import UsageError
 from kurbel.quantities import every_quantity
+from kurbel.quantity import by_id
 from kurbel.report.check import checked
 from kurbel.report.commands import REPORTS, report_of
 from kurbel.report.frame import Frame

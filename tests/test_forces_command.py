@@ -13,8 +13,8 @@ from click.testing import CliRunner, Result
 
 from imported import modules_after
 from kurbel.cli import kurbel
-from kurbel.declared.quantity import by_id
 from kurbel.quantities import every_quantity
+from kurbel.quantity import by_id
 from representative import shipped
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -152,12 +152,10 @@ def test_a_report_of_a_smooth_trace_takes_a_few_times_its_reading() -> None:
 # mechanisms and cylinders
 
 
-def test_a_rod_hardly_longer_than_the_crank_is_no_larger_a_problem() -> None:
-    """Its forces bend sharply within √(2(L/R − 1)) of 90°, and nowhere else: few more nodes if they stand there."""
-    for name, one in (("m.yaml", "1.001"), ("n.yaml", "1.0000001")):
-        Path(name).write_text(f"speed: 1 rpm\nstroke: 1 m\nrod_ratio: {one}\nmasses: {{reciprocating: 10 kg}}\n")
-    run("balance", "m.yaml")
-    assert peak("balance", "n.yaml") < 2 * peak("balance", "m.yaml")
+def test_a_rod_hardly_longer_than_the_crank_has_orders_that_fit() -> None:
+    """At L/R = 1.0000001 they are 131,000, of which a few copies are held; the machine itself is no larger."""
+    Path("n.yaml").write_text("speed: 1 rpm\nstroke: 1 m\nrod_ratio: 1.0000001\nmasses: {reciprocating: 10 kg}\n")
+    assert peak("balance", "n.yaml") < 150e6
 
 
 def test_check_grows_with_the_cylinders_not_with_their_square() -> None:

@@ -2,11 +2,11 @@
 
 Arguments of all functions: `sin`, `cos` of the crank angle; `kappa` = cos ψ of the rod there (`cos_rod_angle`);
 `lam` = R/L; `rho` = 1 − λ² (from R and L as (L − R)(L + R)/L², so that it keeps its digits near λ = 1). They may be
-floats, arrays of any shape, `Varied`, Decimals or mpmath numbers; only + − × ÷ and the square root are used. Results
-have the shape of `sin`.
+floats, arrays of any shape or mpmath numbers; only + − × ÷ and the square root are used. Results have the shape of
+`sin`.
 
-The textbook formulas subtract nearly equal terms beside the dead centres; here every sum that can be has terms of one
-sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also beside their zeros.
+The textbook formulas subtract nearly equal terms near the dead centres; here every sum that can be has terms of one
+sign. Measured against mpmath for λ from 1e-12 to 1 − 1e-12: x and c within 8 ulp, also near their zeros.
 """
 
 import math

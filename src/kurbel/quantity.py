@@ -29,8 +29,12 @@ GREEK = {
 }  # fmt: skip
 """Sign of a symbol -> what stands for it where the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
-_EXTREME_TEXTS = {"largest": "Largest", "smallest": "Smallest", "peak": "Largest magnitude of"}
-"""Part of the extremes of a column -> the first words of its sentence."""
+_ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    "max": ("Largest", lambda extremes: extremes.largest),
+    "min": ("Smallest", lambda extremes: extremes.smallest),
+    "peak": ("Largest magnitude of", lambda extremes: extremes.peak),
+}
+"""End of the id of an extreme of a column -> the first words of its sentence, and what takes it from both extremes."""
 
 
 class Quantity(NamedTuple):
@@ -38,11 +42,9 @@ class Quantity(NamedTuple):
 
     `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
     is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
-    what it is. `commands` print it, if the machine has it. Its value is the attribute of its id in the results of the
-    command, or what `asks` names: a method of the results, its argument, and which part of what it returns.
+    what it is. `commands` print it, if the machine has it.
     `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
     `<id>_min`; `called` names it in their sentences.
-    `unless`: an attribute of the results; where it is true, the quantity adds nothing and is printed only on request.
     `after`: the id after which it is printed, if not where it is declared. A `residual` would be zero without rounding:
     tables do not show rounding. A quantity that is `listed`, a list of values, cannot have a bound.
     `group`: quantities of one kind and one group are shown in one unit; '' for that of its column.
@@ -60,9 +62,7 @@ class Quantity(NamedTuple):
     commands: tuple[str, ...] = ()
     extremes: tuple[str, ...] = ()
     called: str = ""
-    unless: str = ""
     after: str = ""
-    asks: tuple[str, ...] = ()
     residual: bool = False
     listed: bool = False
     peak: bool = False
@@ -87,14 +87,13 @@ class Quantity(NamedTuple):
         """What its largest, smallest and mean value have in common: their column, or their id but for its end.
 
         >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
-        >>> force.extreme("smallest", "min", ("forces",)).family, Quantity("wear_mean", "f N c_m", "power", "").family
+        >>> force.extreme("min").family, Quantity("wear_mean", "f N c_m", "power", "").family
         ('F_pin', 'wear')
         """
         if self.group:
             return self.group
-        name = self.asks[1] if len(self.asks) > 1 else self.id
-        stem, _, end = name.rpartition("_")
-        return stem if end in ("max", "min", "peak", "mean") else name
+        stem, _, end = self.id.rpartition("_")
+        return stem if end in ("max", "min", "peak", "mean") else self.id
 
     def is_noise(self, value: float) -> bool:
         """Whether this value is a residual of rounding alone."""
@@ -114,22 +113,17 @@ class Quantity(NamedTuple):
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()
 
-    def extreme(self, word: str, end: str, commands: tuple[str, ...]) -> Quantity:
+    def extreme(self, end: str) -> Quantity:
         """Return the key value that is the largest (`max`), smallest (`min`), or largest magnitude of this column.
 
         >>> force = Quantity("F_pin", "F_z", "force", "Force on the pin", called="force")
-        >>> force.extreme("largest", "max", ("forces",))[:4]
+        >>> force.extreme("max")[:4]
         ('F_pin_max', 'F_z,max', 'force', 'Largest force')
         """
         comma = "," if "_" in self.symbol else "_"
-        return Quantity(
-            f"{self.id}_{end}",
-            f"{self.symbol}{comma}{end}",
-            self.kind,
-            f"{_EXTREME_TEXTS[word]} {self.called}",
-            self.plain and f"{self.plain}{comma}{end}",
-            commands,
-        )
+        plain = self.plain and f"{self.plain}{comma}{end}"
+        symbol, text = f"{self.symbol}{comma}{end}", f"{_ENDS[end][0]} {self.called}"
+        return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
 
 
 def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
@@ -343,7 +337,8 @@ def for_each(
 ) -> Callable[[Callable[[Any, str], V]], ForEach[V]]:
     """Return what makes a method of a part a key value, or a column, of each of these parts.
 
-    `*` in the id, the symbol and the sentence stands for the part. group: returns the group of the quantity of a part.
+    `*` in the id, the symbol, the sentence and `after` stands for the part. group: returns the group of the quantity of
+    a part.
     """
 
     def made(function: Callable[[Any, str], V]) -> ForEach[V]:
@@ -351,7 +346,7 @@ def for_each(
 
         def row(part: str, index: str, called: str) -> Row:
             texts = (id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called))
-            quantity = Quantity(*texts, commands=ITS_OWN, after=after, group=group(part))
+            quantity = Quantity(*texts, commands=ITS_OWN, after=after.replace("*", part), group=group(part))
             return Row(quantity, lambda one: function(one, part), unless)
 
         return ForEach(function, tuple(row(part, *words) for part, words in parts.items()))
@@ -379,23 +374,16 @@ def printed_by(rows: Iterable[Row], *commands: str) -> Iterator[Row]:
         yield row._replace(quantity=row.quantity._replace(commands=tuple(dict.fromkeys((*own, *commands)))))
 
 
-_ENDS: tuple[tuple[str, str, Callable[[Any], Any]], ...] = (
-    ("largest", "max", lambda extremes: extremes.largest),
-    ("smallest", "min", lambda extremes: extremes.smallest),
-    ("peak", "peak", lambda extremes: extremes.peak),
-)
-
-
 def searched(columns: Iterable[Quantity], command: str) -> Iterator[Row]:
     """Yield the key values that are extremes of columns in a command, whose results have `extremes_of(id)`."""
 
-    def row(one: Quantity, word: str, end: str, part: Callable[[Any], Any]) -> Row:
+    def row(one: Quantity, end: str) -> Row:
         def of(results: Any) -> Any:
             found = results.extremes_of(one.id)
-            return None if found is None else part(found)
+            return None if found is None else _ENDS[end][1](found)
 
-        return Row(one.extreme(word, end, ()), of)
+        return Row(one.extreme(end), of)
 
     for one in columns:
         if command in one.extremes:
-            yield from (row(one, *end) for end in _ENDS if end[0] != "peak" or one.peak)
+            yield from (row(one, end) for end in _ENDS if end != "peak" or one.peak)

@@ -7,6 +7,7 @@ import io
 import json
 import re
 import sys
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -14,8 +15,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel import loads
-from kurbel.accuracy.inexact import data_errors, model_errors
-from kurbel.accuracy.timing import Patience
+from kurbel.accuracy import trials
+from kurbel.accuracy.extremes import Probe
+from kurbel.accuracy.trials import data_errors, model_errors
 from kurbel.cli import kurbel
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
@@ -40,8 +42,14 @@ def run(*arguments: str, machine: str = MOTION) -> Result:
 def impatient() -> Iterator[None]:
     """Every method is timed once: how long it takes is nothing to these tests."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Patience, "of", lambda quick: Patience(1, 0.0))
+        patch.setattr(trials, "timed", once)
         yield
+
+
+def once(run: Callable[[], object], quick: bool) -> tuple[float, float]:
+    begin = time.perf_counter()
+    run()
+    return (time.perf_counter() - begin,) * 2
 
 
 @pytest.fixture(scope="module")
@@ -217,12 +225,9 @@ def test_plot_is_imported_only_for_a_picture() -> None:
 
 
 def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
-    from kurbel.accuracy.extremes import Probe, Refusal
-    from kurbel.report import accuracy
-
     cases = [
-        Probe("right", MOTION, "motion c@180", 0),
-        Probe("wrong", MOTION, "motion c@30", Refusal("never")),
+        Probe("right", MOTION, "motion c@180", "0", "8"),
+        Probe("wrong", MOTION, "motion c@30", "status 2: never"),
     ]
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases)
     result = run("--extremes")

@@ -279,6 +279,20 @@ def test_figures_beyond_all_numbers(tmp_path: Path) -> None:
 # what is read otherwise than it is meant, or said in part
 
 
+@pytest.mark.parametrize(
+    ("heading", "said"),
+    [
+        ("CA [deg],p [kPa]", "column 2 has another unit, kPa"),
+        ("CA [deg],p (bar)", ""),
+        ("angle,p [V]", ""),
+        ("a,b", ""),
+    ],
+)
+def test_the_unit_of_a_heading(tmp_path: Path, heading: str, said: str) -> None:
+    notes = trace_of(machine(tmp_path, f"{heading}\n{rows()}", ", skip_rows: 1")).notes
+    assert [said in note for note in notes] == ([True] if said else [])
+
+
 def said_of(folder: Path, content: str, keys: str = "", unit: str = "bar") -> str:
     """The fault of a file, or else all notes on the machine that was read."""
     try:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from kurbel.declared.quantity import by_id
 from kurbel.machine_file import loads
 from kurbel.quantities import every_quantity
+from kurbel.quantity import by_id
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.report.check import checked

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from decimal import Decimal
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.decimals import precise
-from kurbel.accuracy.oracle import CylinderOracle
+from kurbel.accuracy.methods import PRECISE
+from kurbel.accuracy.textbook import TextbookMachine
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
@@ -57,11 +56,17 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
-    cycle = 360.0 * machine.revolutions
-    with precise(40):
-        oracle = CylinderOracle(machine, machine.cylinders[0])
-        edges = sorted({*map(float, oracle.breaks), *np.arange(0.0, cycle + 1, 15.0).tolist()})
-        return gauss(lambda angle: oracle.torque(Decimal(angle), Decimal(angle)), edges, orders)
+    with mp.workdps(40):
+        book = TextbookMachine(machine, PRECISE)
+        edges = sorted(
+            {*np.degrees(np.asarray(book.edges, dtype=float)), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)}
+        )
+
+        def torque(degrees: float) -> Any:
+            angle = mp.radians(mpmath.mpf(degrees))
+            return book.torque(angle, angle)
+
+        return gauss(torque, edges, orders)
 
 
 @pytest.mark.parametrize(

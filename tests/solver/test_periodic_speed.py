@@ -142,7 +142,7 @@ def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
 def test_power_and_load_are_in_balance() -> None:
     """Over a cycle the load takes what the effort gives, whatever the speed does."""
     machine = steam(2000, Load(slip=0.05))
-    pieces, omega = machine.speed.samples_of("omega")
+    pieces, omega = machine.speed.omega
     load = machine.M_mean * (1 + (omega / machine.omega - 1) / 0.05)
     assert pieces.mean(load)[0] == pytest.approx(machine.M_mean, rel=1e-13)
 

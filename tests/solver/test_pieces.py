@@ -36,3 +36,13 @@ def test_machines_of_a_batch_are_halved_each_for_itself() -> None:
     for number, k in enumerate(steep):
         alone = refined(Pieces.between(NOWHERE, 1, 360.0), lambda some, k=k: sampled(some, np.array([k])))[0]
         assert (pieces.machine == number).sum() == len(alone.half)
+
+
+def test_the_side_of_a_jump_is_named_by_any_angle_beyond_it() -> None:
+    """Also where the piece ends before that angle, at the end of the cycle, and just after a jump if none is named."""
+    pieces = Pieces.between(NOWHERE, 1, 360.0)
+    steps = np.floor(pieces.middle / 90) + 0 * pieces.degrees
+    angles, within = np.array([90.0, 90.0, 100.0, 100.0, 360.0]), np.array([1.0, 170.0, 1.0, 350.0, 300.0])
+    machine = np.zeros(5, dtype=int)
+    assert pieces.at(steps, machine, angles, within) == pytest.approx([0, 1, 1, 1, 3])
+    assert pieces.at(steps, machine, angles) == pytest.approx([1, 1, 1, 1, 0])

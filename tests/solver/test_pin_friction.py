@@ -117,13 +117,13 @@ def test_energy_balance_closes(engine: str, rubs: str) -> None:
 
 @pytest.mark.parametrize("name", ["crank_pin", "crosshead_pin", "journals"])
 def test_energy_balance_sees_a_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = CylinderForces._pin_works.func
+    right = CylinderForces.friction_works.func  # type: ignore[attr-defined]
 
     def wrong(forces: CylinderForces) -> dict[str, Any]:
         works = right(forces)
         return {**works, name: works[name] * (1 + 1e-6)}
 
-    monkeypatch.setattr(CylinderForces, "_pin_works", property(wrong))
+    monkeypatch.setattr(CylinderForces, "friction_works", property(wrong))
     assert abs(solved(ENGINE + RUBS).energy_residual or 0.0) > 1e-10
 
 

@@ -70,14 +70,16 @@ def edges_of(forces: CylinderForces) -> np.ndarray:
 
 def error_of_friction(forces: CylinderForces) -> float:
     precise = precise_integral(friction_power(forces), edges_of(forces))
-    assert forces.crosshead_work is not None
-    return abs(forces.crosshead_work / precise - 1)
+    return abs(forces.friction_works["crosshead"] / precise - 1)
 
 
 def bearing_load(strength: CrankshaftStrength, bearing: str) -> Function:
     def load(degrees: np.ndarray) -> np.ndarray:
         state = strength.forces.at(degrees)
-        return np.hypot(*((state.D, state.T) if bearing == "pin" else getattr(strength._running(state), bearing)))
+        if bearing == "pin":
+            return np.hypot(state.D, state.T)
+        at, end = strength.at(degrees), bearing[-1]
+        return np.hypot(at[f"{end}_D"], at[f"{end}_T"])
 
     return load
 
@@ -90,7 +92,7 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
     if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
         breaks = with_least(friction_power(forces), breaks)
     errors = []
-    for bearing, diameter, length in (("pin", 0.18, 0.2), ("A", 0.19, 0.3), ("B", 0.19, 0.3)):
+    for bearing, diameter, length in (("pin", 0.18, 0.2), ("journal_A", 0.19, 0.3), ("journal_B", 0.19, 0.3)):
         found = strength.pressure_mean(bearing)
         assert found is not None
         precise = precise_integral(bearing_load(strength, bearing), breaks) / turn / diameter / length
@@ -140,7 +142,7 @@ def test_friction_between_samples_where_the_rod_swings_round_within_a_hair(step:
     nodes = edges[0] + (edges[1] - edges[0]) * (1 + GAUSS[0]) / 2
     values = friction_power(forces)(nodes.ravel()).reshape(nodes.shape)
     precise = float((np.radians(edges[1] - edges[0]) / 2 * values * GAUSS[1]).sum())
-    assert forces.crosshead_work == pytest.approx(precise, rel=2e-12)
+    assert forces.friction_works["crosshead"] == pytest.approx(precise, rel=2e-12)
 
 
 def test_friction_of_random_cylinders() -> None:

@@ -107,7 +107,7 @@ def test_guide_pressure_and_wear() -> None:
     at = forces.at(phi)
     np.testing.assert_allclose(at.p_guide, abs(at.N) / 0.08, rtol=1e-15)
     np.testing.assert_allclose(at.wear, 0.1 * abs(at.N * at.c), rtol=1e-12)
-    assert at.wear.mean() * 1.0 == pytest.approx(forces.crosshead_work, rel=1e-5)  # one turn a second
+    assert at.wear.mean() * 1.0 == pytest.approx(forces.friction_works["crosshead"], rel=1e-5)  # one turn a second
     assert at.p_guide.max() == pytest.approx(forces.p_guide_max.value, rel=1e-6)
     assert forces.wear_max.value == pytest.approx(at.wear.max(), rel=1e-7)
     assert forces.wear_max.degrees == pytest.approx(phi[at.wear.argmax()], abs=0.1)

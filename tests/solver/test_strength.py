@@ -235,7 +235,7 @@ class TestBearings:
         assert largest.value == pytest.approx(pressure, rel=1e-14)
         assert solved.pressure_mean("pin") == pytest.approx(pressure, rel=1e-14)
         assert solved.pressure_velocity("pin") == pytest.approx(pressure * math.pi * 0.18 * 200 / 60, rel=1e-14)
-        mean_A = solved.pressure_mean("A")
+        mean_A = solved.pressure_mean("journal_A")
         assert mean_A == pytest.approx(pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14)
 
     def test_mean_over_time_by_another_quadrature(self) -> None:
@@ -243,12 +243,14 @@ class TestBearings:
         phi = (np.arange(45_000) + 0.5) / 125
         at = solved.at(phi)
         assert solved.pressure_mean("pin") == pytest.approx(np.hypot(at.D, at.T).mean() / (0.18 * 0.2), rel=1e-7)
-        assert solved.pressure_mean("B") == pytest.approx(np.hypot(at.B_D, at.B_T).mean() / (0.19 * 0.3), rel=1e-7)
+        assert solved.pressure_mean("journal_B") == pytest.approx(
+            np.hypot(at.B_D, at.B_T).mean() / (0.19 * 0.3), rel=1e-7
+        )
 
     def test_what_is_not_given_is_not_told(self) -> None:
         solved = strength(shaft(journal_diameter=None))
         assert (solved.sigma_max("journal_A"), solved.mises_max("journal_B")) == (None, None)
-        assert solved.pressure_max("A") is None
+        assert solved.pressure_max("journal_A") is None
         assert solved.pressure_velocity("pin") is None
         assert solved.safety("pin") is None
         assert solved.at([0.0]).sigma_journal_A is None

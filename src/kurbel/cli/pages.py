@@ -23,7 +23,7 @@ from kurbel.cli.options import (
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.accuracy.inexact import Difference
+    from kurbel.accuracy.trials import Difference
     from kurbel.machine import Machine
 
 _PATIENCE = 1.0

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.declared.quantity import Quantity, ambiguity, called, joined
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
@@ -14,6 +13,7 @@ from kurbel.machine.batch import Lot, Structures, batch
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, ambiguity, called, joined
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import too_large
 from kurbel.solver.case import Case

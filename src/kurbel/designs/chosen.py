@@ -10,7 +10,6 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.declared.numerals import plain
-from kurbel.declared.quantity import called
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
@@ -18,6 +17,7 @@ from kurbel.designs.sweep import KEPT, Head, Row
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
+from kurbel.quantity import called
 
 _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "<=": operator.le,

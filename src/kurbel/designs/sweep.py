@@ -19,6 +19,7 @@ from kurbel.machine.batch import Lot
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
+from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
 
 CHUNK = 1000
@@ -207,8 +208,6 @@ class Sweep:
 
     def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        from kurbel.report.limits import breaks, without
-
         there = [(one, value) for one, value in zip(self._limits, found) if value is not None]
         broken = next((one.name for one, value in there if breaks(one.answer.quantity, one.bound, value)), "")
         known = {one.name for one, _ in there}
@@ -271,8 +270,6 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
 
 def _limit_answers(machine: Machine) -> Iterable[_Limit]:
     """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
-    from kurbel.report.limits import holders, without
-
     case = Case(machine)
     for name, bound in machine.limits:
         try:

@@ -30,7 +30,7 @@ from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
 if TYPE_CHECKING:
-    from kurbel.accuracy.inexact import Difference
+    from kurbel.accuracy.trials import Difference
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
@@ -236,7 +236,7 @@ def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
 
     Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
     """
-    from kurbel.accuracy.inexact import Difference
+    from kurbel.accuracy.trials import Difference
 
     uncertainty = given_uncertainty(machine)
     if uncertainty is None:

@@ -1,6 +1,8 @@
 """The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from os.path import basename
 from typing import Any
@@ -12,8 +14,8 @@ from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, P
 from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.declared.units import Factor, Point
-from kurbel.errors import Fault, RuleError, refuse, refused
+from kurbel.declared.units import Factor, Point, unit_factor
+from kurbel.errors import Fault, RuleError, UnitError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
@@ -171,6 +173,11 @@ class Measured(Record):
             laid_out = layout_of("pressure", layout)
             samples = samples_of_file(file, laid_out, "pressure", pressures, against)
         files, notes = (file,) if file else (), samples.notes
+        if samples.headed and scale == 1:
+            with suppress(UnitError):  # what is in brackets need not be a unit
+                times, over = unit_factor(samples.headed, "pressure")
+                if not math.isclose(times / over, up / down):
+                    notes = (*notes, f"the heading of column {laid_out.columns[0]} has another unit, {samples.headed}")
         if isinstance(angle_zero, Motored):
             files, given = (*files, angle_zero.motored), angle_zero
             angle_zero, note = dead_centre(given, laid_out, pressures, against)

@@ -28,7 +28,7 @@ class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 
     crank: R in m. The force on the pin is the force on the piston; there is no rod and no side force of one. But the
-    pin stands R sin φ beside the stroke line, and the yoke tilts unless two guides hold it.
+    pin is R sin φ away from the stroke line, and the yoke tilts unless two guides hold it.
     guide_length: their distance in m along the stroke; pin_diameter, pin_length in m; None where they are not known.
     Raises RuleError for lengths that are not positive.
     """

@@ -1,4 +1,7 @@
-"""The few operations besides + − × ÷ that formulas need, for floats, arrays, `Varied` and high-precision numbers."""
+"""The few operations besides + − × ÷ that formulas need, for floats, arrays and high-precision numbers.
+
+numpy is imported where an array comes, so that the help of the command line loads without it.
+"""
 
 import math
 from typing import Any
@@ -10,7 +13,7 @@ def is_number(value: Any) -> bool:
 
 
 def sqrt(value: Any) -> Any:
-    """Return the square root of a float, an array, or any number with its own `sqrt` (Decimal, mpf, Varied)."""
+    """Return the square root of a float, an array, or any number with its own `sqrt` (as those of mpmath)."""
     if isinstance(value, (float, int)):
         return math.sqrt(value)
     if hasattr(value, "sqrt"):
@@ -44,7 +47,7 @@ def bearing(sin: Any, cos: Any) -> Any:
 
 def sin(value: Any) -> Any:
     """Return the sine of a float or an array in radians."""
-    return _of(value, "sin")
+    return _of(value, "sin", "sin")
 
 
 def arcsin(value: Any) -> Any:
@@ -57,14 +60,12 @@ def ulp(value: Any) -> Any:
     return _of(value, "ulp", "spacing")
 
 
-def _of(value: Any, name: str, in_numpy: str = "") -> Any:
+def _of(value: Any, of_float: str, of_array: str) -> Any:
     if isinstance(value, (float, int)):
-        return getattr(math, name)(value)
-    if hasattr(value, name):
-        return getattr(value, name)()
+        return getattr(math, of_float)(value)
     import numpy as np
 
-    return getattr(np, in_numpy or name)(value)
+    return getattr(np, of_array)(value)
 
 
 def every(condition: Any) -> bool:
@@ -85,9 +86,6 @@ def total(*terms: Any) -> Any:
     """
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
-    own = next((term for term in terms if hasattr(term, "total")), None)
-    if own is not None:
-        return own.total(terms)
     whole, missed = terms[0], 0.0
     for term in terms[1:]:
         before, whole = whole, whole + term

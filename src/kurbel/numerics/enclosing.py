@@ -1,16 +1,15 @@
-"""The smallest circle round points in the plane, which are complex numbers, and round closed curves."""
+"""Closed curves in the plane as sums of waves: their farthest points, and the smallest circles round them."""
 
 from __future__ import annotations
 
-from functools import lru_cache
+import math
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
-from kurbel.numerics.lobatto import chebyshev, slope_of_series
-from kurbel.numerics.pieces import Pieces
 
 _AS_ONE = 1e-9
 """Share of a point in a circle that is 0 but for rounding."""
@@ -18,8 +17,22 @@ _NEAR = 1e-4
 """Of the squared radius: as near to the smallest circle leads the search among samples."""
 _FLAT = 1e-9
 """Of the terms: a curve whose distance from a centre bends less is itself a circle about it."""
-_SETTLED = 1e-7
+_CLOSE = 1e-7
 """Last step in radians, and of the radius: the next would be its square."""
+_SETTLED = 1e-13
+"""Of the radius: by what a curve may reach beyond the smallest circle round it."""
+_ROUNDING = 1e-14
+"""Of the size of a curve: a length that differs by less, and a centre that is nearer to 0, does so by rounding."""
+_EQUAL = 1e-12
+"""Of the largest length: summits that differ by less are equal; the first counts."""
+_HIGH = 0.9
+"""Of the largest sample: no summit between samples belongs to a lower one."""
+_LARGE = 1e-3
+"""Of the largest wave: the shortest of these waves decides how close the samples are."""
+_PER_WAVE = 16
+"""Samples to a period of that wave."""
+_STEPS = 5
+"""Newton's steps from a sample to the summit next to it."""
 _ROUNDS = 60
 
 
@@ -72,55 +85,105 @@ def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
 
 
 class ClosedCurve:
-    """A curve in the plane, complex, sampled on the pieces of a turn, (nodes, pieces), one of every machine (n,)."""
+    """Curves c(φ) = Σ c_n e^{inφ}, n from −k to k, one of every machine.
 
-    def __init__(self, pieces: Pieces, points: ComplexArray) -> None:
-        self.pieces, self.points = pieces, points
-        self._each = np.arange(pieces.count)
+    waves: the amplitudes c_n, complex, (2k + 1, machines); numbers: n, (2k + 1,).
+    """
 
-    def at(self, degrees: Array) -> tuple[ComplexArray, ...]:
-        """Return the points at angles (k, n) in degrees, with their first and second derivatives per radian."""
-        row = self.pieces.holding(np.broadcast_to(self._each, degrees.shape), degrees)
-        half, series = (
-            self.pieces.half[row],
-            self.pieces.rule.series @ self.points[:, row].reshape(len(self.points), -1),
-        )
-        places = (np.mod(degrees, self.pieces.cycle) - self.pieces.low[row]) / half - 1
-        waves = np.moveaxis(chebyshev(np.clip(places, -1, 1), len(series)), -1, 0)
-        found = []
-        for order in range(3):
-            values = (series.reshape(-1, *degrees.shape) * waves[: len(series)]).sum(axis=0)
-            found.append(values / np.radians(half) ** order)
-            series = slope_of_series(len(series)) @ series
-        return tuple(found)
+    def __init__(self, waves: ComplexArray) -> None:
+        self.waves, self.numbers = waves, np.arange(len(waves)) - len(waves) // 2
 
-    def nearly_enclosed(self) -> Array:
+    def of(self, number: int) -> Any:
+        """Return the amplitudes of a wave (machines,), 0 of one that there is not."""
+        index = number + len(self.waves) // 2
+        return self.waves[index] if 0 <= index < len(self.waves) else np.zeros(self.waves.shape[1])
+
+    def plus(self, number: int, amplitude: Any) -> ClosedCurve:
+        """Return the sum of this curve and one more wave of a number that it has."""
+        waves = self.waves.copy()
+        waves[number + len(waves) // 2] += amplitude
+        return ClosedCurve(waves)
+
+    def turned_back(self) -> ClosedCurve:
+        """Return c e^{−iφ}, the curve as it is seen from a frame that turns with φ."""
+        return ClosedCurve(np.concatenate((self.waves, np.zeros_like(self.waves[:2]))))
+
+    def at(self, degrees: Array, machine: Indices | int = 0) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Return the points at angles (…) in degrees, and their first and second derivatives by φ in radians."""
+        numbers = self.numbers.reshape(-1, *(1 for _ in degrees.shape))
+        waves = self.waves[:, np.broadcast_to(machine, degrees.shape)] * np.exp(1j * np.radians(numbers * degrees))
+        weights = np.stack((np.ones(len(waves)), 1j * self.numbers, -(self.numbers**2)))
+        point, slope, bend = np.tensordot(weights, waves, 1)
+        return point, slope, bend
+
+    @cached_property
+    def samples(self) -> ComplexArray:
+        """The points at equal angles from 0 on, (count, machines); four to a period of the shortest wave at least."""
+        sizes = np.abs(self.waves)
+        large = np.flatnonzero((sizes > _LARGE * sizes.max(axis=0, initial=0.0)).any(axis=1))
+        shortest = int(np.abs(self.numbers[large]).max(initial=1))
+        count = 1 << math.ceil(math.log2(max(_PER_WAVE * shortest, 2 * len(self.waves))))
+        spectrum = np.zeros((count, self.waves.shape[1]), complex)
+        spectrum[self.numbers] = self.waves
+        return np.asarray(np.fft.ifft(spectrum, axis=0) * count)
+
+    def farthest(self) -> tuple[Array, Array]:
+        """Return the largest distances from 0, and the first angles in degrees that have them, each (machines,)."""
+        step, sizes = 360.0 / len(self.samples), np.abs(self.samples)
+        best = sizes.max(axis=0)
+        top = (sizes >= np.roll(sizes, 1, axis=0)) & (sizes >= np.roll(sizes, -1, axis=0)) & (sizes >= _HIGH * best)
+        level = ~(best - sizes.min(axis=0) > _ROUNDING * best)  # of a circle every angle is as far
+        top[:, level] = np.arange(len(sizes))[:, None] == 0
+        machine, place = np.nonzero(top.T)
+        sample = place.astype(float) * step
+        degrees = sample
+        for _ in range(_STEPS):
+            point, slope, bend = self.at(degrees, machine)
+            speed, turn = np.abs(slope) ** 2, (point.conj() * bend).real
+            summit = speed + turn < -_SETTLED * (speed + np.abs(turn))
+            moved = (point.conj() * slope).real / np.where(summit, -speed - turn, np.inf)
+            degrees = np.clip(degrees + np.degrees(moved), sample - step, sample + step)
+        degrees = np.mod(np.where(np.abs(degrees - sample) < 1e-9, sample, degrees), 360.0)
+        lengths, first = np.abs(self.at(degrees, machine)[0]), np.searchsorted(machine, np.arange(len(best)))
+        largest = np.maximum.reduceat(lengths, first)
+        reached = ~(lengths < (1 - _EQUAL) * largest[machine])
+        return largest, np.minimum.reduceat(np.where(reached, degrees, np.inf), first)
+
+    def least_circle(self) -> tuple[ComplexArray, Array, Array]:
+        """Return centre and radius of the smallest circle round it, and the first angle in degrees that touches it.
+
+        Each (machines,). A curve without even waves is its own image about 0, its centre.
+        """
+        even = ~(self.waves[self.numbers % 2 == 0] != 0).any(axis=0)
+        size = np.abs(self.samples).max(axis=0)
+        degrees = np.zeros((4, len(size))) if even.all() else self._nearly_enclosed()
+        for _ in range(_ROUNDS):
+            circle, degrees = self._enclosed(degrees)
+            centre = np.where(even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre)
+            radius, at = self.plus(0, -centre).farthest()
+            beyond = ~even & (radius > np.sqrt(circle.square) * (1 + _SETTLED) + _ROUNDING * size)
+            if not beyond.any():
+                break
+            degrees[circle.shares.argmin(axis=0), np.arange(len(size))] = at
+        return centre, radius, at
+
+    def _nearly_enclosed(self) -> Array:
         """Return the angles (4, n) in degrees of samples, of which two or three nearly carry the circle round all.
 
         A circle round four samples grows as the farthest sample takes the place of one that does not carry it.
         """
-        ways = (self.points.real, self.points.imag, -self.points.real, -self.points.imag)
-        points, degrees = (np.array(one) for one in zip(*map(self._farthest, ways)))
+        samples, each = self.samples, np.arange(self.samples.shape[1])
+        rows = np.array([measure.argmax(axis=0) for side in (samples, -samples) for measure in (side.real, side.imag)])
         for _ in range(_ROUNDS):
-            circle = smallest_circle(points)
-            arm = self.points - circle.centre[self.pieces.machine]
-            far, far_at = self._farthest(arm.real**2 + arm.imag**2)
-            if not (np.abs(far - circle.centre) ** 2 > circle.square * (1 + _NEAR)).any():
+            circle = smallest_circle(samples[rows, each])
+            distance = np.abs(samples - circle.centre) ** 2
+            far = distance.argmax(axis=0)
+            if not (distance[far, each] > circle.square * (1 + _NEAR)).any():
                 break
-            slot = circle.shares.argmin(axis=0)
-            points[slot, self._each], degrees[slot, self._each] = far, far_at
-        return degrees
+            rows[circle.shares.argmin(axis=0), each] = far
+        return rows * (360.0 / len(samples))
 
-    def _farthest(self, measure: Array) -> tuple[ComplexArray, Array]:
-        """Return the samples (n,) at which a measure (nodes, pieces) is largest, and their angles in degrees."""
-        pieces, tops = self.pieces, measure.max(axis=0)
-        best = np.maximum.reduceat(tops, pieces.first)
-        reached = np.flatnonzero(~(tops < best[pieces.machine]))  # of nan, too, there is one
-        column = reached[np.searchsorted(pieces.machine[reached], self._each)]
-        node = measure[:, column].argmax(axis=0)
-        return self.points[node, column], pieces.degrees[node, column]
-
-    def enclosed(self, degrees: Array) -> tuple[Enclosing, Array]:
+    def _enclosed(self, degrees: Array) -> tuple[Enclosing, Array]:
         """Return the smallest circle round the curve near four of its points, and where it is farthest from the centre.
 
         degrees: of the points, (4, n). As the centre z moves, each stays where the distance of the curve c is largest:
@@ -131,10 +194,11 @@ class ClosedCurve:
         and min max h is found by Newton's method: with the mean h″ of the carrying points, H = LLᵀ, each step is the
         smallest circle round L⁻¹h′ with 2h − |L⁻¹h′|² more. It goes as fast where two points carry the circle.
         """
-        circle = smallest_circle(self.at(degrees)[0])
+        machine = np.arange(degrees.shape[1])
+        circle = smallest_circle(self.at(degrees, machine)[0])
         centre, shares, radius = circle.centre, circle.shares, np.sqrt(circle.square.max()) or 1.0
         for _ in range(_ROUNDS):
-            point, slope, bend = self.at(degrees)
+            point, slope, bend = self.at(degrees, machine)
             arm = point - centre
             touching, speed, turn = (arm.conj() * slope).real, np.abs(slope) ** 2, (arm.conj() * bend).real
             summit = speed + turn < -_FLAT * (speed + np.abs(turn))
@@ -152,6 +216,6 @@ class ClosedCurve:
             centre, shares = centre + moved, circle.shares
             step = np.clip(step + (slope.conj() * moved).real * yielding, -0.2, 0.2)
             degrees = np.mod(degrees + np.degrees(step), 360.0)
-            if max(np.abs(step).max(), np.abs(moved).max() / radius) < _SETTLED:
+            if max(np.abs(step).max(), np.abs(moved).max() / radius) < _CLOSE:
                 break
         return Enclosing(centre, circle.square, shares), degrees

@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import NamedTuple
 from unicodedata import combining, east_asian_width, normalize
 
-from kurbel.declared.quantity import GREEK
+from kurbel.quantity import GREEK
 
 FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")

@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from kurbel.declared.quantity import NOISE_POWER
+from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
 from kurbel.render.numbers import Scale, alone, angle, angle_scale, cell, decimal, scale_of, single, whole_if_integral
 from kurbel.render.text import width

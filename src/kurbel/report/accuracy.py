@@ -1,126 +1,157 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
 import platform
-from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.extremes import all_cases
-from kurbel.accuracy.inexact import Difference, data_errors, model_errors
-from kurbel.accuracy.leaving_out import Saving, savings
-from kurbel.accuracy.scenes import Loads, Scene, built_in
-from kurbel.accuracy.timing import Patience
-from kurbel.accuracy.trials import Lacking, Row, dominating, examined
+from kurbel.accuracy import trials
+from kurbel.accuracy.extremes import all_cases, verdicts
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame, provenance
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report, Value
 from kurbel.solver.case import Case
 
+Loads = Callable[[str], Machine]
+"""Reads the text of a machine file: only the command line knows how."""
 NUMERICAL = "numerical_error"
 """Id of the table that the picture is drawn from."""
 
 
-class Measured(NamedTuple):
-    """All that was found out about one scene."""
+class Scene(NamedTuple):
+    """A built-in machine.
 
-    name: str
-    rows: tuple[Row, ...]
-    lacking: tuple[Lacking, ...]
-    model: tuple[Difference, ...]
-    data: tuple[Difference, ...]
-    savings: tuple[Saving, ...]
-
-
-def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, uncertain: Sequence[Difference] = ()) -> Report:
-    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
-
-    uncertain: what the uncertainties of the machine's data make of its quantities.
+    turns: from these on its motion is compared, -1 if an earlier scene has done so; quick: it is also in the quick run.
     """
-    scenes = built_in(quick, loads) if machine is None else [Scene(machine)]
-    with np.errstate(all="ignore"):
-        found = [_measured(scene, quick, uncertain) for scene in scenes]
-    name = "built-in scenes" if machine is None else machine.name
-    parts = tuple(
-        Part(one.name, (), left_out=tuple(LeftOut(*lack) for lack in one.lacking), place_tables=tuple(_tables(one)))
-        for one in found
-    )
-    named = None if machine is None else machine.name
-    head = (environment(), "Times are of this machine and this run; compare them only with one another.")
-    title = f"{name}. Genauigkeit und Rechenzeit"
-    report = Report(title, "accuracy", named, "scenes", parts, notes=(*_NOTES, *_edge(found)), head=head)
-    return report if machine is None else report._replace(provenance=provenance(machine))
+
+    text: str
+    turns: int = 0
+    quick: bool = False
 
 
-def _measured(scene: Scene, quick: bool, uncertain: Sequence[Difference]) -> Measured:
-    rows, lacking = examined(scene, quick)
-    machine = scene.machine
-    worth = bool(machine.cylinders) and any(one.masses or one.pistons for one in machine.cylinders)
-    return Measured(
-        machine.name,
-        tuple(rows),
-        tuple(lacking),
-        tuple(model_errors(machine)),
-        (*data_errors(machine), *uncertain),
-        tuple(savings(machine, everything, Patience.of(quick))) if worth else (),
-    )
-
-
-def everything(case: Case) -> None:
-    """Ask a case for all that `kurbel forces` prints: every column at 37 angles, and every key value."""
-    from kurbel.report.crank import forces_subjects
-
-    for subject in forces_subjects(case):
-        assert subject.at
-        state = subject.at(np.arange(0.0, 361.0, 10.0))
-        for id in subject.lists.columns("forces"):
-            _ = state[id]
-        for _ in subject.key_values("forces"):
-            pass
-
-
+_STEAM = (
+    "{unit: at, expansion: [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]], "
+    "compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]}"
+)
+_CYLINDER = f"bore: 450 mm, indicator: {{head_end: {_STEAM}, crank_end: mirrored}}"
+_TRAIN, _MASSES = "speed: 50 rpm, crank: 400 mm", "masses: {piston: 200 kg}"
+_GAS_ENGINE = """
+name: Gas engine, offset
+speed: 160 rpm
+cycle: four-stroke
+stroke: 600 mm
+rod: 1400 mm
+offset: 20 mm
+bore: 400 mm
+indicator:
+  pressures: absolute
+  head_end:
+    unit: bar
+    interpolate: polytropic
+    clearance: 0.2
+    intake: [[0, 0.95], [1, 0.95]]
+    compression: [[1, 0.95], [0, 9.8]]
+    expansion: [[0, 26], [0.03, 25], [1, 2.6]]
+    exhaust: [[1, 1.1], [0, 1.1]]
+masses: {piston: 240 kg, connecting_rod: 180 kg}
+inclination: 90 deg
+friction: {crosshead: 0.05, rings: {count: 5, height: 12 mm, pressure: 0.4 bar, coefficient: 0.1}}
+flywheel: {inertia: 4000 kg m2}
+load: {slip: 0.02}
+"""
+_SCENES = (
+    Scene(
+        f"{{name: Steam engine, {_TRAIN}, rod: 2000 mm, {_CYLINDER}, {_MASSES}, inclination: 0 deg, "
+        "friction: {crosshead: 0.06}, flywheel: {inertia: 900 kg m2}, load: {power_law: 2}}",
+        quick=True,
+    ),
+    Scene(_GAS_ENGINE),
+    Scene(
+        f'{{name: "Short rod, L/R = 1.01", {_TRAIN}, rod: 404 mm, {_CYLINDER}, {_MASSES}, '
+        "friction: {crosshead: 0.06}}"
+    ),
+    Scene(f'{{name: "Long rod, L/R = 1e6", {_TRAIN}, rod: 400 km}}', quick=True),
+    Scene(f"{{name: Millionth turn, {_TRAIN}, rod: 2000 mm}}", turns=10**6),
+    Scene(
+        f'{{name: "Stiff: on the grid, slip 1e-6", {_TRAIN}, rod: 2000 mm, {_CYLINDER}, {_MASSES}, '
+        "flywheel: {inertia: 20 kg m2}, load: {slip: 1e-6}}",
+        turns=-1,
+        quick=True,
+    ),
+    Scene(
+        f'{{name: "Slow: heavy flywheel and a fan", {_TRAIN}, rod: 2000 mm, {_CYLINDER}, '
+        "flywheel: {inertia: 6e7 kg m2}, load: {power_law: 2}}",
+        turns=-1,
+    ),
+)
 _NOTES = (
     "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
     "zero, relative to the largest value. Of model and data it is the largest difference over the cycle, relative to "
     "the largest value. ulp: the same in units of the last place, below 1e-12.",
-    "Ratio: median time over that of kurbel's own method. Evaluations: crank angles at which the motion was computed.",
-    "Points: divisions of a turn, or a tolerance. A march counts as periodic when all further cycles would "
-    "change the speed by less than 1e-9 of its swing, or its tolerance; it is given up after 12 (quick: 4) cycles.",
+    "Ratio: median time over that of kurbel's own method. Evaluations: crank angles at which the motion was computed. "
+    "Stages: functions of the solver that run.",
+    "Points: divisions of a turn, points on each piece between corners or steps of the search there, or a tolerance.",
 )
 
 
-def _edge(found: Sequence[Measured]) -> Iterator[str]:
-    """Yield what is both more exact and faster than kurbel's own method, or that nothing is."""
-    beaten = [
-        f"{one.name}, {row.quantity}: {row.method} ({row.points}) is both more exact and faster than kurbel's own"
-        for one in found
-        for quantity in dict.fromkeys(row.quantity for row in one.rows)
-        for row in dominating([row for row in one.rows if row.quantity == quantity])
-    ]
-    yield from beaten
-    if not beaten and any(one.rows for one in found):
-        yield "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
+def accuracy_report(
+    machine: Machine | None, quick: bool, loads: Loads, uncertain: Sequence[trials.Difference] = ()
+) -> Report:
+    """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
+
+    uncertain: what the uncertainties of the machine's data make of its quantities.
+    """
+    scenes = [(machine, 0)] if machine else [(loads(one.text), one.turns) for one in _SCENES if one.quick or not quick]
+    parts: list[Part] = []
+    beaten: list[str] = []
+    with np.errstate(all="ignore"):
+        for one, turns in scenes:
+            degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
+            rows, lacking = trials.examined(one, degrees, quick)
+            parts.append(_part(one, rows, lacking, uncertain, quick))
+            beaten += [
+                f"{one.name}, {row.quantity}: {row.method} ({row.points}) is more exact and faster than kurbel's own"
+                for row in trials.better(rows)
+            ]
+    none = "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
+    edge = beaten or [none for part in parts[:1] if any(table.id == NUMERICAL for table in part.place_tables)]
+    name = machine.name if machine else "built-in scenes"
+    head = (environment(), "Times are of this machine and this run; compare them only with one another.")
+    title, named = f"{name}. Genauigkeit und Rechenzeit", machine.name if machine else None
+    report = Report(title, "accuracy", named, "scenes", tuple(parts), notes=(*_NOTES, *edge), head=head)
+    return report._replace(provenance=provenance(machine)) if machine else report
 
 
-_TABLES = (
-    (
-        *(NUMERICAL, "numerical error", "rows", ("quantity", "method", "points", "state")),
-        ("evaluations", "error", "ulp", "median", "least", "ratio"),
-    ),
-    ("model_error", "error of the model", "model", ("quantity", "cause"), ("error",)),
-    ("data_error", "error of the data", "data", ("quantity", "cause"), ("error",)),
-    ("leaving_out", "what leaving out saves", "savings", ("machine",), ("stages", "median", "least", "ratio")),
-)
-"""Id and title of a table, what of a scene it tells, and the fields of that which are its names and its columns."""
+def _part(
+    machine: Machine,
+    rows: Sequence[trials.Row],
+    lacking: Sequence[trials.Lacking],
+    uncertain: Sequence[trials.Difference],
+    quick: bool,
+) -> Part:
+    """Return the tables of one scene."""
+    model, data = tuple(trials.model_errors(machine)), (*trials.data_errors(machine), *uncertain)
+    heavy = any(one.masses or one.pistons for one in machine.cylinders)
+    saved = tuple(trials.savings(machine, _everything, quick)) if heavy else ()
+    tables = (
+        _table(NUMERICAL, f"{machine.name}: numerical error", rows, 4),
+        _table("model_error", f"{machine.name}: error of the model", model, 2),
+        _table("data_error", f"{machine.name}: error of the data", data, 2),
+        _table("leaving_out", f"{machine.name}: what leaving out saves", saved, 1),
+    )
+    left_out = tuple(LeftOut(*one) for one in lacking)
+    return Part(machine.name, (), left_out=left_out, place_tables=tuple(table for table in tables if table.names))
 
 
-def _tables(one: Measured) -> Iterator[PlaceTable]:
-    for id, title, told, heads, columns in _TABLES:
-        if found := getattr(one, told):
-            names = tuple(tuple(getattr(each, head) for head in heads) for each in found)
-            shown = tuple(_column(name, [getattr(each, name) for each in found]) for name in columns)
-            yield PlaceTable(id, f"{one.name}: {title}", heads, names, shown, True)
+def _table(id: str, title: str, found: Sequence[NamedTuple], heads: int) -> PlaceTable:
+    """Return a table of records, whose first fields are the names of a row and whose others are its columns."""
+    fields = found[0]._fields if found else ()
+    columns = (_column(name, [one[place] for one in found]) for place, name in enumerate(fields) if place >= heads)
+    names = tuple(tuple(map(str, one[:heads])) for one in found)
+    return PlaceTable(id, title, fields[:heads], names, tuple(columns), True)
 
 
 def _column(id: str, values: Sequence[Value]) -> Column:
@@ -129,18 +160,21 @@ def _column(id: str, values: Sequence[Value]) -> Column:
     return Column(id, id, id, "", tuple(values), alone=2)
 
 
+def _everything(machine: Machine) -> None:
+    """Compute all that `kurbel forces` prints: every column at 37 angles, and every key value."""
+    report_of(Case(machine), Frame("forces", tuple(np.arange(0.0, 361.0, 10.0)), None, "si"))
+
+
 def environment() -> str:
     """Return versions and processor, which the times belong to."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    def named(package: str) -> str:
+    versions = []
+    for package in ("kurbel", "numpy", "mpmath"):
         try:
-            return f"{package} {version(package)}"
+            versions.append(f"{package} {version(package)}")
         except PackageNotFoundError:
-            return f"{package} not installed"
-
-    packages = [named("kurbel"), f"Python {platform.python_version()}", named("numpy"), named("scipy")]
-    return f"{', '.join(packages)}; {platform.system()} {platform.machine()}, {_processor()}"
+            versions.append(f"{package} not installed")
+    versions.insert(1, f"Python {platform.python_version()}")
+    return f"{', '.join(versions)}; {platform.system()} {platform.machine()}, {_processor()}"
 
 
 def _processor() -> str:
@@ -157,25 +191,21 @@ def _processor() -> str:
 
 def extremes_report(loads: Loads) -> tuple[Report, bool]:
     """Return the verdicts on all cases, and whether every one is passed."""
-    from kurbel.accuracy.extremes.judge import verdicts as judge
-
-    def ask(text: str, asked: str) -> float | None:
-        return answer(loads(text), asked)
-
-    verdicts = list(judge(all_cases(), ask, loads))
-    passed = sum(verdict.passed for verdict in verdicts)
+    found = list(verdicts(all_cases(), lambda text, asked: answer(loads(text), asked), loads))
+    passed = sum(verdict.passed for verdict in found)
     names = tuple(
-        (v.case.name, v.case.asked, v.expected, v.observed, "passed" if v.passed else "FAILED") for v in verdicts
+        (one.case.case, one.case.asked, one.expected, one.observed, "passed" if one.passed else "FAILED")
+        for one in found
     )
     columns = (
-        _column("ulp", [verdict.ulp for verdict in verdicts]),
-        _column("allowed", [None if v.ulp is None else v.case.ulp for v in verdicts]),
+        _column("ulp", [one.ulp for one in found]),
+        _column("allowed", [None if one.ulp is None else float(one.case.ulp) for one in found]),
     )
     heads = ("case", "asked", "expected", "observed", "verdict")
-    table = PlaceTable("extremes", f"{passed} of {len(verdicts)} cases passed", heads, names, columns, True)
+    table = PlaceTable("extremes", f"{passed} of {len(found)} cases passed", heads, names, columns, True)
     part = Part("stiff and extreme cases", (), place_tables=(table,))
     title = "Stiff and extreme cases. Grenzfälle"
-    return Report(title, "accuracy", None, "scenes", (part,), head=(environment(),)), passed == len(verdicts)
+    return Report(title, "accuracy", None, "scenes", (part,), head=(environment(),)), passed == len(found)
 
 
 def answer(machine: Machine, asked: str) -> float | None:
@@ -187,8 +217,9 @@ def answer(machine: Machine, asked: str) -> float | None:
     name, _, at = quantity.partition("@")
     report = report_of(Case(machine), Frame(command, (float(at or 0),), None, "si"))
     parts = [part for part in (report.whole, *report.parts) if part]
-    found: Iterator[Any] = (one.value for part in parts for one in part.key_values if one.id == name)
     if at:
-        found = (column.values[0] for part in parts for column in part.columns if column.id == name)
-    value = next(found, None)
+        values = (column.values[0] for part in parts for column in part.columns if column.id == name)
+    else:
+        values = (one.value for part in parts for one in part.key_values if one.id == name)  # type: ignore[misc]
+    value = next(iter(values), None)
     return None if value is None else float(value)

@@ -87,7 +87,7 @@ def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
 def _cylinder(part: Part) -> Hashable:
     """Return what equal cylinders have in common, their tables over their own crank angle, too."""
     tables = [(one.title, one.names, *map(_curve, one.columns)) for one in part.place_tables]
-    return *map(_curve, part.columns), _figures(part.key_values), tuple(part.left_out), *tables, part.nowhere
+    return *map(_curve, part.columns), _figures(part.key_values), tuple(part.left_out), *tables
 
 
 def _curve(column: Column) -> Hashable:

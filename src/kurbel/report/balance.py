@@ -6,16 +6,54 @@ from dataclasses import replace
 
 import numpy as np
 
-from kurbel.declared.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.declared.unit_systems import show
+from kurbel.numerics.enclosing import ClosedCurve
+from kurbel.quantity import Quantity, by_id
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
 from kurbel.report.left_out import balance_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import pin_warnings
-from kurbel.solver.balance import BookBalance, MachineBalance
+from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
-from kurbel.solver.unbalanced import Circles, power
 from kurbel.solver.weights import Weight
+
+ORDERS = by_id(
+    Quantity("order", "n", "ratio", "Turns of the circles in one turn of the crank"),
+    Quantity("F_forward", "F_+", "force", "Free force: circle that turns with the crank"),
+    Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it"),
+    Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
+    Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
+    Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the free force", "F_n2/F2"),
+    Quantity("M_forward", "M_+", "torque", "Free moment: circle that turns with the crank"),
+    Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it"),
+    Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
+    Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
+    Quantity("M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the free moment", "M_n2/M2"),
+)
+"""Columns of the table of orders; amplitudes."""
+
+
+def _ellipse(name: str, kind: str, of: str) -> tuple[Quantity, ...]:
+    return (
+        Quantity(f"{name}_long", f"{name}_a", kind, f"{of}: longer half-axis of the ellipse of this order"),
+        Quantity(f"{name}_short", f"{name}_b", kind, f"{of}: shorter half-axis"),
+        Quantity(f"{name}_direction", f"∠{name}_a", "angle", "Direction of the longer axis", f"arg {name}_a"),
+        Quantity(f"{name}_forward_phase", f"∠{name}_+", "angle", "Forward circle at φ = 0", f"arg {name}_+"),
+        Quantity(f"{name}_backward_phase", f"∠{name}_−", "angle", "Backward circle at φ = 0", f"arg {name}_-"),
+    )
+
+
+ELLIPSES = by_id(ORDERS["order"], *_ellipse("F", "force", "Free force"), *_ellipse("M", "torque", "Free moment"))
+"""Columns of the table of ellipses: what the two circles of an order make together."""
+
+WEIGHTS = by_id(
+    Quantity("axial_position", "z", "length", "Place along the shaft"),
+    Quantity("product", "u", "unbalance", "Mass times radius"),
+    Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
+    Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
+)
+"""Columns of the tables of weights."""
+
 
 _DIGITS = 4
 _NOTHING = 1e-6
@@ -41,9 +79,8 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
 
 def balance_subjects(case: Case, compare: bool = False) -> list[Subject]:
     """Return the whole machine; compare: with what the acceleration of first order gives, next to the true figures."""
-    balance = case.balance
-    book = (BookBalance(balance),) if compare else ()
-    return [Subject("whole machine", (*balance.answering, *book), balance.at)]
+    balance = MachineBalance(case.effort, compare=True) if compare else case.balance
+    return [Subject("whole machine", (balance,), balance.at)]
 
 
 def _notes(balance: MachineBalance) -> Iterator[str]:
@@ -62,7 +99,7 @@ def _notes(balance: MachineBalance) -> Iterator[str]:
         )
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
-    if balance.rolls:
+    if balance.roll is not None:
         yield "M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft."
 
 
@@ -101,7 +138,7 @@ def _order(balance: MachineBalance, order: int, square: float, compare: bool) ->
                 abs(book_f) * square,
                 abs(book_g) * square,
             )
-        whole = power(vector)
+        whole = float((np.abs(vector.waves) ** 2).sum())
         circles[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
         ellipse[f"{name}_long"] = (abs(f) + abs(g)) * square
         ellipse[f"{name}_short"] = abs(abs(f) - abs(g)) * square
@@ -110,9 +147,9 @@ def _order(balance: MachineBalance, order: int, square: float, compare: bool) ->
     return ((), circles), ((), ellipse)
 
 
-def _pair(vector: Circles, order: int) -> tuple[complex, complex]:
+def _pair(vector: ClosedCurve, order: int) -> tuple[complex, complex]:
     """Return both circles of an order, 0 for none."""
-    return complex(vector.of(order)), complex(vector.of(-order))
+    return complex(vector.of(order)[0]), complex(vector.of(-order)[0])
 
 
 def _direction(forward: complex, backward: complex) -> float | None:

@@ -20,7 +20,7 @@ from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
-from kurbel.solver.figures import Results, answered
+from kurbel.solver.figures import Results
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
@@ -67,18 +67,14 @@ class Subject:
                 yield quantity, value
 
 
-def _value(results: Any, quantity: Quantity) -> Any:
+def _value(results: Results, quantity: Quantity) -> Any:
     """Return a key value of results, in SI; None where they have none."""
-    if not isinstance(results, Results):
-        return answered((results,), quantity)
     row = results.rows.key_values.get(quantity.id)
     return None if row is None else row.of(results)
 
 
-def _says_nothing(results: Any, quantity: Quantity) -> bool:
+def _says_nothing(results: Results, quantity: Quantity) -> bool:
     """Return whether a quantity says nothing new of results."""
-    if not isinstance(results, Results):
-        return False
     row = results.rows.key_values.get(quantity.id) or results.rows.columns.get(quantity.id)
     return bool(row and row.unless and row.unless(results))
 
@@ -128,12 +124,14 @@ def report_on(
     """
     every = (*subjects, *((whole,) if whole else ()))
     rows = [_rows(frame, one) for one in every]
-    _refuse_absent(frame, every, [columns for columns, _ in rows])
+    printed = {column.id for columns, _ in rows for column in columns}
+    for name in frame.columns or ():
+        if name not in printed:
+            raise UsageError(f"--columns: {_absent(name, frame.command, every)}")
     nowhere = [why for _, why in rows if why]
-    tabular = any(columns for columns, _ in rows)
-    if nowhere and not tabular:
+    if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
-    with_values = frame.prose or not (tabular or any(one.tables for one in every))
+    with_values = frame.prose or not (printed or any(one.tables for one in every))
     parts = [
         Part(
             one.name,
@@ -148,7 +146,9 @@ def report_on(
         for one, (columns, why) in zip(every, rows)
     ]
     last = parts.pop() if whole else None
-    said = (*notes, *_nothing_compared(frame, rows), *(f"{why}." for why in nowhere))
+    # the balance says itself what it leaves out
+    uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
+    said = (*notes, *((_UNCOMPARED,) if uncompared else ()), *(f"{why}." for why in nowhere))
     return Report(
         f"{machine.name}. {title}",
         frame.command,
@@ -162,6 +162,10 @@ def report_on(
     )
 
 
+_UNCOMPARED = (
+    "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
+    "piston with pressures; this machine has neither."
+)
 _Rows = tuple[tuple[Column, ...], str]
 """The columns of a subject, and why it has no row."""
 
@@ -182,24 +186,6 @@ def _rows(frame: Frame, subject: Subject) -> _Rows:
         chosen = [one for one in usual if subject.says(one)]
     wanted = tuple(dict.fromkeys((known["phi"], *chosen)))
     return shown_columns(subject.at, wanted, angles, frame.system), ""
-
-
-def _nothing_compared(frame: Frame, rows: Sequence[_Rows]) -> Iterator[str]:
-    compared = any(column.id.endswith("_book") for columns, _ in rows for column in columns)
-    # the balance says itself what it leaves out
-    if frame.compare and not compared and frame.command != "balance":
-        yield (
-            "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset "
-            "and of a piston with pressures; this machine has neither."
-        )
-
-
-def _refuse_absent(frame: Frame, subjects: Sequence[Subject], columns: Iterable[Sequence[Column]]) -> None:
-    """Raise UsageError for a requested column that no subject has."""
-    printed = {column.id for some in columns for column in some}
-    for name in frame.columns or ():
-        if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:

@@ -2,8 +2,8 @@
 
 import math
 
-from kurbel.declared.quantity import Quantity, by_id
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.quantity import Quantity, by_id
 from kurbel.report.frame import Row, place_table, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.friction import holding_force

@@ -10,8 +10,6 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 
-_ROOT = Record(Machine)
-
 
 class ListedKey(NamedTuple):
     """A key with its dotted path, whether it must be given, and the word next to which it is allowed."""
@@ -27,45 +25,43 @@ class ListedKey(NamedTuple):
         return f"{self._form}: {self.key.description}" + ("; must be given" if self.needed else "")
 
     @property
-    def _form(self) -> str:
-        return self.key.form.written().replace("`", "").replace("\t", "\\t")
+    def full(self) -> list[tuple[str, str]]:
+        """All about the key, each after its head."""
+        key, example = self.key, self.key.example or self.key.form.example()
+        item = key.form.item if isinstance(key.form, Listing) else None
+        inner = _of_record(item, self.path) if isinstance(item, Record) else _below(key.form, self.path)
+        below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
+        found = {
+            "beside": self.beside,
+            "meaning": key.text.replace("`", ""),
+            "symbol": key.symbol,
+            "form": self._form,
+            "absent": "must be given" if self.needed else key.absent or "left out",
+            "or give": key.instead,
+            "needs": key.needs,
+            "example": "" if example == "…" else f"{self.path.rpartition('.')[2]}: {example}",
+            "below it": ", ".join(below),
+        }
+        return [(head, text) for head, text in found.items() if text]
 
     @property
-    def full(self) -> Iterator[tuple[str, str]]:
-        """Yield heads with what is said of the key below them."""
-        key = self.key
-        if self.beside:
-            yield "beside", self.beside
-        yield "meaning", key.text.replace("`", "")
-        if key.symbol:
-            yield "symbol", key.symbol
-        yield "form", self._form
-        yield "absent", "must be given" if self.needed else key.absent or "left out"
-        for word, other in (("or give", key.instead), ("needs", key.needs)):
-            if other:
-                yield word, other
-        example = key.example or key.form.example()
-        if example != "…":
-            yield "example", f"{self.path.rpartition('.')[2]}: {example}"
-        listed = key.form.item if isinstance(key.form, Listing) else None
-        inner = _of_record(listed, self.path) if isinstance(listed, Record) else _of_form(key.form, self.path)
-        if below := list(inner):
-            yield "below it", ", ".join(dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in below))
+    def _form(self) -> str:
+        return self.key.form.written().replace("`", "").replace("\t", "\\t")
 
 
 def every_place() -> dict[str, list[ListedKey]]:
     """Return every key of a machine file by its dotted path, once for each mechanism that has it.
 
-    Those of a cylinder stand at the top.
+    Those of a cylinder are at the top.
     """
     places: dict[str, list[ListedKey]] = {}
-    for one in _of_record(_ROOT, ""):
+    for one in _of_record(Record(Machine), ""):
         places.setdefault(one.path, []).append(one)
     return places
 
 
 def places_at(path: str) -> list[ListedKey]:
-    """Return the key at a dotted path, as messages and `--set` write it; raises UsageError where there is none."""
+    """Return the key at a dotted path, as messages and `--set` write it; raises UsageError if there is none."""
     places = every_place()
     if not path.strip(". "):
         raise UsageError("no key is named; 'kurbel keys' without one lists them all")
@@ -82,7 +78,7 @@ def places_at(path: str) -> list[ListedKey]:
 
 
 def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
-    """Return what the key at the end of a path as the file has it means; '' of one that is not known."""
+    """Return what the key at the end of a path means, as the file has it; '' if it is not known."""
     steps = _steps(path)
     above = next((k for k in range(len(steps)) if ".".join(steps[k:]) in places), None)
     if above is None:
@@ -103,16 +99,15 @@ def _of_record(record: Record, path: str, beside: str = "") -> Iterator[ListedKe
         if not key.form.shared:
             here = f"{path}.{name}" if path else name
             yield ListedKey(here, key, name in needed, beside)
-            yield from _of_form(key.form, here)
+            yield from _below(key.form, here)
         for word, inner in key.form.records(name) if key.form.inline() else ():
             yield from _of_record(inner, path, "" if key.form.shared else word)
 
 
-def _of_form(form: Form, path: str) -> Iterator[ListedKey]:
+def _below(form: Form, path: str) -> Iterator[ListedKey]:
     """Yield the keys below a key of this form."""
     if isinstance(form, Record):
-        if not form.inline_too:
-            yield from _of_record(form, path)
+        yield from () if form.inline_too else _of_record(form, path)
         return
     if isinstance(form, Keyed):
         for name, case in form.cases.items():
@@ -120,4 +115,4 @@ def _of_form(form: Form, path: str) -> Iterator[ListedKey]:
                 yield ListedKey(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
     if not form.inline():
         for name, inner in form.parts():
-            yield from _of_form(inner, f"{path}.{name}" if name else path)
+            yield from _below(inner, f"{path}.{name}" if name else path)

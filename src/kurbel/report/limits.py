@@ -7,11 +7,11 @@ from typing import NamedTuple, Union
 import numpy as np
 
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
-from kurbel.declared.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
+from kurbel.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import Subject, too_large
@@ -34,7 +34,7 @@ class Entry(NamedTuple):
     path: Path = ()
 
 
-class Verdict(NamedTuple):
+class Comparison(NamedTuple):
     """A limit or an expectation: its path in the file, the value in SI, the bound, whose value it is, if it holds."""
 
     path: Path
@@ -69,7 +69,7 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
     for name, bound in machine.limits:
         verdicts = _compared_all("limits", name, bound, declared, found[name])
         yield from map(_entry, verdicts)
-        if all(isinstance(one, Verdict) and one.ok for one in verdicts):
+        if all(isinstance(one, Comparison) and one.ok for one in verdicts):
             yield from _beyond_by_sign(case, name, bound, declared)
     for name, figure in machine.expect:
         yield from map(_entry, _compared_all("expect", name, figure, declared, found[name]))
@@ -77,7 +77,7 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
 
 def _compared_all(
     key: str, name: str, bound: float | Expected, declared: Mapping[str, Quantity], found: Found
-) -> list[Verdict | Unjudged]:
+) -> list[Comparison | Unjudged]:
     """Compare the values of all that a figure applies to with it, those equal to nine digits once."""
     quantity, path = declared[scoped(name)[1]], _path(key, name, bound)
     if isinstance(found, KurbelError):
@@ -102,7 +102,9 @@ def without(name: str, id: str) -> str:
     return f"{scope} has no {id}"
 
 
-def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float) -> Verdict | Unjudged:
+def compared(
+    path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float
+) -> Comparison | Unjudged:
     """Compare a value in SI with its bound or expectation; what is not finite cannot be compared."""
     if not math.isfinite(value):
         return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
@@ -110,7 +112,7 @@ def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str
         ok = max(bound.low - value, value - bound.high) <= _ROUNDING * max(abs(bound.low), abs(bound.high))
     else:
         ok = not breaks(quantity, bound, value)
-    return Verdict(path, quantity, value, bound, where, ok)
+    return Comparison(path, quantity, value, bound, where, ok)
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:
@@ -124,7 +126,7 @@ def _in_size(quantity: Quantity) -> bool:
     return quantity.id.endswith("_residual")
 
 
-def _entry(one: Verdict | Unjudged) -> Entry | Unjudged:
+def _entry(one: Comparison | Unjudged) -> Entry | Unjudged:
     if isinstance(one, Unjudged):
         return one
     figure, quantity, unit = one.bound, one.quantity, getattr(one.bound, "unit", "")

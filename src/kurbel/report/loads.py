@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kurbel.declared.factors import PHI
-from kurbel.declared.shaft import STRESSES
+from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.report.alike import equal_loads, grouped
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values
 from kurbel.report.left_out import bearing_left_out, bearings_left_out, left_out, strength_left_out
@@ -15,6 +14,17 @@ from kurbel.report.warnings import as_far_as_solved, bearing_warnings, of_machin
 from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.stress import CrankshaftStrength
+
+STRESSES = by_id(
+    Quantity("compression", "σ_c", "stress", "Compression of a web by the force along it, negative where it is pulled"),
+    Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw"),
+    Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending square to the plane of the throw"),
+    Quantity("torsion", "τ", "stress", "Torsion"),
+    Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)"),
+    Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)"),
+)
+"""Stresses at one place of a crankshaft, by id."""
+
 
 # pins and bearings
 

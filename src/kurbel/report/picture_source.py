@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
+from kurbel.quantity import Quantity
 from kurbel.report.frame import too_large
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
 from kurbel.solver.figures import Results
@@ -88,6 +88,7 @@ class Source:
         if isinstance(results, Results):  # others have no columns
             self.quantities = {one.id: one for one in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
+        if self.quantities:
             self._start = results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, ids: Iterable[str]) -> tuple[str, ...]:

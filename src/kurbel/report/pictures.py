@@ -10,7 +10,6 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.reading import shown
-from kurbel.declared.shaft import SHAFT_PARTS
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.alike import gathered, work_alike
 from kurbel.near_words import did_you_mean
@@ -23,6 +22,7 @@ from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, i
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas
+from kurbel.solver.stress import PARTS
 
 _REVERSAL = Words("force reversal")
 _CROSSING = 1e-9
@@ -236,7 +236,7 @@ def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    return source.panels(tuple(f"sigma_{part}" for part in SHAFT_PARTS))
+    return source.panels(tuple(f"sigma_{part}" for part in PARTS))
 
 
 def torque_orders(source: Source) -> Iterator[Panel]:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
-from kurbel.declared.quantity import Quantity, ambiguity, called
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
@@ -15,6 +14,7 @@ from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantities import every_quantity
+from kurbel.quantity import Quantity, ambiguity, called
 from kurbel.report.angles import stepped
 from kurbel.report.frame import Subject
 

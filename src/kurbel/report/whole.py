@@ -8,10 +8,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.declared.quantity import Quantity
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
@@ -119,9 +119,9 @@ def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[str, str, s
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            ("Friction of the crosshead", _lost(forces.crosshead_work)),
-            ("Friction of the piston rings", _lost(forces.ring_work)),
-            ("Friction given as a force", _lost(forces.constant_work)),
+            ("Friction of the crosshead", _lost(forces.friction_works.get("crosshead"))),
+            ("Friction of the piston rings", _lost(forces.friction_works.get("rings"))),
+            ("Friction given as a force", _lost(forces.friction_works.get("constant"))),
             ("What the output works against", forces.resistance_work),
         ]
     except KurbelError:

@@ -9,11 +9,22 @@ from collections.abc import Sequence
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.factors import FACTORS, PHI
-from kurbel.declared.quantity import Quantity, called
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.quantity import PHI, Quantity, by_id, called
 from kurbel.report.tables import Column, Part, Report, Value
+
+FACTORS = by_id(
+    Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
+    Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P"),
+    Quantity("displacement_factor", "x/R", "ratio", "x over R"),
+    Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line"),
+    Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
+    Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
+    Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),
+)
+"""Rows of Zusammenstellung 112, by id."""
+
 
 RATIOS = (5.0, 4.5, 4.0)
 ROWS = {

@@ -9,82 +9,196 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from functools import cache, cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Flags
+from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine.balance import Locomotive
 from kurbel.numerics.arithmetic import some, sqrt, where
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces
+from kurbel.quantity import column, key_value
 from kurbel.solver.effort import Term, TurningEffort
-from kurbel.solver.figures import Columns, Results, passed_on
+from kurbel.solver.figures import AtAngles, Results, part
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State
-from kurbel.solver.unbalanced import Circles, Free, Terms, book_curvature, largest, sampled, turn_of
-from kurbel.solver.weights import (
-    OwnThrow,
-    Weight,
-    counterweights_of,
-    levered,
-    middle_of,
-    shafts_of,
-    wheels_of,
-)
+from kurbel.solver.unbalanced import Free, Terms, book_curvature, vector_at
+from kurbel.solver.weights import OwnThrow, Weight, counterweights_of, levered, middle_of, shafts_of, wheels_of
 
-_SETTLED = 1e-13
-"""Of the radius: by what a curve may reach beyond the smallest circle round it."""
-_ROUNDS = 60
 _REAL = 1e-12
 """By what a direction, or a lever in m, may miss another by rounding."""
-_ROUNDING = 1e-14
-"""Of the size of a curve: a centre that is nearer to 0 is 0."""
 
 
-def least_centres(
-    pieces: Pieces, curve: ComplexArray, even: Flags, others: ComplexArray
-) -> tuple[ComplexArray, Array, Array]:
-    """Return the centres (n,) of the smallest circles round closed curves c(φ), sampled on the pieces of a turn.
+class BalanceColumns(AtAngles):
+    """Unbalanced forces in N and moments in N m of one machine at crank angles φ (n,) in degrees.
 
-    even: which curves (n,) are their own image about 0, their centre. With them the lengths of other vectors (q, nodes,
-    pieces), and last that of c less its centre, are searched together; see `largest`.
+    within: angles on the side of every jump that is meant.
     """
-    closed, size, each = ClosedCurve(pieces, curve), pieces.largest(np.abs(curve)), np.arange(pieces.count)
-    degrees = np.zeros((4, pieces.count)) if even.all() else closed.nearly_enclosed()
-    for _ in range(_ROUNDS):
-        circle, degrees = closed.enclosed(degrees)
-        centre = np.where(even | (np.abs(circle.centre) <= _ROUNDING * size), 0.0, circle.centre)
-        top, at = largest(pieces, np.concatenate((others, [curve - centre[pieces.machine]])))
-        beyond = ~even & (top[-1] > np.sqrt(circle.square) * (1 + _SETTLED) + _ROUNDING * size)
-        if not beyond.any():
-            break
-        degrees[circle.shares.argmin(axis=0), each] = at[-1]
-    return centre, top, at
+
+    commands = ("balance",)
+
+    def __init__(self, balance: MachineBalance, phi: Array, within: Array) -> None:
+        self.phi = phi
+        self._balance, self._within = balance, within
+
+    def _vectors(self, free: Free | None) -> tuple[Any, Any]:
+        """Return the force and the moment (n,), complex; None for what there is not."""
+        omega, curves = self._balance.omega, (free.force, free.moment) if free else (None, None)
+        force, moment = (
+            None if one is None or omega is None else vector_at(one, self.phi) * (omega * omega) for one in curves
+        )
+        return force, moment
+
+    @cached_property
+    def _free(self) -> tuple[Any, Any]:
+        return self._vectors(self._balance.free)
+
+    @cached_property
+    def _book(self) -> tuple[Any, Any]:
+        return self._vectors(self._balance.book)
+
+    @column("F_x", "force")
+    def F_x(self) -> Any:
+        """Free force along the stroke line of cylinder 1, outward from the shaft."""
+        return _part(np.real, self._free[0])
+
+    @column("F_y", "force")
+    def F_y(self) -> Any:
+        """Free force across it, 90° on in the sense of rotation."""
+        return _part(np.imag, self._free[0])
+
+    @column("F", "force", on_request=("balance",))
+    def F_free(self) -> Any:
+        """Free force, its magnitude."""
+        return _part(np.abs, self._free[0])
+
+    @column("F_x,0", "force", on_request=("balance",))
+    def F_x_book(self) -> Any:
+        """F_x by the acceleration of first order (R 291)."""
+        return _part(np.real, self._book[0])
+
+    @column("F_y,0", "force", on_request=("balance",))
+    def F_y_book(self) -> Any:
+        """F_y by the acceleration of first order (R 291)."""
+        return _part(np.imag, self._book[0])
+
+    @column("M_x", "torque")
+    def M_x(self) -> Any:
+        """Free moment Σ (z − z_0) F_x."""
+        return _part(np.real, self._free[1])
+
+    @column("M_y", "torque")
+    def M_y(self) -> Any:
+        """Free moment Σ (z − z_0) F_y."""
+        return _part(np.imag, self._free[1])
+
+    @column("M_f", "torque", on_request=("balance",))
+    def M_free(self) -> Any:
+        """Free moment, its magnitude."""
+        return _part(np.abs, self._free[1])
+
+    @column("M_x,0", "torque", on_request=("balance",))
+    def M_x_book(self) -> Any:
+        """M_x by the acceleration of first order (R 291)."""
+        return _part(np.real, self._book[1])
+
+    @column("M_y,0", "torque", on_request=("balance",))
+    def M_y_book(self) -> Any:
+        """M_y by the acceleration of first order (R 291)."""
+        return _part(np.imag, self._book[1])
+
+    @column("M_roll", "torque")
+    def M_roll(self) -> Any:
+        """Rolling moment on the frame about the shaft, in the sense of rotation."""
+        effort, roll = self._balance.effort, self._balance.roll
+        return None if effort is None or roll is None else effort.at(effort.pieces, roll, self.phi, self._within)
 
 
-def _found(name: str, text: str) -> Any:
-    """Return a key value of the balance that is found with the others; see `MachineBalance.searched`."""
-    return property(lambda balance: balance.searched(name), doc=text)
+def _part(component: Callable[[Any], Any], vector: Any) -> Any:
+    return None if vector is None else component(vector)
 
 
-_VECTORS: dict[str, tuple[str, str, Callable[[Any], Any]]] = {
-    "F_x": ("free", "force", np.real),
-    "F_y": ("free", "force", np.imag),
-    "F_free": ("free", "force", np.abs),
-    "M_x": ("free", "moment", np.real),
-    "M_y": ("free", "moment", np.imag),
-    "M_free": ("free", "moment", np.abs),
-    "F_x_book": ("book", "force", np.real),
-    "F_y_book": ("book", "force", np.imag),
-    "M_x_book": ("book", "moment", np.real),
-    "M_y_book": ("book", "moment", np.imag),
-}
-"""Column -> the part of the unbalanced force in N or moment in N m that it is, of the true one or of the book."""
+class LocomotiveBalance(Results):
+    """The key values of a locomotive, in SI, at the angular velocity of its machine; None what needs one not given.
+
+    The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
+    and fro, loads and lifts the wheel that has it: its hammer blow.
+    """
+
+    command = "balance"
+
+    def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
+        self._balance, self._given = balance, given
+        self._square = balance.omega * balance.omega if balance.omega is not None and some(balance.omega != 0) else None
+
+    def _rolling(self, omega: Any) -> Any:
+        """Return the speed of the train in m/s; None without the diameter of the wheels."""
+        diameter = self._given.wheel_diameter
+        return None if diameter is None else diameter / 2 * omega
+
+    @key_value("v_z", "velocity")
+    def train_speed(self) -> Any:
+        """Speed of the train."""
+        return None if self._square is None else self._rolling(self._balance.omega)
+
+    @key_value("F_z", "force")
+    def traction_variation(self) -> Extreme | None:
+        """Largest variation of the tractive force.
+
+        The largest unbalanced force along the stroke lines.
+        """
+        return self._balance.farthest["force along"]
+
+    @key_value("M_s", "torque")
+    def swaying_couple(self) -> Extreme | None:
+        """Largest swaying couple, about the upright axis."""
+        return self._balance.farthest.get("moment along")
+
+    def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[Any, Any]:
+        """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
+        parts = [levered(one, self._balance.wheels, owner) for owner, one in weights]
+        return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
+
+    @cached_property
+    def unbalanced(self) -> tuple[Any, Any]:
+        """What turns in each wheel in kg m, counterweights and rotating masses together."""
+        rotating = [(one.name, one.weight(one.rotating)) for one in self._balance.throws]
+        return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
+
+    @key_value("H", "force")
+    def hammer_blow(self) -> Any:
+        """Hammer blow: by how much a counterweight loads and lifts its wheel."""
+        return None if self._square is None else _larger(*self.unbalanced) * self._square
+
+    @key_value("n_H", "speed")
+    def hammer_speed(self) -> Any:
+        """Speed of rotation at which the hammer blow is the load of the wheel."""
+        most = _larger(*self.unbalanced)
+        if self._given.wheel_load is None or not some(most != 0):
+            return None
+        return sqrt(self._given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
+
+    @key_value("v_H", "velocity")
+    def hammer_train_speed(self) -> Any:
+        """Speed of the train at which it is."""
+        return None if self.hammer_speed is None else self._rolling(2 * math.pi * self.hammer_speed)
+
+    @key_value("c_H", "ratio")
+    def share_allowed(self) -> Any:
+        """Largest share of the reciprocating masses within the limit of the blow."""
+        if self._given.hammer_limit is None or self._square is None:
+            return None
+        whole = self._in_wheels((one.name, one.weight(one.mass)) for one in self._balance.throws)
+        blow = _larger(*whole) * self._square
+        return self._given.hammer_limit / where(blow > self._given.hammer_limit, blow, self._given.hammer_limit)
+
+
+def _larger(one: Any, other: Any) -> Any:
+    return where(abs(one) >= abs(other), abs(one), abs(other))
 
 
 class MachineBalance(Results):
@@ -92,17 +206,19 @@ class MachineBalance(Results):
 
     Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
     UsageError where nothing moves that could be balanced, and where a place of a weight is missing. count: of how many
-    machines the numbers are, (machines,); then so are the key values, nan where a machine has none.
+    machines the numbers are, (machines,); then so are the key values, nan where a machine has none. compare: with the
+    key values by the book's acceleration of first order, too.
 
     z_0: place in m from where moments are taken; wheels: of the counterweights in the wheels of a locomotive, none of
     another machine; counterweights: those of the machine file.
     """
 
     command = "balance"
+    state = BalanceColumns
 
-    def __init__(self, effort: TurningEffort) -> None:
+    def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
         machine = self.machine = effort.machine
-        self.count, self._cylinders, self._turning = effort.count, effort.cylinders, effort
+        self.count, self._cylinders, self._turning, self._compare = effort.count, effort.cylinders, effort, compare
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
         own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
         self.throws = tuple(own)
@@ -115,30 +231,18 @@ class MachineBalance(Results):
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))
 
-    @property
-    def answering(self) -> tuple[Any, ...]:
-        """The objects that have key values, searched in this order."""
-        return (self, *((self.locomotive,) if self.locomotive else ()))
+    def _columns(self, phi: Array, within: Array) -> BalanceColumns:
+        return BalanceColumns(self, phi, within)
 
-    def _columns(self, phi: Array, within: Array) -> Columns:
-        @cache
-        def vector(of: str, name: str) -> ComplexArray | None:
-            free = self.free if of == "free" else self.book
-            circles = None if free is None else free.force if name == "force" else free.moment
-            return None if circles is None or self.omega is None else circles.at(phi) * (self.omega * self.omega)
-
-        def part(of: str, name: str, component: Callable[[ComplexArray], Array]) -> Array | None:
-            found = vector(of, name)
-            return None if found is None else component(found)
-
-        formulas = {id: partial(part, *each) for id, each in _VECTORS.items()}
-        return Columns(phi, formulas | {"M_roll": lambda: self._roll_at(phi, within)})
+    def _told(self, values: Any) -> Any:
+        """Return complex numbers (machines,) of every machine, or that of the only one."""
+        return values[0].item() if self.count is None else values
 
     # what moves, all of it over ω²
 
     @cached_property
     def _throws_alone(self) -> Terms:
-        return Terms.of(self.throws, lambda one, angle: one.curvature(angle), self.count)
+        return Terms.of(self.throws, lambda one, angle: one.curvature(angle), self.count or 1)
 
     @cached_property
     def bare(self) -> Free:
@@ -146,86 +250,80 @@ class MachineBalance(Results):
         return Free(self._throws_alone, self.z_0)
 
     @cached_property
-    def free(self) -> Free:
-        """What is unbalanced, with the counterweights and balance shafts of the machine file."""
-        return Free(self._throws_alone.with_weights(self._given), self.z_0) if self._given else self.bare
-
-    @cached_property
-    def _given(self) -> tuple[Weight, ...]:
+    def _weights(self) -> tuple[Weight, ...]:
         """The weights of the machine file, on the crank and on shafts."""
         return (*self.counterweights, *shafts_of(self.machine))
+
+    @cached_property
+    def free(self) -> Free:
+        """What is unbalanced, with the counterweights and balance shafts of the machine file."""
+        return Free(self._throws_alone.with_weights(self._weights), self.z_0) if self._weights else self.bare
 
     @cached_property
     def book(self) -> Free | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
         if any(book_curvature(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
             return None
-        return Free(Terms.of(self.throws, book_curvature, self.count).with_weights(self._given), self.z_0)
+        return Free(Terms.of(self.throws, book_curvature, self.count or 1).with_weights(self._weights), self.z_0)
 
-    # the largest of it, and the counterweight that leaves the least largest force
+    def times_square(self, lengths: Array, degrees: Array) -> Extreme | None:
+        """Return largest lengths over ω² with their angles, times ω²; None without a speed."""
+        if self.omega is None:
+            return None
+        return Extreme(self._told(lengths) * self.omega * self.omega, self._told(degrees))
 
     @cached_property
-    def _searched(self) -> tuple[Any, dict[str, Extreme]]:
-        """The least counterweight in kg m, and the largest lengths over ω², all found in one search.
-
-        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = f_1 + c(φ), to
-        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
-        circle round it. With even orders alone c(φ + 180°) = −c(φ), and the centre is 0.
-        """
-        bare, free = self.bare.force, self.free
-        turning = bare.forward[0]
-        vectors = {"force": free.force, "moment": free.moment, "bare": bare.turned_by(-turning)}
-        given = {name: one for name, one in vectors.items() if one is not None}
-        pieces, (*found, loose) = sampled([*given.values()], self.count)
-        rows = dict(zip(given, found))
+    def farthest(self) -> dict[str, Extreme | None]:
+        """The largest unbalanced `force` and `moment`; of a locomotive also those `along` the stroke lines."""
+        curves = {"force": self.free.force, "moment": self.free.moment}
+        waves = {name: one.waves for name, one in curves.items() if one is not None}
         if self.machine.locomotive:
-            rows |= {f"{name} along": one.real.astype(complex) for name, one in rows.items()}
-        odd = np.concatenate((given["bare"].forward[2::2], given["bare"].backward[::2], [turning]))
-        even = ~(odd.reshape(len(odd), -1) != 0).any(axis=0) & (not bare.rests)
-        curve = loose * turn_of(pieces).conj()
-        centre, top, at = least_centres(pieces, curve, np.broadcast_to(even, pieces.count), np.array([*rows.values()]))
-        extremes = [Extreme(self._told(one), self._told(where_)) for one, where_ in zip(top, at)]
-        weight = -(turning + (complex(centre[0]) if self.count is None else centre))
-        return weight, dict(zip([*rows, "least"], extremes))
+            waves |= {f"{name} along": (one + one[::-1].conj()) / 2 for name, one in waves.items()}
+        found = ClosedCurve(np.concatenate([*waves.values()], axis=1)).farthest()
+        return dict(zip(waves, map(self.times_square, *(np.split(one, len(waves)) for one in found))))
 
-    def _told(self, values: Array) -> Any:
-        """Return numbers of every machine (machines,), or that of the only one."""
-        return float(values[0]) if self.count is None else values
+    @cached_property
+    def _least(self) -> tuple[Any, Extreme | None]:
+        """The counterweight in kg m that leaves the least largest force, complex, and that force.
 
-    def _times_square(self, found: Extreme | None) -> Extreme | None:
-        """Return an extreme over ω² times ω²; None without a speed."""
-        if found is None or self.omega is None:
-            return None
-        return Extreme(found.value * self.omega * self.omega, found.degrees)
+        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ), to
+        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
+        circle round it.
+        """
+        turning = self.bare.force.of(1)
+        centre, radius, degrees = self.bare.force.plus(1, -turning).turned_back().least_circle()
+        return self._told(-(turning + centre)), self.times_square(radius, degrees)
 
-    def largest(self, vector: Circles | None) -> Extreme | None:
-        """Return the largest length of a vector over ω², times ω², with its angle; None without a speed."""
-        if vector is None:
-            return None
-        top, at = largest(*sampled([vector], self.count))
-        return self._times_square(Extreme(self._told(top[0]), self._told(at[0])))
+    @key_value("F_max", "force")
+    def F_free_max(self) -> Extreme | None:
+        """Largest free force."""
+        return self.farthest["force"]
 
-    def searched(self, name: str) -> Extreme | None:
-        """Return the largest `force`, `moment`, or what of them is `along` the stroke lines, in N or N m."""
-        return self._times_square(self._searched[1].get(name))
+    @key_value("F_0,max", "force")
+    def F_free_max_book(self) -> Extreme | None:
+        """The same by the acceleration of first order (R 291)."""
+        return self._farthest_of_book(lambda book: book.force)
 
-    F_free_max = _found("force", "Largest unbalanced force in N.")
+    def _farthest_of_book(self, part: Callable[[Free], ClosedCurve | None]) -> Extreme | None:
+        curve = part(self.book) if self._compare and self.book else None
+        return None if curve is None else self.times_square(*curve.farthest())
 
-    M_free_max = _found("moment", "Largest unbalanced moment in N m.")
+    @key_value("M_f,max", "torque")
+    def M_free_max(self) -> Extreme | None:
+        """Largest free moment."""
+        return self.farthest.get("moment")
 
-    F_free_best = _found("least", "The least largest unbalanced force in N.")
+    @key_value("M_f,0,max", "torque")
+    def M_free_max_book(self) -> Extreme | None:
+        """The same by the acceleration of first order (R 291)."""
+        return self._farthest_of_book(lambda book: book.moment)
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
 
     @property
-    def _effort(self) -> TurningEffort | None:
+    def effort(self) -> TurningEffort | None:
         """The turning effort of the machine, with its losses; None without a speed."""
         return self._turning if self.omega is not None and some(self.omega != 0) else None
-
-    @property
-    def rolls(self) -> bool:
-        """Whether a rolling moment is known. Raises UsageError where no force acts."""
-        return self._effort is not None and len(self._effort.pieces.half) > 0
 
     @property
     def rolls_as_it_turns(self) -> bool:
@@ -233,27 +331,28 @@ class MachineBalance(Results):
         return not any(map(swirls, self._cylinders))
 
     @cached_property
-    def _roll(self) -> Array | None:
-        """Samples of the rolling moment −(M + dH/dt) in N m on the pieces of the turning effort."""
-        if self._effort is None:
+    def roll(self) -> Array | None:
+        """Samples of the rolling moment in N m on the pieces of the effort. Raises UsageError where no force acts."""
+        if self.effort is None:
             return None
-        effort = self._effort
-        return effort.sampled([Term(-1.0, one, swirl) for one in effort.groups if swirls(one[0])]) - effort.M
-
-    def _roll_at(self, phi: Array, within: Array) -> Array | None:
-        """Return the rolling moment in N m at crank angles (k,), on the sides of jumps that hold `within`."""
-        if self._roll is None:
-            return None
-        return self._turning.at(self._turning.pieces, self._roll, phi, within)
+        swirling = [Term(-1.0, one, swirl) for one in self.effort.groups if swirls(one[0])]
+        return self.effort.sampled(swirling) - self.effort.M
 
     @cached_property
     def _roll_extremes(self) -> Extremes | None:
-        if self._roll is None:
+        if self.roll is None:
             return None
-        return self._turning.pieces.extremes(self._roll[None]).each(self._turning.result)[0]
+        return self._turning.pieces.extremes(self.roll[None]).each(self._turning.result)[0]
 
-    M_roll_max = passed_on("_roll_extremes", "largest", "Largest rolling moment on the frame in N m.")
-    M_roll_min = passed_on("_roll_extremes", "smallest", "Smallest rolling moment on the frame in N m.")
+    @key_value("M_roll,max", "torque", unless=lambda balance: balance.rolls_as_it_turns)
+    def M_roll_max(self) -> Extreme | None:
+        """Largest rolling moment on the frame."""
+        return self._roll_extremes and self._roll_extremes.largest
+
+    @key_value("M_roll,min", "torque", unless=lambda balance: balance.rolls_as_it_turns)
+    def M_roll_min(self) -> Extreme | None:
+        """Smallest rolling moment on the frame."""
+        return self._roll_extremes and self._roll_extremes.smallest
 
     @property
     def cycle(self) -> float:
@@ -263,12 +362,12 @@ class MachineBalance(Results):
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees between which every quantity of the only machine is smooth."""
-        low = self._effort.pieces.low if self._effort else np.zeros(1)
+        low = self.effort.pieces.low if self.effort else np.zeros(1)
         return np.append(low[low < self.cycle], self.cycle)
 
     # counterweights
 
-    def angle_of(self, product: Any) -> Any:
+    def _angle_of(self, product: Any) -> Any:
         """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180; None, nan of nothing."""
         turned = product / self.throws[0].weight(1.0).product
         degrees = np.degrees(np.arctan2(turned.imag, turned.real))
@@ -277,45 +376,50 @@ class MachineBalance(Results):
             return float(degrees) if product else None
         return np.where(product != 0, degrees, np.nan)
 
-    @property
+    @key_value("u", "unbalance")
     def counterweight_given(self) -> Any:
-        """Size of the sum of the given counterweights in kg m."""
+        """Vector sum of the given counterweights, mass times radius."""
         return abs(sum(one.product for one in self.counterweights)) if self.counterweights else None
 
     @cached_property
     def _forward(self) -> Any:
         """The forward circle of order 1 over ω², in kg m."""
-        first = self.bare.force.forward[0]
-        return complex(first) if self.count is None else first
+        return self._told(self.bare.force.of(1))
 
-    @property
+    @key_value("u_1", "unbalance")
     def counterweight_best(self) -> Any:
-        """Product in kg m of the counterweight that takes away the forward circle of order 1."""
+        """Counterweight against what rotates and half of what reciprocates.
+
+        It takes away the forward circle of order 1.
+        """
         return abs(self._forward)
 
-    @property
+    @key_value("α_1", "angle")
     def counterweight_best_angle(self) -> Any:
-        """Its direction from throw 1 in degrees; None for a weight of nothing."""
-        return self.angle_of(-self._forward)
+        """Its direction from throw 1."""
+        return self._angle_of(-self._forward)
 
     @property
     def least(self) -> Any:
         """The counterweight in kg m, complex, that leaves the least largest force."""
-        return self._searched[0]
+        return self._least[0]
 
-    @property
+    @key_value("u_min", "unbalance")
     def counterweight_least(self) -> Any:
-        """Product in kg m of the counterweight that leaves the least largest force."""
+        """Counterweight that leaves the least largest free force."""
         return abs(self.least)
 
-    @property
+    @key_value("α_min", "angle")
     def counterweight_least_angle(self) -> Any:
-        """Its direction from throw 1 in degrees; None for a weight of nothing."""
-        return self.angle_of(self.least)
+        """Its direction from throw 1."""
+        return self._angle_of(self.least)
 
-    @property
+    @key_value("c_min", "ratio")
     def share_best(self) -> Any:
-        """Share of the reciprocating mass with which a counterweight opposite the only throw is the least one's."""
+        """Share of the reciprocating mass that it balances.
+
+        Of a counterweight opposite the only throw; None where the least one is not opposite.
+        """
         throw, *others = self.throws
         if others or not some(throw.mass != 0):
             return None
@@ -325,6 +429,11 @@ class MachineBalance(Results):
             return None if aside else (opposite.real - throw.rotating) / throw.mass
         with np.errstate(all="ignore"):
             return np.where(aside | (throw.mass == 0), np.nan, (opposite.real - throw.rotating) / throw.mass)
+
+    @key_value("F_min", "force")
+    def F_free_best(self) -> Extreme | None:
+        """Largest free force that it leaves."""
+        return self._least[1]
 
     @cached_property
     def planes(self) -> tuple[Any, ...]:
@@ -343,7 +452,7 @@ class MachineBalance(Results):
         """
         if not self.planes or self.bare.moment is None:
             return ()
-        force, moment, (first, second) = self._forward, complex(self.bare.moment.forward[0]), self.planes
+        force, moment, (first, second) = self._forward, self._told(self.bare.moment.of(1)), self.planes
         far = ((first - self.z_0) * force - moment) / (second - first)
         return Weight(-force - far, 1, first), Weight(far, 1, second)
 
@@ -357,14 +466,14 @@ class MachineBalance(Results):
         force, moment = self.bare.force, self.bare.moment
         found = []
         for order in (-1, 2, -2):
-            circle = complex(force.of(order))
+            circle = self._told(force.of(order))
             if circle:
-                arm = 1j if moment is None else complex(moment.of(order)) / circle
+                arm = 1j if moment is None else self._told(moment.of(order)) / circle
                 place = None if self.z_0 is None or abs(arm.imag) > _REAL * (1 + abs(arm)) else self.z_0 + arm.real
                 found.append(Weight(-circle / order**2, order, place))
         return tuple(found)
 
-    @cached_property
+    @part(LocomotiveBalance)
     def locomotive(self) -> LocomotiveBalance | None:
         """What of it concerns the wheels of a locomotive; None of another machine."""
         return LocomotiveBalance(self, self.machine.locomotive) if self.machine.locomotive else None
@@ -381,93 +490,3 @@ def swirl(state: State) -> Any:
     drive = state.drive
     moment = state.b * (drive.mass * drive.mechanism.offset)
     return moment - state.rod_couple if drive.rod else moment
-
-
-class BookBalance:
-    """The key values by the book's acceleration of first order, which are shown only on request."""
-
-    def __init__(self, balance: MachineBalance) -> None:
-        self._balance = balance
-
-    @property
-    def F_free_max_book(self) -> Extreme | None:
-        """Largest unbalanced force in N."""
-        return self._balance.largest(self._balance.book.force if self._balance.book else None)
-
-    @property
-    def M_free_max_book(self) -> Extreme | None:
-        """Largest unbalanced moment in N m."""
-        return self._balance.largest(self._balance.book.moment if self._balance.book else None)
-
-
-class LocomotiveBalance:
-    """The key values of a locomotive, in SI, at the angular velocity of its machine; None what needs one not given.
-
-    The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
-    and fro, loads and lifts the wheel that has it: its hammer blow.
-    """
-
-    def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
-        self._balance, self._given = balance, given
-        self._square = balance.omega * balance.omega if balance.omega is not None and some(balance.omega != 0) else None
-
-    @property
-    def train_speed(self) -> Any:
-        """Speed of the train in m/s; None without the diameter of the wheels."""
-        return None if self._square is None else self._rolling(self._balance.omega)
-
-    def _rolling(self, omega: Any) -> Any:
-        diameter = self._given.wheel_diameter
-        return None if diameter is None else diameter / 2 * omega
-
-    @property
-    def traction_variation(self) -> Extreme | None:
-        """Largest unbalanced force in N along the stroke lines, by which the pull at the drawbar varies."""
-        return self._balance.searched("force along")
-
-    @property
-    def swaying_couple(self) -> Extreme | None:
-        """Largest moment in N m of the unbalanced forces along the stroke lines about the upright axis."""
-        return self._balance.searched("moment along")
-
-    def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[Any, Any]:
-        """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
-        parts = [levered(one, self._balance.wheels, owner) for owner, one in weights]
-        return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
-
-    @cached_property
-    def unbalanced(self) -> tuple[Any, Any]:
-        """What turns in each wheel in kg m, counterweights and rotating masses together."""
-        rotating = [(one.name, one.weight(one.rotating)) for one in self._balance.throws]
-        return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
-
-    @property
-    def hammer_blow(self) -> Any:
-        """Largest force in N by which a wheel is loaded and lifted."""
-        return None if self._square is None else _larger(*self.unbalanced) * self._square
-
-    @property
-    def hammer_speed(self) -> Any:
-        """Revolutions per second at which the hammer blow is the load of a wheel; None without that, or a blow."""
-        most = _larger(*self.unbalanced)
-        if self._given.wheel_load is None or not some(most != 0):
-            return None
-        return sqrt(self._given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
-
-    @property
-    def hammer_train_speed(self) -> Any:
-        """Speed of the train in m/s at which it is."""
-        return None if self.hammer_speed is None else self._rolling(2 * math.pi * self.hammer_speed)
-
-    @property
-    def share_allowed(self) -> Any:
-        """Largest share of the reciprocating masses of which the counterweights keep the limit of the hammer blow."""
-        if self._given.hammer_limit is None or self._square is None:
-            return None
-        whole = self._in_wheels((one.name, one.weight(one.mass)) for one in self._balance.throws)
-        blow = _larger(*whole) * self._square
-        return self._given.hammer_limit / where(blow > self._given.hammer_limit, blow, self._given.hammer_limit)
-
-
-def _larger(one: Any, other: Any) -> Any:
-    return where(abs(one) >= abs(other), abs(one), abs(other))

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,13 +30,12 @@ from kurbel.machine.batch import taken
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
-from kurbel.solver.drive import Drive
-from kurbel.solver.figures import Columns, Results
+from kurbel.quantity import column, key_value
+from kurbel.solver.figures import AtAngles, Results, told
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
-FRAMES = ("throw", "engine", "rod")
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
 _NO_LOAD = 1e-12
@@ -62,14 +61,19 @@ class Follower(NamedTuple):
     cylinder: Cylinder
     position: Any
 
-    @property
-    def drive(self) -> Drive:
-        """The cylinder made ready for the solver."""
-        return self.forces.drive
-
     def at(self, degrees: Array, within: Array) -> State:
         """Return the state at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
-        return State.at(self.drive, degrees - self.position, within - self.position)
+        return State.at(self.forces.drive, degrees - self.position, within - self.position)
+
+    def carried(self, pieces: Pieces, values: Any) -> Any:
+        """Return what is sampled on the pieces of the cylinder, complex or real, at the nodes of common ones."""
+        source = self.forces.pieces
+        values = np.broadcast_to(values, source.degrees.shape)
+        if pieces is source:
+            return values
+        if np.iscomplexobj(values):
+            return self.carried(pieces, values.real) + 1j * self.carried(pieces, values.imag)
+        return pieces.carried(values, source, self.position)
 
 
 class Size(NamedTuple):
@@ -77,6 +81,39 @@ class Size(NamedTuple):
 
     diameter: Any
     length: Any
+
+
+class BearingColumns(AtAngles):
+    """The load of one bearing at crank angles φ (n,) in degrees; frames: complex in N, in each of its frames."""
+
+    commands = ("bearings",)
+
+    def __init__(self, phi: Array, frames: dict[str, ComplexArray]) -> None:
+        self.phi, self._frames = phi, frames
+
+    def _direction(self, frame: str) -> Array | None:
+        found = self._frames.get(frame)
+        return None if found is None else _axial(np.degrees(np.angle(found)), _ON_AXIS)
+
+    @column("F_L", "force")
+    def load(self) -> Array:
+        """Load of a rod on its pin, or of the shaft on a main bearing."""
+        return np.abs(next(iter(self._frames.values())))
+
+    @column("ε_K", "angle")
+    def load_throw(self) -> Array | None:
+        """Direction of the load from its throw outward, of a main bearing from that of crank 1."""
+        return self._direction("throw")
+
+    @column("ε_M", "angle")
+    def load_engine(self) -> Array | None:
+        """Direction of the load from the stroke line of cylinder 1 outward."""
+        return self._direction("engine")
+
+    @column("ε_S", "angle")
+    def load_rod(self) -> Array | None:
+        """Direction of the load from the line of the rod, crank pin to crosshead."""
+        return self._direction("rod")
 
 
 class _Cycle(NamedTuple):
@@ -97,6 +134,7 @@ class Bearing(Results):
     """
 
     command = "bearings"
+    state = BearingColumns
     journal: str
     shell: str
     contact = 180.0
@@ -104,7 +142,8 @@ class Bearing(Results):
 
     def __init__(self, name: str, followed: Sequence[Follower], size: Size) -> None:
         self.name, self.followed, self.size = name, tuple(followed), size
-        self.count, self.omega = followed[0].drive.count, followed[0].drive.omega
+        drive = followed[0].forces.drive
+        self.count, self.omega = drive.count, drive.omega
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
@@ -119,20 +158,12 @@ class Bearing(Results):
     def _rate(self) -> tuple[Extreme, Any]:
         """By how much its surfaces turn on one another, over that of the crank: the largest, and the mean over time."""
 
-    @property
     @abstractmethod
-    def work_rubbing(self) -> Any:
-        """Work of its friction in J per cycle of the machine; None without a coefficient."""
+    def _work(self) -> Any:
+        """Return the work of its friction in J per cycle of the machine; None without a coefficient."""
 
-    def _columns(self, phi: Array, within: Array) -> Columns:
-        """Return the load in N, and its direction in degrees in each frame; None without it."""
-        found = self._frames(phi, within)
-
-        def direction(frame: str) -> Array | None:
-            return _axial(np.degrees(np.angle(found[frame])), _ON_AXIS) if frame in found else None
-
-        directions = {f"load_{frame}": partial(direction, frame) for frame in FRAMES}
-        return Columns(phi, {"load": lambda: np.abs(next(iter(found.values()))), **directions})
+    def _columns(self, phi: Array, within: Array) -> BearingColumns:
+        return BearingColumns(phi, self._frames(phi, within))
 
     # the cycle
 
@@ -142,124 +173,129 @@ class Bearing(Results):
         fine, load, (x, y, shell_x, shell_y) = _with_magnitude(pieces, journal, (shell.real, shell.imag))
         return _Cycle(fine, load, x + 1j * y, shell_x + 1j * shell_y)
 
-    def _told(self, values: Array) -> Any:
-        """Return what was found of every machine (machines,), or of the only one as a number."""
-        return float(values[0]) if self.count is None else values
+    def _extremes(self, pieces: Pieces, values: Array) -> Extremes:
+        """Return the extremes of samples (nodes, pieces)."""
+        return pieces.extremes(values[None]).each(lambda values: told(values, self.count))[0]
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
         return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
 
-    def _extremes_of(self, pieces: Pieces, values: Array) -> Extremes:
-        """Return the extremes of samples (nodes, pieces)."""
-        return pieces.extremes(values[None]).each(self._told)[0]
-
     @cached_property
     def _load(self) -> Extremes:
-        return self._extremes_of(self._cycle.pieces, self._cycle.load)
+        return self._extremes(self._cycle.pieces, self._cycle.load)
 
-    @property
+    @key_value("F_L,max", "force")
     def load_max(self) -> Extreme:
-        """Largest load in N."""
+        """Largest load."""
         return self._load.largest
 
-    @property
+    @key_value("F_L,min", "force")
     def load_min(self) -> Extreme:
-        """Smallest load in N."""
+        """Smallest load."""
         return self._load.smallest
 
-    @cached_property
+    @key_value("F_L,m", "force")
     def load_mean(self) -> Any:
-        """Mean load in N over the time of a cycle."""
-        return self._told(self._cycle.pieces.mean(self._cycle.load))
+        """Mean load over time."""
+        return told(self._cycle.pieces.mean(self._cycle.load), self.count)
 
-    @cached_property
+    @key_value("F_L,m,½", "force")
     def load_high(self) -> Any:
-        """Mean load in N over the time in which it exceeds half its largest."""
+        """Mean load while it exceeds half the largest."""
         whole, load = self._cycle.pieces, self._cycle.load
         largest = np.atleast_1d(self.load_max.value)
         pieces = whole.split(whole.zeros(load - whole.of(largest / 2), largest))
         load = load if pieces is whole else pieces.carried(load, whole)
         above = np.where(pieces.rule.weights @ load > pieces.of(largest), 1.0, 0.0)  # the weights sum to 2
         time, sums = pieces.integral(np.stack((np.broadcast_to(above, load.shape), load * above)))
-        return self._told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)))
+        return told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)), self.count)
 
     # the surfaces
 
-    @cached_property
-    def _of_journal(self) -> tuple[Array, Array]:
-        return unloaded(self._cycle.pieces, self._cycle.on_journal, self.contact)
+    def _unloaded(self, load: ComplexArray) -> tuple[Any, ...]:
+        """Return the arc in degrees of a surface that is never loaded, and its middle; None where there is none."""
+        found = (told(one, self.count) for one in unloaded(self._cycle.pieces, load, self.contact))
+        return tuple(None if self.count is None and math.isnan(one) else one for one in found)
 
     @cached_property
-    def _of_shell(self) -> tuple[Array, Array]:
-        return unloaded(self._cycle.pieces, self._cycle.on_shell, self.contact)
+    def _of_journal(self) -> tuple[Any, ...]:
+        return self._unloaded(self._cycle.on_journal)
 
-    def _angle(self, degrees: Array) -> Any:
-        """Return what was found of every machine, or of the only one; None where that is nothing."""
-        found = self._told(degrees)
-        return None if self.count is None and math.isnan(found) else found
+    @cached_property
+    def _of_shell(self) -> tuple[Any, ...]:
+        return self._unloaded(self._cycle.on_shell)
 
-    @property
+    @key_value("Δε_Z", "angle")
     def unloaded_arc(self) -> Any:
-        """Degrees of the surface of pin or journal that are never loaded; None where it is loaded nowhere."""
-        return self._angle(self._of_journal[0])
+        """Arc of the pin or journal that is never loaded.
 
-    @property
+        None where it is loaded nowhere.
+        """
+        return self._of_journal[0]
+
+    @key_value("ε_Z", "angle")
     def unloaded_middle(self) -> Any:
-        """Direction in degrees of the middle of its widest stretch; None without one."""
-        return self._angle(self._of_journal[1])
+        """Middle of its widest piece, in the frame of the pin."""
+        return self._of_journal[1]
 
-    @property
+    @key_value("Δε_L", "angle")
     def unloaded_arc_shell(self) -> Any:
-        """Degrees of the surface of the shell that are never loaded; None where it is loaded nowhere."""
-        return self._angle(self._of_shell[0])
+        """Arc of the shell that is never loaded."""
+        return self._of_shell[0]
 
-    @property
+    @key_value("ε_L", "angle")
     def unloaded_middle_shell(self) -> Any:
-        """Direction in degrees of the middle of its widest stretch; None without one."""
-        return self._angle(self._of_shell[1])
+        """Middle of its widest piece, in the frame of the shell."""
+        return self._of_shell[1]
 
     # pressures and rubbing
 
     @property
     def _area(self) -> Any:
+        """d l in m²; None where one is not given."""
         diameter, length = self.size
         return None if diameter is None or length is None else diameter * length
-
-    @property
-    def pressure_max(self) -> Extreme | None:
-        """Largest load over d l in Pa."""
-        return None if self._area is None else Extreme(self.load_max.value / self._area, self.load_max.degrees)
-
-    @property
-    def pressure_mean(self) -> Any:
-        """Mean load over d l in Pa."""
-        return None if self._area is None else self.load_mean / self._area
 
     @property
     def _surface_speed(self) -> Any:
         """ω d/2 in m/s."""
         return None if self.omega is None or self.size.diameter is None else self.omega * self.size.diameter / 2
 
-    @property
+    @key_value("p_L,max", "pressure")
+    def pressure_max(self) -> Extreme | None:
+        """Largest pressure, load over d l."""
+        return None if self._area is None else Extreme(self.load_max.value / self._area, self.load_max.degrees)
+
+    @key_value("p_L,m", "pressure")
+    def pressure_mean(self) -> Any:
+        """Mean pressure over time."""
+        return None if self._area is None else self.load_mean / self._area
+
+    @key_value("v_L,max", "velocity")
     def rubbing_speed_max(self) -> Extreme | None:
-        """Largest speed in m/s of one surface on the other."""
+        """Largest speed of one surface on the other."""
         if self._surface_speed is None:
             return None
-        rate = self._rate[0]
-        return Extreme(rate.value * self._surface_speed, rate.degrees)
+        largest, _ = self._rate
+        return Extreme(largest.value * self._surface_speed, largest.degrees)
 
-    @property
+    @key_value("v_L,m", "velocity")
     def rubbing_speed_mean(self) -> Any:
-        """Mean speed in m/s of one surface on the other."""
+        """Mean speed of one surface on the other."""
         return None if self._surface_speed is None else self._rate[1] * self._surface_speed
 
-    @property
+    @key_value("k_L", "pressure_velocity")
     def pressure_velocity(self) -> Any:
-        """Mean pressure times mean speed, p_m v in W/m²."""
+        """Mean pressure times mean speed, p v."""
         pressure, speed = self.pressure_mean, self.rubbing_speed_mean
         return None if pressure is None or speed is None else pressure * speed
+
+    @key_value("A_f,L", "energy")
+    def work_rubbing(self) -> Any:
+        """Work lost by its friction per cycle."""
+        return self._work()
 
 
 class RodPin(Bearing):
@@ -273,50 +309,46 @@ class RodPin(Bearing):
 
     def __init__(self, name: str, follower: Follower, size: Size, pin: str) -> None:
         super().__init__(name, (follower,), size)
-        self._pin = pin
+        self._own, self._pin = follower, pin
         self.journal = "throw" if pin == "crank_pin" else "engine"
 
     def _in_frames(self, state: State, bank: Any) -> dict[str, ComplexArray]:
         """Return the load in N in each of its frames; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
+        own = {}
         if self._pin == "crank_pin":
-            radial, tangential = on_pin(state)
-            own = {"throw": -radial + 1j * tangential}
+            pin = on_pin(state)
+            own["throw"] = -pin.D + 1j * pin.T
             line = own["throw"] * (state.angle.cos + 1j * state.angle.sin)
         else:
             along, across = on_crosshead_pin(state)
-            own, line = {}, along - 1j * across
+            line = along - 1j * across
         return {**own, "engine": line * bank, "rod": line * (cos_psi + 1j * sin_psi)}
 
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
-        (own,) = self.followed
-        return self._in_frames(own.at(degrees, within), unit_vector(own.cylinder.bank_angle))
+        return self._in_frames(self._own.at(degrees, within), unit_vector(self._own.cylinder.bank_angle))
 
     @cached_property
     def _pieces(self) -> Pieces:
-        (own,) = self.followed
-        return common([(own.forces.pieces, own.position)], _cycle_of(own.drive.machine))
+        return _common_pieces(self._own.forces.drive.machine, self.followed)
 
     def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
-        (own,) = self.followed
-        frames = self._in_frames(own.forces.samples, own.forces.pieces.of(unit_vector(own.cylinder.bank_angle)))
-        journal, shell = _carried(self._pieces, own, frames[self.journal], frames[self.shell])
+        forces = self._own.forces
+        frames = self._in_frames(forces.samples, forces.pieces.of(unit_vector(self._own.cylinder.bank_angle)))
+        journal, shell = (self._own.carried(self._pieces, frames[name]) for name in (self.journal, self.shell))
         return self._pieces, journal, shell
 
     @cached_property
     def _rate(self) -> tuple[Extreme, Any]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
-        (own,) = self.followed
-        state = own.forces.samples
+        state = self._own.forces.samples
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        (rate,) = _carried(self._pieces, own, 1 + slope if self._pin == "crank_pin" else slope)
-        return self._extremes_of(self._pieces, rate).peak, self._told(self._pieces.mean(np.abs(rate)))
+        rate = self._own.carried(self._pieces, 1 + slope if self._pin == "crank_pin" else slope)
+        return self._extremes(self._pieces, rate).peak, told(self._pieces.mean(np.abs(rate)), self.count)
 
-    @property
-    def work_rubbing(self) -> Any:
-        """Work of its friction in J per cycle of the machine; None without a coefficient."""
-        forces = self.followed[0].forces
+    def _work(self) -> Any:
+        forces = self._own.forces
         work = forces.pin_work_of(self._pin)
         return None if work is None else work * (forces.drive.machine.revolutions // forces.drive.revolutions)
 
@@ -330,8 +362,9 @@ class MainBearing(Bearing):
     journal, shell, contact = "throw", "engine", 0.0
 
     def __init__(self, name: str, number: int, line: ShaftLine, every: Sequence[Follower], size: Size) -> None:
-        self._throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
-        super().__init__(name, [every[index] for throw in self._throws for index in throw.cylinders], size)
+        throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
+        self._members = [index for throw in throws for index in throw.cylinders]
+        super().__init__(name, [every[index] for index in self._members], size)
         self._number, self._line, self._every = number, line, every
 
     def _force(self, line: ShaftLine, pins: dict[int, Vector], degrees: Array) -> ComplexArray:
@@ -344,33 +377,28 @@ class MainBearing(Bearing):
             if self._number not in (throw.A, throw.B):
                 continue
             own = line.machine.cylinders[throw.cylinders[0]]
-            position = np.fmod(own.crank_position, self._every[throw.cylinders[0]].drive.cycle)
+            position = np.fmod(own.crank_position, self._every[throw.cylinders[0]].forces.drive.cycle)
             pin = Vector(*(sum(parts) for parts in zip(*(pins[index] for index in throw.cylinders))))
             both = line.carried(throw, pin, own, CrankAngle.of(degrees - position))
             carried = both[0] if self._number == throw.A else both[1]
             force = force + (-carried.D + 1j * carried.T) * unit_vector(throw.angle)
-        return np.asarray(force)
+        return np.broadcast_to(np.asarray(force), degrees.shape)
 
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
-        states = {one: self._every[one].at(degrees, within) for throw in self._throws for one in throw.cylinders}
-        pins = {number: _on_pin_or_none(state) for number, state in states.items()}
-        throw = np.broadcast_to(self._force(self._line, pins, degrees), degrees.shape)
+        pins = {number: _pin_load(self._every[number].at(degrees, within)) for number in self._members}
+        throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
     def _on_pieces(self, rubbed: bool) -> tuple[Pieces, ComplexArray]:
         """Return pieces of the cycle and the force there; rubbed: with what the friction of the pins does to it."""
         machine = self._line.machine
-        pieces = common([(one.forces.pieces, one.position) for one in self.followed], _cycle_of(machine))
-        pins = {}
-        for number in (number for throw in self._throws for number in throw.cylinders):
-            own = self._every[number]
-            radial, tangential = _on_pin_or_none(own.forces.samples if rubbed else own.forces.samples.unrubbed)
-            (found,) = _carried(pieces, own, radial + 1j * tangential)
-            pins[number] = Vector(found.real, found.imag)
+        pieces, pins = _common_pieces(machine, self.followed), {}
+        for number, own in zip(self._members, self.followed):
+            load = _pin_load(own.forces.samples if rubbed else own.forces.samples.unrubbed)
+            pins[number] = Vector(*(own.carried(pieces, one) for one in load))
         machine = machine if self.count is None else taken(machine, pieces.machine)
         assert machine.crankshaft is not None
-        force = self._force(ShaftLine(machine, machine.crankshaft), pins, pieces.degrees)
-        return pieces, np.broadcast_to(force, pieces.degrees.shape)
+        return pieces, self._force(ShaftLine(machine, machine.crankshaft), pins, pieces.degrees)
 
     def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
         pieces, force = self._on_pieces(rubbed=True)
@@ -379,37 +407,24 @@ class MainBearing(Bearing):
 
     @property
     def _rate(self) -> tuple[Extreme, Any]:
-        nowhere: Any = np.zeros(self.count or 1)
-        return Extreme(1.0, self._told(nowhere)), 1.0
+        return Extreme(1.0, told(np.zeros(self.count or 1), self.count)), 1.0
 
-    @cached_property
-    def work_rubbing(self) -> Any:
-        """Work of its friction in J per cycle of the machine; None without a coefficient."""
+    def _work(self) -> Any:
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size.diameter is None:
             return None
         pieces, load, _ = _with_magnitude(*self._on_pieces(rubbed=False))
-        return self._told(pieces.integral(load)) * coefficient * self.size.diameter / 2
+        return told(pieces.integral(load), self.count) * coefficient * self.size.diameter / 2
 
 
-def _on_pin_or_none(state: State) -> Vector:
+def _pin_load(state: State) -> Vector:
     return on_pin(state) if state.drive.has_force else Vector(0.0, 0.0)
 
 
-def _cycle_of(machine: Machine) -> float:
-    return 360.0 * machine.revolutions
-
-
-def _carried(pieces: Pieces, own: Follower, *columns: Any) -> list[Any]:
-    """Return columns sampled on the pieces of a cylinder, complex or real, at the nodes of common ones."""
-    source = own.forces.pieces
-    whole = [np.broadcast_to(one, source.degrees.shape) for one in columns]
-    if pieces is source:
-        return whole
-    parts = [part for one in whole for part in ((one.real, one.imag) if np.iscomplexobj(one) else (one,))]
-    found = iter(pieces.carried(np.stack(parts), source, own.position))
-    return [next(found) + 1j * next(found) if np.iscomplexobj(one) else next(found) for one in whole]
+def _common_pieces(machine: Machine, followed: Sequence[Follower]) -> Pieces:
+    """Return the pieces of the cycle of a machine on which the samples of all of these cylinders are smooth."""
+    return common([(one.forces.pieces, one.position) for one in followed], 360.0 * machine.revolutions)
 
 
 def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] = ()) -> tuple[Pieces, Array, Array]:
@@ -421,10 +436,10 @@ def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] 
     parts, largest = np.stack((load.real, load.imag, *others)), pieces.largest(np.abs(load))
 
     def both(some: Pieces, found: Array) -> Array:
-        size, beside = np.hypot(*found[:2]), some.of(largest)
-        towards = _directed(found[0] + 1j * found[1], beside)
-        weakest = np.min(size, axis=0, where=size > _NO_LOAD * beside, initial=math.inf)
-        share = np.where(np.isfinite(weakest), weakest / np.maximum(beside, _TINIEST), 0.0)
+        size, most = np.hypot(*found[:2]), some.of(largest)
+        towards = _directed(found[0] + 1j * found[1], most)
+        weakest = np.min(size, axis=0, where=size > _NO_LOAD * most, initial=math.inf)
+        share = np.where(np.isfinite(weakest), weakest / np.maximum(most, _TINIEST), 0.0)
         weight = np.minimum(1.0, _SURE * share)
         return np.stack((size, towards.real * weight, towards.imag * weight))
 
@@ -535,45 +550,35 @@ class ShaftBearings:
         """Crank pin and crosshead pin of every cylinder, then the main bearings along the shaft."""
         return tuple(self._parts())
 
-    def _followers(self) -> Iterator[Follower]:
+    def _parts(self) -> Iterator[Bearing]:
+        every = []
         for forces in self._cylinders:
             own = forces.drive.cylinder
             first = next(one for one in self._cylinders if work_alike(one.drive.cylinder, own))
-            # whole cycles are taken off, which is exact: beside a large position an angle would lose its digits
-            yield Follower(first, own, np.fmod(own.crank_position, forces.drive.cycle))
-
-    def _parts(self) -> Iterator[Bearing]:
-        every = tuple(self._followers())
+            # whole cycles are taken off, which is exact: next to a large position an angle would lose its digits
+            every.append(Follower(first, own, np.fmod(own.crank_position, forces.drive.cycle)))
         for number, one in enumerate(every):
-            if not _loads(one.forces):
-                continue
-            of = f" of {one.cylinder.name}" if len(every) > 1 else ""
-            yield RodPin(f"crank pin{of}", one, self._pin_size(number), "crank_pin")
-            yield RodPin(f"crosshead pin{of}", one, _crosshead_size(one.cylinder), "crosshead_pin")
-        if self.line:
-            names = "AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)
-            for number, name in enumerate(names):
-                yield MainBearing(f"bearing {name}", number, self.line, every, self._journal_size())
+            if _loads(one.forces):
+                of, (pin, crosshead) = f" of {one.cylinder.name}" if len(every) > 1 else "", self._pin_sizes(number)
+                yield RodPin(f"crank pin{of}", one, pin, "crank_pin")
+                yield RodPin(f"crosshead pin{of}", one, crosshead, "crosshead_pin")
+        shaft, line = self.machine.crankshaft, self.line
+        if line and shaft:
+            frictions = [one.friction for one in self.machine.cylinders if one.friction]
+            diameters = (shaft.journal_diameter, *(one.journal_diameter for one in frictions))
+            size = Size(next((one for one in diameters if one is not None), None), shaft.journal_length)
+            for number, name in enumerate("AB" if line.bearings == 2 else range(1, line.bearings + 1)):
+                yield MainBearing(f"bearing {name}", number, line, every, size)
 
-    def _pin_size(self, number: int) -> Size:
-        """Return the size of a crank pin; rods side by side on one pin have equal parts of its length."""
+    def _pin_sizes(self, number: int) -> tuple[Size, Size]:
+        """Return the sizes of crank pin and crosshead pin; rods on one pin have equal parts of its length."""
         shaft, friction = self.machine.crankshaft, self.machine.cylinders[number].friction
-        if shaft is None:
-            return Size(friction.crank_pin_diameter if friction else None, None)
-        rods = len(self.line.throw_of(number).cylinders) if self.line else 1
-        return Size(shaft.pin_diameter, shaft.pin_length / rods)
-
-    def _journal_size(self) -> Size:
-        shaft = self.machine.crankshaft
-        assert shaft is not None
-        frictions = [one.friction for one in self.machine.cylinders if one.friction]
-        diameters = (shaft.journal_diameter, *(one.journal_diameter for one in frictions))
-        return Size(next((one for one in diameters if one is not None), None), shaft.journal_length)
-
-
-def _crosshead_size(cylinder: Cylinder) -> Size:
-    friction = cylinder.friction
-    return Size(friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else Size(None, None)
+        crank = Size(friction.crank_pin_diameter if friction else None, None)
+        if shaft is not None:
+            rods = len(self.line.throw_of(number).cylinders) if self.line else 1
+            crank = Size(shaft.pin_diameter, shaft.pin_length / rods)
+        given = (friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else (None, None)
+        return crank, Size(*given)
 
 
 def _loads(forces: CylinderForces) -> bool:

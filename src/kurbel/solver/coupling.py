@@ -19,7 +19,7 @@ from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import key_value
 from kurbel.solver.chain import Chain, ChainEquation, passing, response
@@ -89,11 +89,10 @@ class ElasticCoupling(SpeedLine):
         u = y[1] / pieces.of(own * effort.omega**2)
         super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed | self._found.failed, -1.0)
 
-    def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
-        """Return the samples of torque in N m, ω in rad/s or α in rad/s² with their pieces; None for another column."""
-        if column == "M_coupling":
-            return self.pieces, self.pieces.of(self.effort.mean) + self._torque
-        return super().samples_of(column)
+    @property
+    def torque(self) -> tuple[Pieces, Array]:
+        """Samples of the torque in the coupling in N m with their pieces."""
+        return self.pieces, self.pieces.of(self.effort.mean) + self._torque
 
     @property
     def alpha(self) -> tuple[Pieces, Array]:
@@ -101,8 +100,8 @@ class ElasticCoupling(SpeedLine):
         return self.pieces, self._alpha
 
     @cached_property
-    def _torque_extremes(self) -> list[Array]:
-        return [one[0] for one in self.pieces.extremes(self._torque[None])]
+    def _torque_extremes(self) -> Extremes:
+        return self.pieces.extremes(self.torque[1][None]).each(self.result)[0]
 
     @property
     def natural_order(self) -> Any:
@@ -112,12 +111,12 @@ class ElasticCoupling(SpeedLine):
     @key_value("M_K,max", "torque")
     def M_coupling_max(self) -> Extreme:
         """Largest torque in the elastic coupling."""
-        return Extreme(*map(self.result, (self.effort.mean + self._torque_extremes[0], self._torque_extremes[1])))
+        return self._torque_extremes.largest
 
     @key_value("M_K,min", "torque")
     def M_coupling_min(self) -> Extreme:
         """Smallest torque in the elastic coupling."""
-        return Extreme(*map(self.result, (self.effort.mean + self._torque_extremes[2], self._torque_extremes[3])))
+        return self._torque_extremes.smallest
 
     @cached_property
     def growth(self) -> Any:
@@ -135,7 +134,8 @@ class ElasticCoupling(SpeedLine):
         high, _, low, _ = (one[0] for one in self.effort.pieces.extremes(rigid[None]))
         if self.effort.count is None and high[0] == low[0]:
             return None
-        return self.result((self._torque_extremes[0] - self._torque_extremes[2]) / (high - low))
+        found = self._torque_extremes
+        return (found.largest.value - found.smallest.value) / self.result(high - low)
 
     # resonance
 

@@ -257,10 +257,15 @@ class TurningEffort:
             )
         return ExcessWork(self, self.M - self.load)
 
+    @property
+    def missing_inertia(self) -> list[Term]:
+        """The terms that the losses take off the torque of the moving masses, which turn all the same."""
+        return [Term(1 - share, one, torque) for share, one, torque in self.inertia_terms if some(share != 1)]
+
     @cached_property
     def true_excess(self) -> ExcessWork:
         """The excess that changes the kinetic energy: with the losses of the effort, but none of the inertia torque."""
-        missing = [Term(1 - share, one, torque) for share, one, torque in self.inertia_terms if some(share != 1)]
+        missing = self.missing_inertia
         return ExcessWork(self, self.excess.torque + self.sampled(missing)) if missing else self.excess
 
 

@@ -7,14 +7,12 @@ the extremes of the columns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared import quantities as declared
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import UsageError
@@ -80,6 +78,11 @@ class AtAngles:
     commands: ClassVar[tuple[str, ...]] = ()
     """That print its columns, where a column does not say which."""
 
+    def __init_subclass__(cls) -> None:
+        # a column of several parts is an attribute for each of them
+        for row in (row for item in list(vars(cls).values()) if isinstance(item, ForEach) for row in item.rows):
+            setattr(cls, row.quantity.id, property(row.of, doc=row.quantity.text))
+
     @property
     def rows(self) -> Mapping[str, Row]:
         """The rows of its columns, by id."""
@@ -96,33 +99,15 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
     rows = [Row(PHI, lambda one: one.phi)]
-    for item in _definitions(state):
-        for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-            rows += printed_by([row], *state.commands) if row.quantity.commands == ITS_OWN else [row]
+    for owner in [one for one in reversed(state.__mro__) if issubclass(one, AtAngles)]:
+        for item in vars(owner).values():
+            for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
+                rows += printed_by([row], *owner.commands) if row.quantity.commands == ITS_OWN else [row]
     rows += [Row(one.quantity, one.of, one.unless) for one in offers]
     return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
 
 
 _COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, Row]] = {}
-
-
-class Columns:
-    """Columns at crank angles φ (n,) in degrees: attributes by their ids, in SI, each (n,), computed on first use.
-
-    formulas: what computes each column; None comes of one that the machine does not have.
-    """
-
-    def __init__(self, phi: Array, formulas: Mapping[str, Callable[[], Any]]) -> None:
-        self.phi, self.formulas = phi, formulas
-
-    def __getattr__(self, id: str) -> Any:
-        if id == "formulas" or id not in self.formulas:
-            raise AttributeError(f"no column is called {id}")
-        self.__dict__[id] = self.formulas[id]()
-        return self.__dict__[id]
-
-    def __getitem__(self, id: str) -> Any:
-        return getattr(self, id, None)
 
 
 # key values
@@ -178,7 +163,7 @@ class Results(Shown):
 
     def __init_subclass__(cls) -> None:
         # what the class has through its parts, or as extremes, are attributes as well
-        for id, row in rows_of(cls).key_values.items() if _moved(cls) else ():
+        for id, row in rows_of(cls).key_values.items():
             if not hasattr(cls, id):
                 setattr(cls, id, property(row.of, doc=row.quantity.text))
 
@@ -191,18 +176,6 @@ class Results(Shown):
     def lists(self) -> Lists:
         """The quantities that results of this kind may have."""
         return self.rows.lists
-
-    @property
-    def answering(self) -> Iterable[Any]:
-        """The objects that have key values, searched in this order."""
-        return (self,)
-
-    def __getattr__(self, id: str) -> Any:
-        """Return a key value that is no attribute here: an extreme, or one that another of `answering` has."""
-        row = None if _moved(type(self)) or id.startswith("_") else rows_of(type(self)).key_values.get(id)
-        if row is None:
-            raise AttributeError(f"{type(self).__name__} has no attribute {id}")
-        return row.of(self)
 
     def __getitem__(self, name: str) -> Figure:
         """Return a key value by its id or printed symbol; raises UsageError where there is none."""
@@ -245,7 +218,7 @@ class Results(Shown):
 
     def _columns(self, phi: Array, within: Array) -> Any:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
-        return Columns(phi, {})
+        raise NotImplementedError
 
     @property
     def _of(self) -> str:
@@ -264,17 +237,10 @@ def _definitions(kind: type) -> Iterator[Any]:
     yield from found.values()
 
 
-def _moved(kind: type[Results]) -> bool:
-    """Return whether a class has its rows itself, and not in `kurbel.declared`."""
-    return any(isinstance(item, (Computed, ForEach)) for item in _definitions(kind))
-
-
 def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()) -> Rows:
     """Return the rows of a class of results, with the columns and key values that mechanisms add."""
     if (kind, offers, key_offers) in _ROWS:
         return _ROWS[kind, offers, key_offers]
-    if not _moved(kind):
-        return _ROWS.setdefault((kind, offers, key_offers), declared_rows(kind.command))
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
     found: list[Row] = []
@@ -293,34 +259,6 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
 
 
 _ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
-
-
-def declared_rows(command: str) -> Rows:
-    """Return the rows of a command whose quantities are declared in `kurbel.declared`."""
-
-    def row(quantity: Quantity) -> Row:
-        return Row(
-            quantity,
-            lambda results: answered(results.answering, quantity),
-            (lambda results: any(getattr(one, quantity.unless, False) for one in results.answering))
-            if quantity.unless
-            else None,
-        )
-
-    columns = declared.columns(command)
-    state_rows = {id: Row(one, partial(lambda id, state: state[id], id)) for id, one in columns.items()}
-    extremes = printed_by(searched(columns.values(), command), command)
-    return Rows(state_rows, in_order((*extremes, *map(row, declared.key_values(command)))))
-
-
-def passed_on(part: str, name: str, text: str) -> Any:
-    """Return a key value that a part of the results has under this name; None where there is no such part."""
-
-    def answer(results: Any) -> Any:
-        one = getattr(results, part)
-        return None if one is None else getattr(one, name)
-
-    return property(answer, doc=text)
 
 
 def told(values: Array, count: int | None) -> Any:
@@ -345,22 +283,6 @@ def _only(name: str, known: Mapping[str, Row], what: str) -> Row:
     if not found or ambiguity(name, found):
         raise UsageError(ambiguity(name, found) or f"no {what} '{shown(name)}'{did_you_mean(name, tuple(known))}")
     return known[found[0]]
-
-
-def answered(results: Iterable[Any], quantity: Quantity) -> Any:
-    """Return what the results have for a key value, in SI; None where they have none."""
-    for one in results:
-        if quantity.asks and hasattr(type(one), quantity.asks[0]):
-            return _asked(one, *quantity.asks)
-        if hasattr(type(one), quantity.id):
-            return getattr(one, quantity.id)
-    return None
-
-
-def _asked(results: Any, name: str, argument: str = "", part: str = "") -> Any:
-    found = getattr(results, name)
-    found = found(argument) if argument else found
-    return getattr(found, part) if part and found is not None else found
 
 
 def _figure(quantity: Quantity, value: Any) -> Figure:

@@ -9,6 +9,7 @@ The books take J as constant and the load as independent of the speed; the speed
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -43,60 +44,65 @@ _DOUBLINGS = 30
 
 
 class TurningState(AtAngles):
-    """The columns of the only machine at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
+    """The columns of the whole machine.
+
+    shown: makes of samples on pieces what is wanted, values at crank angles φ (n,) in degrees or the samples.
+    """
 
     commands = ("flywheel",)
 
-    def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
-        self.turning, self.phi, self._within = turning, phi, within
+    def __init__(self, turning: MachineTurning, phi: Array, shown: Callable[[Pieces, Array], Any]) -> None:
+        self._turning, self._effort, self.phi, self._shown = turning, turning.effort, phi, shown
 
     def __getitem__(self, id: str) -> Any:
         """Return a column by its id; None for one that there is not."""
         return self.M_load if id == "M_load" else super().__getitem__(id)
 
-    def _at(self, column: str) -> Array | None:
-        found = self.turning.samples_of(column)
-        return None if found is None else self.turning.effort.at(*found, self.phi, self._within)
-
-    @property
-    def M_load(self) -> Any:
-        """Load in N m at the nominal speed."""
-        return self._at("M_load")
+    def _at_crank(self, torque: Array) -> Any:
+        """Return a torque in N m as a force in N at the radius of crank 1; None without a crank."""
+        crank, pieces = self._turning.crank, self._effort.pieces
+        return None if crank is None else self._shown(pieces, torque / pieces.of(crank))
 
     @column("T", "force", extremes=("flywheel",), called="tangential force", peak=True)
     def T(self) -> Any:
         """Tangential force at the crank pin, positive when it drives."""
-        return self._at("T")
+        return self._at_crank(self._effort.M)
 
     @column("T_b", "force")
     def T_inertia(self) -> Any:
         """Share of the inertia forces in T, at uniform rotation (Tolle)."""
-        return self._at("T_inertia")
+        terms = self._effort.inertia_terms
+        return self._at_crank(self._effort.sampled(terms)) if terms else None
 
     @column("M", "torque", extremes=("flywheel",), called="torque")
     def M(self) -> Any:
         """Torque on the shaft."""
-        return self._at("M")
+        return self._shown(self._effort.pieces, self._effort.M)
+
+    @property
+    def M_load(self) -> Any:
+        """Load in N m at the nominal speed."""
+        return self._shown(self._effort.pieces, self._effort.load)
 
     @column("E", "energy")
     def E(self) -> Any:
         """Excess of the work of M over that of the resistance since angle 0."""
-        return self._at("E")
+        return self._shown(self._effort.pieces, self._turning.excess.E)
 
     @column("ω", "angular_velocity")
     def omega(self) -> Any:
         """Angular velocity of the shaft."""
-        return self._at("omega")
+        return self._shown(*self._turning.speed.omega) if self._turning.speed else None
 
     @column("α", "angular_acceleration", extremes=("flywheel",), called="angular acceleration of the shaft")
     def alpha(self) -> Any:
         """Angular acceleration of the shaft, just after a jump."""
-        return self._at("alpha")
+        return self._shown(*self._turning.speed.alpha) if self._turning.speed else None
 
     @column("M_K", "torque")
     def M_coupling(self) -> Any:
         """Torque in the elastic coupling."""
-        return self._at("M_coupling")
+        return self._shown(*self._turning.elastic.torque) if self._turning.elastic else None
 
 
 class MachineTurning(Results):
@@ -123,20 +129,12 @@ class MachineTurning(Results):
     # over the crank angle
 
     def _columns(self, phi: Array, within: Array) -> TurningState:
-        return TurningState(self, phi, within)
+        return TurningState(self, phi, lambda pieces, values: self.effort.at(pieces, values, phi, within))
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column at the nodes of pieces; None for one that is left out."""
-        effort, arm = self.effort, self.crank if column.startswith("T") else 1.0
-        if column in ("omega", "alpha", "M_coupling"):
-            return self.speed.samples_of(column) if self.speed else None
-        if arm is None or (column == "T_inertia" and not effort.inertia_terms):
-            return None
-        if column == "T_inertia":
-            values = effort.sampled(effort.inertia_terms)
-        else:
-            values = self.excess.E if column == "E" else effort.load if column == "M_load" else effort.M
-        return effort.pieces, values / effort.pieces.of(arm)
+        found: tuple[Pieces, Array] | None = TurningState(self, np.zeros(0), lambda *samples: samples)[column]
+        return found
 
     @property
     def breaks(self) -> Array:
@@ -443,7 +441,7 @@ class MachineTurning(Results):
         if self.J_needed is None or not self._turns or self._needs_no_inertia:
             return None
         if self.is_the_needed:
-            return self.delta
+            return self.speed and self.speed.delta
         if self.effort.count is not None:
             return self._line(self.J_needed).delta
         delta = self._delta_with(self.J_needed)

@@ -219,7 +219,7 @@ class CylinderForces(SampledCylinder, Results):
 
         There and back; None without friction there.
         """
-        f, lost, area = self.drive.crosshead_friction, self.crosshead_work, self.drive.guide_area
+        f, lost, area = self.drive.crosshead_friction, self.friction_works.get("crosshead"), self.drive.guide_area
         if area is None or lost is None or not (self.drive.rubs and some(lost != 0)):
             return None
         return lost / (f * area * self.way)
@@ -236,7 +236,7 @@ class CylinderForces(SampledCylinder, Results):
     @key_value("f N c_m", "power", after="T_peak")
     def wear_mean(self) -> Any:
         """Mean of the wear line: power lost on the guide."""
-        speed, lost = self.drive.machine.speed, self.crosshead_work
+        speed, lost = self.drive.machine.speed, self.friction_works.get("crosshead")
         if self.drive.guide_area is None or lost is None or speed is None:
             return None
         return lost * speed / self.drive.revolutions
@@ -355,37 +355,27 @@ class CylinderForces(SampledCylinder, Results):
         return self.told(self.pieces.integral(values))
 
     @cached_property
-    def crosshead_work(self) -> Any:
-        """∮ f |N| |dx| in J per cycle."""
-        if not self.drive.has_force or not self.drive.rubs:
-            return 0.0 if self._has_crosshead else None
-        state = self.samples
-        return self._over_cycle(state.crosshead_drag * (state.slope * state.direction))
+    def friction_works(self) -> dict[str, Any]:
+        """Works of friction in J per cycle, by the names in `friction` of what is given; ∮ f |N| |dx| at the crosshead.
 
-    @property
-    def _has_crosshead(self) -> bool:
-        friction = self.drive.cylinder.friction
-        return self.drive.has_force and friction is not None and friction.crosshead is not None
+        Rings, and what is given as a force, act over all of the path.
+        """
+        drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
+        if friction is None:
+            return found
+        if friction.crosshead is not None and drive.has_force:
+            state = self.samples if drive.rubs else None
+            found["crosshead"] = (
+                self._over_cycle(state.crosshead_drag * (state.slope * state.direction)) if state else 0.0
+            )
+        if friction.rings is not None:
+            found["rings"] = drive.ring_force * self.way
+        if friction.constant is not None:
+            found["constant"] = friction.constant * self.way
+        return found | self._pin_works(friction.of_pins if drive.has_force else ())
 
-    @cached_property
-    def ring_work(self) -> Any:
-        """Work of ring friction in J per cycle: the ring force over every stroke."""
-        friction = self.drive.cylinder.friction
-        if friction is None or friction.rings is None:
-            return None
-        return self.drive.ring_force * self.way
-
-    @cached_property
-    def constant_work(self) -> Any:
-        """Work of the friction that is given as a force, in J per cycle."""
-        friction = self.drive.cylinder.friction
-        return None if friction is None or friction.constant is None else friction.constant * self.way
-
-    @cached_property
-    def _pin_works(self) -> dict[str, Any]:
-        """Works of friction in pins and journals in J per cycle, by the keys of the coefficients that are given."""
-        friction = self.drive.cylinder.friction
-        given = friction.of_pins if friction and self.drive.has_force else ()
+    def _pin_works(self, given: tuple[str, ...]) -> dict[str, Any]:
+        """Return the works of friction in pins and journals in J per cycle, by the keys of the given coefficients."""
         rubbing = self.samples.rubbing if given else None
         if rubbing is None:
             return dict.fromkeys(given, 0.0)
@@ -402,10 +392,7 @@ class CylinderForces(SampledCylinder, Results):
     @key_value("A_f", "energy")
     def friction_work(self) -> Any:
         """Work lost by friction per cycle."""
-        if not self.drive.has_force:
-            return None
-        every = (self.crosshead_work, self.ring_work, self.constant_work, *self._pin_works.values())
-        given = [work for work in every if work is not None]
+        given = self.friction_works.values() if self.drive.has_force else ()
         return total(*given) if given else None
 
     def _of_driving(self, lost: Any) -> Any:
@@ -418,19 +405,19 @@ class CylinderForces(SampledCylinder, Results):
     @key_value("e_K", "ratio")
     def loss_crosshead(self) -> Any:
         """Work lost at the crosshead over that of the driving pistons."""
-        return self._of_driving(self.crosshead_work)
+        return self._of_driving(self.friction_works.get("crosshead"))
 
     @key_value("½ λ f", "ratio", plain="lam f/2")
     def loss_crosshead_redtenbacher(self) -> Any:
         """Redtenbacher's mean over the rod angle of the same loss (D 7)."""
-        if not self._has_crosshead:
+        if "crosshead" not in self.friction_works:
             return None
         return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
 
     @key_value("e_R", "ratio")
     def loss_rings(self) -> Any:
         """Work lost at the piston rings over that of the driving pistons."""
-        return self._of_driving(self.ring_work)
+        return self._of_driving(self.friction_works.get("rings"))
 
     @for_each(_RUBBING, "work_*", "A_f,*", "energy")
     def pin_work_of(self, name: str) -> Any:
@@ -438,7 +425,7 @@ class CylinderForces(SampledCylinder, Results):
 
         Of `crank_pin`, `crosshead_pin` or `journals`; None without its friction.
         """
-        return self._pin_works.get(name)
+        return self.friction_works.get(name)
 
     @for_each(_RUBBING, "loss_*", "e_*", "ratio")
     def pin_loss_of(self, name: str) -> Any:
@@ -488,6 +475,11 @@ def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: b
     """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
     known = rows_of(CylinderForces, offers, key_offers)
     return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
+
+
+def _crosshead_power(state: State) -> Any:
+    """Return f |N| |dx/dφ|, the work of friction at the crosshead in J per radian."""
+    return state.crosshead_drag * (state.slope * state.direction)
 
 
 def _sum_of_all(values: Sequence[Any]) -> Any:

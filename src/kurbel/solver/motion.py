@@ -4,19 +4,136 @@ from __future__ import annotations
 
 import math
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.batch import taken
-from kurbel.mechanisms import Mechanism, Offer
-from kurbel.numerics.arithmetic import every, where
+from kurbel.machine.parts import RodPoint
+from kurbel.mechanisms import Mechanism, Offer, PointMotion
+from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.quantity import key_value
-from kurbel.solver.figures import Results, Rows, Searched, rows_of, told
+from kurbel.quantity import column, key_value
+from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
+
+
+class MotionColumns(AtAngles):
+    """The motion of a mechanism at crank angles; its columns in SI, shaped as the angles.
+
+    angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) on the side of
+    every jump that is meant: for pieces their middles. omega: rad/s, None where no speed is given; point: of the rod,
+    whose path is wanted.
+    """
+
+    commands: ClassVar[tuple[str, ...]] = ("motion", "forces")
+
+    def __init__(
+        self, mechanism: Mechanism, angle: CrankAngle, within: Array, omega: Any, point: RodPoint | None = None
+    ) -> None:
+        self.mechanism, self.angle, self.within, self.omega, self.point = mechanism, angle, within, omega, point
+        self.phi = angle.degrees
+
+    @cached_property
+    def rod_angle(self) -> Any:
+        """sin ψ and cos ψ; None without a rod."""
+        return self.mechanism.rod_angle(self.angle)
+
+    @cached_property
+    def posed(self) -> CrankAngle:
+        """The crank angles with what the mechanism's rod does there."""
+        return self.angle._replace(rod=self.rod_angle)
+
+    @cached_property
+    def rod_slope(self) -> Any:
+        """dψ/dφ = λ cos φ/cos ψ; 0 without a rod."""
+        _, cos_psi = self.rod_angle or (0.0, 1.0)
+        return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
+
+    @cached_property
+    def _coordinate(self) -> Any:
+        return self.mechanism.coordinate(self.posed)
+
+    @cached_property
+    def way(self) -> Any:
+        """Displacement in m from the inner dead centre, even where x counts from elsewhere: for the chambers."""
+        return self._coordinate - self.mechanism.start
+
+    @cached_property
+    def slope(self) -> Any:
+        """dx/dφ in m per radian; of what only swings, dθ/dφ."""
+        return self.mechanism.slope(self.posed)
+
+    @cached_property
+    def curvature(self) -> Any:
+        """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
+        return self.mechanism.curvature(self.posed)
+
+    @cached_property
+    def direction(self) -> Array:
+        """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
+        if self.mechanism.turns:
+            return np.ones_like(self.within)
+        inner, outer = self.mechanism.dead_centres()
+        return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
+
+    @column("z", "ratio", on_request=("motion", "forces"))
+    def z(self) -> Any:
+        """Fraction of the stroke, or of the swing, from the inner dead centre."""
+        one = self.mechanism
+        return None if one.turns else (self._coordinate - one.start) / one.stroke
+
+    @column("ψ", "angle")
+    def psi(self) -> Any:
+        """Angle between connecting rod and stroke line."""
+        return None if self.rod_angle is None else bearing(*self.rod_angle)
+
+    @column("x", "length")
+    def x(self) -> Any:
+        """Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke."""
+        return self._coordinate if self.mechanism.slides else None
+
+    @column("c", "velocity")
+    def c(self) -> Any:
+        """Velocity, positive toward the shaft; of a quick-return ram, on the working stroke."""
+        return self.slope * self.omega if self.mechanism.slides and self.omega is not None else None
+
+    @column("b", "acceleration")
+    def b(self) -> Any:
+        """Acceleration, positive as the velocity."""
+        w = self.omega if self.mechanism.slides else None
+        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
+
+    # a point of the rod
+
+    @cached_property
+    def _point(self) -> PointMotion | None:
+        point, mechanism = self.point, self.mechanism
+        return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
+
+    @column("x_Q", "length", on_request=("forces",))
+    def x_point(self) -> Any:
+        """Place of the point of the rod from the shaft axis, along φ = 0."""
+        return self._point and self._point.x
+
+    @column("y_Q", "length", on_request=("forces",))
+    def y_point(self) -> Any:
+        """Place of the point of the rod from the shaft axis, along φ = 90°."""
+        return self._point and self._point.y
+
+    @column("v_Q", "velocity", on_request=("forces",))
+    def v_point(self) -> Any:
+        """Speed of the point of the rod."""
+        return None if self._point is None or self.omega is None else self._point.speed * self.omega
+
+    @column("b_Q", "acceleration", on_request=("forces",))
+    def b_point(self) -> Any:
+        """Magnitude of the acceleration of the point of the rod."""
+        w = self.omega
+        return None if self._point is None or w is None else self._point.acceleration * (w * w)
 
 
 class Motion(Results):

@@ -173,31 +173,27 @@ def equilibrium_residual(body: FreeBody, torque: Array) -> Array:
     """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
 
     torque: M on the shaft in N m, shaped as the forces (…), found from the work of the piston force and not from T. The
-    sums are taken in space, at the points where the forces act, about the middle of the pin: nothing of the formulas
-    above is used.
+    sums are those of the forces at the points where they act, along the shaft and r from the pin, about the middle of
+    the pin: nothing of the formulas above is used.
     """
-    shaft, r = body.shaft, body.crank
-    acting: tuple[tuple[Vector, float, Any, Any], ...] = (
-        (body.pin, 1.0, 0.0, 0.0),
-        (body.A, -1.0, -r, shaft.place_A),
-        (body.B, -1.0, -r, shaft.b),
-        (body.weight, 1.0, -r, shaft.b + shaft.flywheel_position),
+    shaft = body.shaft
+    acting = (
+        (body.pin, 1.0, 0.0),
+        (body.A, -1.0, shaft.place_A),
+        (body.B, -1.0, shaft.b),
+        (body.weight, 1.0, shaft.b + shaft.flywheel_position),
     )
-    # along T, toward the pin and along z; the shaft turns about −z: from the pin toward T
-    forces = np.stack([_in_space(sign * force.T, -sign * force.D, 0.0, torque) for force, sign, *_ in acting])
-    points = np.stack([_in_space(0.0, toward_pin, z, torque) for *_, toward_pin, z in acting])
-    moments = np.concatenate((np.cross(points, forces), _in_space(0.0, 0.0, torque, torque)[None]))
-    return np.maximum(_left_over(forces), _left_over(moments))
+    forces = np.stack([sign * (force.D + 1j * force.T) + 0 * torque for force, sign, _ in acting])
+    bends = np.stack([force * place for force, (_, _, place) in zip(forces, acting)])
+    twists = np.stack([torque, *(force.imag * body.crank for force in forces[1:])])  # the pin's has no arm
+    left = np.hypot(np.abs(bends.sum(axis=0)), twists.sum(axis=0))
+    moments = np.abs(bends).sum(axis=0) + np.abs(twists).sum(axis=0)
+    return np.maximum(_share(np.abs(forces.sum(axis=0)), np.abs(forces).sum(axis=0)), _share(left, moments))
 
 
-def _in_space(x: Any, y: Any, z: Any, like: Array) -> Array:
-    return np.stack([np.broadcast_to(np.asarray(one, dtype=float), np.shape(like)) for one in (x, y, z)], axis=-1)
-
-
-def _left_over(terms: Array) -> Array:
-    """Return |sum| over the sum of the sizes, for terms (m, …, 3); 0 where there are none."""
-    size, rest = np.linalg.norm(terms, axis=-1).sum(axis=0), np.linalg.norm(terms.sum(axis=0), axis=-1)
-    return np.asarray(np.divide(rest, size, out=np.zeros_like(rest), where=size > 0))
+def _share(left: Array, size: Array) -> Array:
+    """Return what is left over its size; 0 where there is nothing."""
+    return np.asarray(np.divide(left, size, out=np.zeros_like(size), where=size > 0))
 
 
 # the throws along a shaft

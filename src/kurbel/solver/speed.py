@@ -96,7 +96,7 @@ class SpeedLine(Results):
         return self.effort.result(np.where(self.failed, np.nan, values))
 
     def _extreme(self, u: Array, degrees: Array) -> Extreme:
-        return Extreme(self.result(self.effort.omega * (1 + u)), self.result(np.mod(degrees, self.pieces.cycle)))
+        return Extreme(self.result(self.effort.omega * (1 + u)), self.result(degrees))
 
     @key_value("δ", "ratio")
     def delta(self) -> Any:
@@ -128,11 +128,10 @@ class SpeedLine(Results):
         """Samples of the angular acceleration dω/dt in rad/s² with their pieces."""
         raise NotImplementedError
 
-    def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
-        """Return the samples of ω in rad/s or α in rad/s² with their pieces; None for another column."""
-        if column == "alpha":
-            return self.alpha
-        return (self.pieces, self.pieces.of(self.effort.omega) * (1 + self.u)) if column == "omega" else None
+    @property
+    def omega(self) -> tuple[Pieces, Array]:
+        """Samples of the angular velocity in rad/s with their pieces."""
+        return self.pieces, self.pieces.of(self.effort.omega) * (1 + self.u)
 
 
 class SpeedEquation:

@@ -25,14 +25,14 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.mechanisms import PointMotion
-from kurbel.numerics.arithmetic import bearing, some
+from kurbel.numerics.arithmetic import some
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import Row, column
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import AtAngles, column_rows
+from kurbel.solver.figures import column_rows
 from kurbel.solver.gas import Pressure
+from kurbel.solver.motion import MotionColumns
 from kurbel.solver.shaft import Vector
 from kurbel.solver.trace import TracePressure, spread
 
@@ -56,19 +56,17 @@ class Rubbing(NamedTuple):
         return self.at_crank + self.at_crosshead
 
 
-class State(AtAngles):
-    """A cylinder at crank angles; its columns in SI, shaped as the angles.
+class State(MotionColumns):
+    """A cylinder at crank angles: motion and forces; see `MotionColumns`.
 
-    angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) on the side of
-    every jump that is meant: for pieces their middles. rubs: whether pins and journals rub. A quantity that the machine
-    does not have is None.
+    rubs: whether pins and journals rub. A quantity that the machine does not have is None.
     """
 
     commands = ("forces",)
 
     def __init__(self, drive: Drive, angle: CrankAngle, within: Array, rubs: bool = True) -> None:
-        self.drive, self.angle, self.within, self.rubs = drive, angle, within, rubs
-        self.mechanism, self.omega, self.phi = drive.mechanism, drive.omega, angle.degrees
+        super().__init__(drive.mechanism, angle, within, drive.omega, drive.cylinder.point)
+        self.drive, self.rubs = drive, rubs
 
     @classmethod
     def at(cls, drive: Drive, degrees: Array, within: Array | None = None, machine: Indices | None = None) -> State:
@@ -93,106 +91,6 @@ class State(AtAngles):
 
     def _filled(self, value: Any) -> Array:
         return np.broadcast_to(np.asarray(value, dtype=float), self.phi.shape)
-
-    # motion
-
-    @cached_property
-    def rod_angle(self) -> Any:
-        """sin ψ and cos ψ; None without a rod."""
-        return self.mechanism.rod_angle(self.angle)
-
-    @cached_property
-    def posed(self) -> CrankAngle:
-        """The crank angles with what the mechanism's rod does there."""
-        return self.angle._replace(rod=self.rod_angle)
-
-    @cached_property
-    def rod_slope(self) -> Any:
-        """dψ/dφ = λ cos φ/cos ψ; 0 without a rod."""
-        _, cos_psi = self.rod_angle or (0.0, 1.0)
-        return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
-
-    @cached_property
-    def _coordinate(self) -> Any:
-        return self.mechanism.coordinate(self.posed)
-
-    @cached_property
-    def way(self) -> Any:
-        """Displacement in m from the inner dead centre, even where x counts from elsewhere: for the chambers."""
-        return self._coordinate - self.mechanism.start
-
-    @cached_property
-    def slope(self) -> Any:
-        """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.mechanism.slope(self.posed)
-
-    @cached_property
-    def curvature(self) -> Any:
-        """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
-        return self.mechanism.curvature(self.posed)
-
-    @cached_property
-    def direction(self) -> Array:
-        """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
-        if self.mechanism.turns:
-            return np.ones_like(self.within)
-        inner, outer = self.mechanism.dead_centres()
-        return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
-
-    @column("z", "ratio", commands=("motion", "forces"), on_request=("motion", "forces"))
-    def z(self) -> Any:
-        """Fraction of the stroke, or of the swing, from the inner dead centre."""
-        one = self.mechanism
-        return None if one.turns else (self._coordinate - one.start) / one.stroke
-
-    @column("ψ", "angle", commands=("motion", "forces"))
-    def psi(self) -> Any:
-        """Angle between connecting rod and stroke line."""
-        return None if self.rod_angle is None else bearing(*self.rod_angle)
-
-    @column("x", "length", commands=("motion", "forces"))
-    def x(self) -> Any:
-        """Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke."""
-        return self._coordinate if self.mechanism.slides else None
-
-    @column("c", "velocity", commands=("motion", "forces"))
-    def c(self) -> Any:
-        """Velocity, positive toward the shaft; of a quick-return ram, on the working stroke."""
-        return self.slope * self.omega if self.mechanism.slides and self.omega is not None else None
-
-    @column("b", "acceleration", commands=("motion", "forces"))
-    def b(self) -> Any:
-        """Acceleration, positive as the velocity."""
-        w = self.omega if self.mechanism.slides else None
-        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
-
-    # a point of the rod
-
-    @cached_property
-    def _point(self) -> PointMotion | None:
-        point, mechanism = self.drive.cylinder.point, self.mechanism
-        return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
-
-    @column("x_Q", "length", commands=("motion", "forces"), on_request=("forces",))
-    def x_point(self) -> Any:
-        """Place of the point of the rod from the shaft axis, along φ = 0."""
-        return self._point and self._point.x
-
-    @column("y_Q", "length", commands=("motion", "forces"), on_request=("forces",))
-    def y_point(self) -> Any:
-        """Place of the point of the rod from the shaft axis, along φ = 90°."""
-        return self._point and self._point.y
-
-    @column("v_Q", "velocity", commands=("motion", "forces"), on_request=("forces",))
-    def v_point(self) -> Any:
-        """Speed of the point of the rod."""
-        return None if self._point is None or self.omega is None else self._point.speed * self.omega
-
-    @column("b_Q", "acceleration", commands=("motion", "forces"), on_request=("forces",))
-    def b_point(self) -> Any:
-        """Magnitude of the acceleration of the point of the rod."""
-        w = self.omega
-        return None if self._point is None or w is None else self._point.acceleration * (w * w)
 
     # the chambers
 

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,36 +41,25 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
-from kurbel.solver.figures import Columns, Results
+from kurbel.quantity import column, for_each, key_value
+from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import FreeBody, Vector, WebLoads, equilibrium_residual, flywheel_weight
 from kurbel.solver.state import State, on_pin
 
-PARTS = ("pin", "web_A", "web_B", "journal_A", "journal_B")
+PARTS = {
+    "pin": ("pin", "the crank pin"),
+    "web_A": ("w,A", "web A"),
+    "web_B": ("w,B", "web B"),
+    "journal_A": ("j,A", "journal A"),
+    "journal_B": ("j,B", "journal B"),
+}
+"""Parts of a crankshaft: the index of their symbols, and what they are called in a sentence."""
+_BEARINGS = {part: PARTS[part] for part in ("pin", "journal_A", "journal_B")}
+"""Parts that are pressed: by the rod, and by bearings A and B."""
 
 # Stresses in a section: numbers or arrays in N, N m and m give Pa. They divide by one length at a time: the product of
 # three tiny ones would be zero.
-
-
-def rectangle_bending(moment: Any, depth: Any, breadth: Any) -> Any:
-    """Return σ = 6M/(b h²) in Pa at the faces of a rectangle bent across its depth h.
-
-    moment in N m; depth: h in m, the side in the plane of bending; breadth: b in m. Source: G, webs, "auf Biegung".
-
-    >>> round(rectangle_bending(1000.0, depth=0.1, breadth=0.2))
-    3000000
-    """
-    return 6 * moment / breadth / depth / depth
-
-
-def face_torsion(moment: Any, depth: Any, breadth: Any) -> Any:
-    """Return τ = (9/2) M/(b h²) in Pa at the middle of the two faces of a rectangle that are h apart.
-
-    moment in N m, depth and breadth in m: at the wide faces, where it is largest, h is the shorter side; at the narrow
-    ones the longer one. Bach's rounded factor: de Saint-Venant's own is 4.81 for a square and 3 for a strip, 4.07 for
-    sides of 1 and 2. Source: G, webs, "auf Drehung".
-    """
-    return 4.5 * moment / depth / depth / breadth
 
 
 def round_bending(moment: Any, diameter: Any) -> Any:
@@ -81,18 +70,6 @@ def round_bending(moment: Any, diameter: Any) -> Any:
 def round_torsion(moment: Any, diameter: Any) -> Any:
     """Return τ = 16 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_d/Z_p)."""
     return 16 / math.pi * moment / diameter / diameter / diameter
-
-
-def bach(sigma: Any, tau: Any, alpha: Any) -> Any:
-    """Return Bach's combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa.
-
-    sigma: normal stress in Pa, its magnitude counts; tau: shear stress in Pa; alpha: α₀ = k_b/(1.3 k_d), see
-    `bach_factor`. Source: G, "Resultierende Beanspruchung nach Bach".
-
-    >>> float(bach(100.0, 0.0, 1.0)), float(bach(0.0, 100.0, 1.0))
-    (100.0, 130.0)
-    """
-    return 0.35 * abs(sigma) + 0.65 * np.hypot(sigma, 2 * alpha * tau)
 
 
 def bach_factor(allowable_bending: Any, allowable_torsion: Any) -> Any:
@@ -124,13 +101,19 @@ class Place(NamedTuple):
 
     @property
     def combined(self) -> Any:
-        """Stress in Pa combined after Bach."""
-        return bach(self.normal, 0.0 if self.torsion is None else self.torsion, self.alpha)
+        """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
+        torsion = 0.0 if self.torsion is None else self.torsion
+        return 0.35 * abs(self.normal) + 0.65 * np.hypot(self.normal, 2 * self.alpha * torsion)
 
     @property
     def von_mises(self) -> Any:
         """Equivalent stress √(σ² + 3 τ²) in Pa after von Mises."""
         return np.hypot(self.normal, 0.0 if self.torsion is None else math.sqrt(3) * self.torsion)
+
+    def one_of(self, number: Any, degrees: Any) -> Place:
+        """Return the place at a crank angle in one of several states."""
+        own: dict[str, Any] = {name: float(each[number]) for name, each in self._asdict().items() if np.ndim(each)}
+        return self._replace(**own, degrees=degrees)
 
 
 def places(body: FreeBody) -> Iterator[Place]:
@@ -143,8 +126,7 @@ def places(body: FreeBody) -> Iterator[Place]:
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
     sections = {"at web A": inner} if shaft.overhung else {"middle": 0.0, "at web A": -inner, "at web B": inner}
     for name, u in sections.items():
-        twist = body.before_pin.T * body.crank
-        yield _round("pin", name, body.moments_at(u), twist, shaft.pin_diameter)
+        yield _round("pin", name, body.moments_at(u), body.before_pin.T * body.crank, shaft.pin_diameter)
     if shaft.overhung:
         yield from _web("web_A", shaft, body.web_beyond_pin)
     else:
@@ -178,15 +160,77 @@ def _round(part: str, name: str, moments: Vector, torque: Any, diameter: Any) ->
 
 
 def _web(part: str, shaft: Crankshaft, loads: WebLoads) -> Iterator[Place]:
+    """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
+
+    Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
+    (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
+    """
     t, w = shaft.web_thickness, shaft.web_width
     alpha = bach_factor(shaft.allowable_bending, shaft.allowable_torsion)
-    direct = loads.force / t / w  # G, webs, "auf Druck"
-    wide = abs(rectangle_bending(loads.in_plane, t, w))
-    narrow = rectangle_bending(loads.out_of_plane, w, t)
-    at_wide, at_narrow = abs(face_torsion(loads.twist, t, w)), abs(face_torsion(loads.twist, w, t))
-    yield Place(part, "wide face", alpha, direct, wide, None, at_wide, abs(direct) + wide)
-    yield Place(part, "narrow face", alpha, direct, None, narrow, at_narrow, abs(direct) + narrow)
+    direct = loads.force / t / w
+    wide, narrow = abs(6 * loads.in_plane / w / t / t), 6 * loads.out_of_plane / t / w / w
+    twist = 4.5 * abs(loads.twist)
+    yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, abs(direct) + wide)
+    yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, abs(direct) + narrow)
     yield Place(part, "corner", alpha, direct, wide, narrow, None, abs(direct) + wide + narrow)
+
+
+class StressColumns(AtAngles):
+    """Forces and stresses of one machine at crank angles φ (n,) in degrees; state: of its cylinder there."""
+
+    commands = ("stress",)
+
+    def __init__(self, phi: Array, state: State, body: FreeBody) -> None:
+        self.phi, self._state, self._body = phi, state, body
+
+    @column("D", "force")
+    def D(self) -> Any:
+        """Radial force at the crank pin, positive toward the shaft."""
+        return self._state.D
+
+    @column("T", "force")
+    def T(self) -> Any:
+        """Tangential force at the crank pin, positive when it drives."""
+        return self._state.T
+
+    @column("A_D", "force")
+    def A_D(self) -> Any:
+        """Force on bearing A along D, in the frame that turns with the throw."""
+        return self._body.A.D
+
+    @column("A_T", "force")
+    def A_T(self) -> Any:
+        """Force on bearing A along T."""
+        return self._body.A.T
+
+    @column("B_D", "force")
+    def B_D(self) -> Any:
+        """Force on bearing B, beside the flywheel, along D."""
+        return self._body.B.D
+
+    @column("B_T", "force")
+    def B_T(self) -> Any:
+        """Force on bearing B along T."""
+        return self._body.B.T
+
+    @cached_property
+    def _largest(self) -> dict[str, tuple[Array, Array]]:
+        """The largest of Bach's and of von Mises' stresses of each part that is examined."""
+        found: dict[str, tuple[Array, Array]] = {}
+        for place in places(self._body):
+            known = found.get(place.part, (0.0, 0.0))
+            found[place.part] = np.maximum(known[0], place.combined), np.maximum(known[1], place.von_mises)
+        return found
+
+    @for_each(PARTS, "sigma_*", "σ_*", "stress")
+    def sigma(self, part: str) -> Array | None:
+        """Largest combined stress of * (Bach)."""
+        return self._largest[part][0] if part in self._largest else None
+
+    @for_each(PARTS, "mises_*", "σ_v,*", "stress")
+    def mises(self, part: str) -> Array | None:
+        """Largest equivalent stress of * (von Mises)."""
+        return self._largest[part][1] if part in self._largest else None
 
 
 class _Cycle(NamedTuple):
@@ -209,6 +253,7 @@ class CrankshaftStrength(Results):
     """
 
     command = "stress"
+    state = StressColumns
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
         obstacle = machine.strength_obstacle
@@ -228,33 +273,17 @@ class CrankshaftStrength(Results):
             return None
         return self.shaft.flywheel_mass * GRAVITY
 
-    @property
-    def C_rod(self) -> Any:
-        """Centrifugal force in N of the connecting rod's turning part that D does not contain; None without one."""
-        return self.forces.drive.rod_pull if some(self.forces.drive.rod_pull != 0) else None
-
     def _body(self, pin: Vector, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
         spread = pieces if self.count is not None else None
         machine = self.machine if spread is None else taken(self.machine, spread.machine)
         (cylinder,), shaft = machine.cylinders, machine.crankshaft
         assert shaft is not None
-        weight = flywheel_weight(machine, cylinder, angle)
-        return FreeBody(shaft, cylinder.mechanism.crank, pin, weight)
+        return FreeBody(shaft, cylinder.mechanism.crank, pin, flywheel_weight(machine, cylinder, angle))
 
-    def _running(self, state: State) -> FreeBody:
-        return self._body(on_pin(state), state.angle)
-
-    def _columns(self, phi: Array, within: Array) -> Columns:
-        """Return forces on pin (D, T: of the rod alone, R 302 and 303) and bearings, and the stresses of each part."""
+    def _columns(self, phi: Array, within: Array) -> StressColumns:
         state = State.at(self.forces.drive, phi, within)
-        body = self._running(state)
-        found = dict(zip(("D", "T", "A_D", "A_T", "B_D", "B_T"), (state.D, state.T, *body.A, *body.B)))
-        for part in PARTS:
-            own = [place for place in places(body) if place.part == part]
-            found[f"sigma_{part}"] = np.max([one.combined for one in own], axis=0) if own else None
-            found[f"mises_{part}"] = np.max([one.von_mises for one in own], axis=0) if own else None
-        return Columns(phi, {id: partial(found.get, id) for id in found})
+        return StressColumns(phi, state, self._body(on_pin(state), state.angle))
 
     # the cycle
 
@@ -280,10 +309,15 @@ class CrankshaftStrength(Results):
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         return _Cycle(fine, found, loads)
 
-    @cached_property
-    def _parts(self) -> tuple[str, ...]:
-        """The part of every place."""
-        return tuple(place.part for place in self.at_dead_centre)
+    def _refuse_overflow(self, body: FreeBody) -> None:
+        """Raise UsageError where the stresses of the only machine are no finite numbers."""
+        if self.count is None and not all(
+            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
+        ):
+            raise UsageError(
+                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
+                "check the numbers and units of the machine file"
+            )
 
     @cached_property
     def _largest(self) -> list[Extreme]:
@@ -301,18 +335,9 @@ class CrankshaftStrength(Results):
 
     @cached_property
     def _largest_loads(self) -> list[Extreme]:
+        """The largest forces on pin, A and B."""
         found = self._cycle.pieces.extremes(self._cycle.loads[:3])
         return [Extreme(*map(self.forces.told, pair)) for pair in zip(found.largest, found.largest_at)]
-
-    def _refuse_overflow(self, body: FreeBody) -> None:
-        """Raise UsageError where the stresses of the only machine are no finite numbers."""
-        if self.count is None and not all(
-            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
-        ):
-            raise UsageError(
-                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
-                "check the numbers and units of the machine file"
-            )
 
     @property
     def breaks(self) -> Array:
@@ -321,19 +346,11 @@ class CrankshaftStrength(Results):
 
     # the two positions of the book, and the worst of the cycle
 
-    @cached_property
-    def full_force(self) -> Extreme:
-        """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
-
-        Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
-        """
-        found, motion = self._force_extremes("P_start"), self.forces.motion
-        assert motion.phi_idc is not None
-        assert motion.phi_odc is not None
-        pushes = found.largest.value >= -found.smallest.value
-        return chosen(
-            pushes, Extreme(found.largest.value, motion.phi_idc), Extreme(found.smallest.value, motion.phi_odc)
-        )
+    def _force_extremes(self, column: str) -> Extremes:
+        _ = self._cycle  # forces that are too large are refused before they are searched
+        found = self.forces.extremes_of(column)
+        assert found is not None
+        return found
 
     @cached_property
     def largest_torque(self) -> Extreme:
@@ -341,11 +358,16 @@ class CrankshaftStrength(Results):
         found = self._force_extremes("T")
         return chosen(found.peak.degrees == found.largest.degrees, found.largest, found.smallest)
 
-    def _force_extremes(self, column: str) -> Extremes:
-        _ = self._cycle  # forces that are too large are refused before they are searched
-        found = self.forces.extremes_of(column)
-        assert found is not None
-        return found
+    @cached_property
+    def full_force(self) -> Extreme:
+        """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
+
+        Starting and slow running (R p. 608): the inner dead centre, or the outer one where pulling is stronger.
+        """
+        found, motion = self._force_extremes("P_start"), self.forces.motion
+        pushes = found.largest.value >= -found.smallest.value
+        inner, outer = Extreme(found.largest.value, motion.phi_idc), Extreme(found.smallest.value, motion.phi_odc)
+        return chosen(pushes, inner, outer)
 
     @cached_property
     def at_dead_centre(self) -> tuple[Place, ...]:
@@ -354,7 +376,7 @@ class CrankshaftStrength(Results):
         angle = CrankAngle.of(degrees)
         radial: Any = self.forces.drive.mechanism.radial(angle)
         body = self._body(Vector(force * radial, 0.0), angle)
-        return tuple(_at(place, degrees) for place in places(body))
+        return tuple(place._replace(degrees=degrees) for place in places(body))
 
     @cached_property
     def at_largest_torque(self) -> tuple[Place, ...]:
@@ -362,17 +384,17 @@ class CrankshaftStrength(Results):
         torque, degrees = self.largest_torque
         body, _ = self._beside([degrees])
         nearest = np.abs(body.pin.T - torque).argmin()
-        return tuple(_at(place, degrees, nearest) for place in places(body))
+        return tuple(place.one_of(nearest, degrees) for place in places(body))
 
     @cached_property
     def at_worst(self) -> tuple[Place, ...]:
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
-        worst = self._largest[: len(self._parts)]
+        worst = self._largest[: len(self.at_dead_centre)]
         body, side = self._beside([one.degrees for one in worst])
         found = []
         for number, (place, one) in enumerate(zip(places(body), worst)):
             nearest = np.where(side == number, np.abs(place.combined - one.value), math.inf).argmin()
-            found.append(_at(place, one.degrees, nearest))
+            found.append(place.one_of(nearest, one.degrees))
         return tuple(found)
 
     def _beside(self, degrees: Sequence[float]) -> tuple[FreeBody, Array]:
@@ -380,84 +402,117 @@ class CrankshaftStrength(Results):
         pieces, each = self._cycle.pieces, np.repeat(np.asarray(degrees), 2)
         rows = pieces.holding(np.zeros(len(each), dtype=np.intp), each + np.tile((-1e-9, 1e-9), len(degrees)))
         state = State(self.forces.drive, CrankAngle.of(each), pieces.middle[rows])
-        return self._running(state), np.repeat(np.arange(len(degrees)), 2)
+        return self._body(on_pin(state), state.angle), np.repeat(np.arange(len(degrees)), 2)
+
+    # key values
+
+    @key_value("P_dc", "force")
+    def P_dc(self) -> Extreme:
+        """Full piston force, without inertia, taken in the dead centre."""
+        return self.full_force
+
+    @key_value("C_r", "force")
+    def C_rod(self) -> Any:
+        """Centrifugal force of the connecting rod's turning part, which D does not contain."""
+        return self.forces.drive.rod_pull if some(self.forces.drive.rod_pull != 0) else None
+
+    @for_each(PARTS, "sigma_*_dc", "σ_*,dc", "stress", group=str)
+    def sigma_dc_value(self, part: str) -> Any:
+        """Combined stress of * in the dead centre under full force (Bach)."""
+        found = self.sigma_dc(part)
+        return found and found.value
 
     def sigma_dc(self, part: str) -> Extreme | None:
         """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
         return _highest(Extreme(one.combined, one.degrees) for one in self.at_dead_centre if one.part == part)
 
+    def _largest_of(self, part: str, found: Sequence[Extreme]) -> Extreme | None:
+        return _highest(one for one, place in zip(found, self.at_dead_centre) if place.part == part)
+
+    @for_each(PARTS, "sigma_*_max", "σ_*,max", "stress", group=str)
     def sigma_max(self, part: str) -> Extreme | None:
-        """Return the largest combined stress of a part in Pa over the cycle, and its crank angle."""
-        return _highest(one for one, own in zip(self._largest, self._parts) if own == part)
+        """Largest combined stress of * over the cycle (Bach)."""
+        return self._largest_of(part, self._largest)
 
+    @for_each(PARTS, "mises_*_max", "σ_v,*,max", "stress", group=str)
     def mises_max(self, part: str) -> Extreme | None:
-        """Return the largest stress of a part after von Mises in Pa over the cycle, and its crank angle."""
-        return _highest(one for one, own in zip(self._largest[len(self._parts) :], self._parts) if own == part)
+        """Largest equivalent stress of * over the cycle (von Mises)."""
+        return self._largest_of(part, self._largest[len(self.at_dead_centre) :])
 
+    @for_each(PARTS, "safety_*_min", "S_*", "ratio", group=str)
     def safety(self, part: str) -> Extreme | None:
-        """Return k_b over the largest combined stress of a part, dead centre and cycle; None without k_b or stress."""
+        """Smallest safety of *: k_b over its combined stress, dead centre and cycle."""
         allowable = self.shaft.allowable_bending
         worst = _highest(one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
         if allowable is None or worst is None or every(worst.value == 0):
             return None
         return Extreme(allowable / where(worst.value == 0, math.nan, worst.value), worst.degrees)
 
-    # bearings
+    @key_value("A_max", "force")
+    def A_max(self) -> Extreme:
+        """Largest force on bearing A."""
+        return self._largest_loads[1]
 
-    def load_max(self, bearing: str) -> Extreme:
-        """Return the largest force in N on `pin`, `A` or `B` over the cycle."""
-        return self._largest_loads[("pin", "A", "B").index(bearing)]
+    @key_value("B_max", "force")
+    def B_max(self) -> Extreme:
+        """Largest force on bearing B, beside the flywheel."""
+        return self._largest_loads[2]
 
-    def pressure_max(self, bearing: str) -> Extreme | None:
-        """Return the largest force over the projected area d l in Pa; None where diameter or length is not given."""
-        size, load = self._size(bearing), self.load_max(bearing)
+    @key_value("p_pin,dc", "pressure")
+    def p_pin_dc(self) -> Any:
+        """Pressure on the crank pin under full force, P/(d l).
+
+        G: P_max/(d_z l_z).
+        """
+        return abs(self.full_force.value) / self.shaft.pin_diameter / self.shaft.pin_length
+
+    @for_each(_BEARINGS, "p_*_max", "p_*,max", "pressure", group=str)
+    def pressure_max(self, part: str) -> Extreme | None:
+        """Largest pressure on * over the cycle, force over d l."""
+        size, load = self._size(part), self._largest_loads[[*_BEARINGS].index(part)]
         return Extreme(load.value / size[0] / size[1], load.degrees) if size else None
 
-    def pressure_mean(self, bearing: str) -> Any:
-        """Return p_m in Pa: the mean over time, at uniform rotation, of the force over the projected area.
+    @for_each(_BEARINGS, "p_*_mean", "p_*,m", "pressure", after="p_*_max", group=str)
+    def pressure_mean(self, part: str) -> Any:
+        """Mean pressure on * over the time of a cycle.
 
         On the pin that of the rod force alone, as G has it for its bounds on p_m v.
         """
-        size = self._size(bearing)
-        return self._mean_loads[bearing] / size[0] / size[1] if size else None
+        size = self._size(part)
+        return self._mean_loads[part] / size[0] / size[1] if size else None
 
     @cached_property
     def _mean_loads(self) -> dict[str, Any]:
         """Means over time in N of the forces on both bearings, and of the force of the rod on the pin."""
         means = self._cycle.pieces.mean(self._cycle.loads[1:])
-        return dict(zip(("A", "B", "pin"), map(self.forces.told, means)))
+        return dict(zip(("journal_A", "journal_B", "pin"), map(self.forces.told, means)))
 
-    def pressure_velocity(self, bearing: str) -> Any:
-        """Return k = p_m v in W/m² with the surface speed v = π d n (G); None without a speed of rotation."""
-        pressure, speed, size = self.pressure_mean(bearing), self.machine.speed, self._size(bearing)
+    @for_each(_BEARINGS, "k_*", "k_*", "pressure_velocity", after="p_*_mean", group=str)
+    def pressure_velocity(self, part: str) -> Any:
+        """Mean pressure times surface speed, p_m v, of *.
+
+        In W/m², v = π d n (G); None without a speed of rotation.
+        """
+        pressure, speed, size = self.pressure_mean(part), self.machine.speed, self._size(part)
         return None if pressure is None or speed is None or size is None else pressure * math.pi * size[0] * speed
 
-    def _size(self, bearing: str) -> tuple[Any, Any] | None:
+    def _size(self, part: str) -> tuple[Any, Any] | None:
+        """Return diameter and length of a pin or journal in m; None where one is not given."""
         shaft = self.shaft
-        if bearing == "pin":
+        if part == "pin":
             return shaft.pin_diameter, shaft.pin_length
         given = shaft.journal_diameter is not None and shaft.journal_length is not None
         return (shaft.journal_diameter, shaft.journal_length) if given else None
 
-    @property
-    def pin_pressure_dc(self) -> Any:
-        """Full force over the projected area of the pin in Pa (G: P_max/(d_z l_z))."""
-        return abs(self.full_force.value) / self.shaft.pin_diameter / self.shaft.pin_length
-
-    @cached_property
+    @key_value("ΣF, ΣM", "ratio", plain="sum F, M", residual=True)
     def equilibrium_residual(self) -> Any:
-        """What is left of the sums of forces and moments on the shaft, over the sizes of their terms, at its worst."""
+        """What is left of the sums of forces and moments on the crankshaft.
+
+        Over the sizes of their terms, at its worst.
+        """
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state), state.angle, pieces)
         return self.forces.told(pieces.largest(equilibrium_residual(body, np.asarray(state.torque))))
-
-
-def _at(place: Place, degrees: Any, number: Any = None) -> Place:
-    """Return a place at a crank angle; with the stresses in one of several states, where one is meant."""
-    if number is None:
-        return place._replace(degrees=degrees)
-    own: dict[str, Any] = {name: float(each[number]) for name, each in place._asdict().items() if np.ndim(each)}
-    return place._replace(**own, degrees=degrees)
 
 
 def _highest(found: Iterable[Extreme]) -> Extreme | None:

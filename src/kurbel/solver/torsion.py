@@ -31,7 +31,7 @@ from kurbel.numerics.waves import crests
 from kurbel.quantity import column, key_value
 from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
-from kurbel.solver.effort import Term, TurningEffort, inertia_torque, moves
+from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
 from kurbel.solver.speed import SpeedLaw
@@ -122,13 +122,9 @@ def driving(effort: TurningEffort, line: ShaftLine) -> Array:
     """Return the same torques over the angle, less their means in N m, (masses, nodes, pieces) of `effort.pieces`."""
     found = np.zeros((len(line.masses), *effort.pieces.degrees.shape))
     for torque, mass in zip(found, line.masses):
-        terms: list[Term] = []
-        for group in effort.groups:
-            here, share = [one for one in group if one.drive.name in mass.cylinders], effort.share(group[0].drive)
-            if here:
-                terms += [Term(share, here), *effort.lost(here)]
-                terms += [Term(1 - share, here, inertia_torque)] if share != 1 and moves(here) else []
-        torque += effort.sampled(terms)
+        terms = [*effort.terms, *effort.missing_inertia]
+        here = [[one for one in term.cylinders if one.drive.name in mass.cylinders] for term in terms]
+        torque += effort.sampled([term._replace(cylinders=own) for term, own in zip(terms, here) if own])
     if effort.machine.effort:
         found[0] = effort.M
     if effort.diagram:

@@ -2,15 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.numerics.arithmetic import where
-
-if TYPE_CHECKING:
-    from kurbel.machine.balance import Counterweight, SharedCounterweights
 
 
 class Weight(NamedTuple):
@@ -47,10 +45,10 @@ class OwnThrow:
         product = mass * self.mechanism.crank * unit_vector(self.bank - self.late)
         return Weight(product, 1, self.place, self.number)
 
-    def carrying(self, one: "Counterweight", beside: float | None) -> Weight:
-        """Return a counterweight whose angle counts from this throw; beside: its place where none is given."""
+    def carrying(self, one: Counterweight, otherwise: float | None) -> Weight:
+        """Return a counterweight whose angle counts from this throw; otherwise: its place where none is given."""
         product = one.product * unit_vector(self.bank - self.late + one.angle)
-        return Weight(product, 1, beside if one.axial_position is None else one.axial_position, self.number)
+        return Weight(product, 1, otherwise if one.axial_position is None else one.axial_position, self.number)
 
 
 def middle_of(machine: Machine) -> float | None:
@@ -75,7 +73,7 @@ def wheels_of(machine: Machine) -> tuple[float, ...]:
 def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[Weight]:
     """Yield the weights on the crank, those of each throw and those of the whole machine.
 
-    Of a locomotive they stand in its wheels. Raises UsageError where a place is missing.
+    Of a locomotive they are in its wheels. Raises UsageError where a place is missing.
     """
     wheels = wheels_of(machine)
     for throw in throws:
@@ -84,7 +82,7 @@ def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[
 
 
 def _given(
-    throws: Sequence[OwnThrow], given: "SharedCounterweights | tuple[Counterweight, ...]", wheels: tuple[float, ...]
+    throws: Sequence[OwnThrow], given: SharedCounterweights | tuple[Counterweight, ...], wheels: tuple[float, ...]
 ) -> Iterator[Weight]:
     if isinstance(given, tuple):
         # with several throws a weight without a place belongs to none of them

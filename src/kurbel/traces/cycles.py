@@ -21,13 +21,14 @@ class Samples(NamedTuple):
     """Laps of a trace, one after the other: of one cycle each, or of one turn each where only the machine can tell.
 
     angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was tidied up; completed: the
-    last sample is the first one again, the file had none there.
+    last sample is the first one again, the file had none there; headed: the unit in the heading of the values, or ''.
     """
 
     angles: Array
     values: Array
     notes: tuple[str, ...] = ()
     completed: bool = False
+    headed: str = ""
 
 
 class Recording(NamedTuple):
@@ -66,13 +67,14 @@ def samples_of_file(
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
         values = base(table.figures)
     try:
-        return whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
+        found = whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
     except RuleError as error:
         if layout.recorded_speed is None:
             raise
         (fault,) = error.faults
         asked = "" if "angle_unit" in fault.message else _BY_TIME
         raise RuleError(fault._replace(message=fault.message + asked)) from None
+    return found._replace(headed=table.headed)
 
 
 def whole_cycles(

@@ -38,6 +38,7 @@ SECONDS = {"s": 1.0, "ms": 1e-3}
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 """What could be the figures of a file: nothing else of it is shown, since any other file may hold secrets."""
 _THOUSANDS = re.compile(r"[-+]?[0-9]{1,3}([.,][0-9]{3})+([.,][0-9]+)?")
+_UNIT = re.compile(r"[\[(]([^\])]+)[\])]")
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
 
@@ -94,11 +95,15 @@ class Layout(NamedTuple):
 
 
 class Table(NamedTuple):
-    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample."""
+    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample.
+
+    headed: the unit in the heading of the first of these columns, as in `p [bar]`, or ''.
+    """
 
     angles: Array
     figures: Array
     line: Callable[[int], str]
+    headed: str = ""
 
 
 def read_table(file: str, layout: Layout) -> Table:
@@ -125,7 +130,10 @@ def read_table(file: str, layout: Layout) -> Table:
         number, _ = next(itertools.islice(_figure_lines(text, layout), index, None))
         return f"line {number}"
 
-    return Table(angles, numbers[:, -len(layout.columns) :].T, line)
+    heads = [one for one in text.split("\n", layout.skip_rows)[: layout.skip_rows] if one.strip()]
+    cells = heads[-1].split(layout.between) if heads else []
+    unit = _UNIT.search(cells[layout.columns[0] - 1]) if len(cells) >= layout.columns[0] else None
+    return Table(angles, numbers[:, -len(layout.columns) :].T, line, unit[1].strip() if unit else "")
 
 
 @lru_cache(maxsize=4)

@@ -1,0 +1,28 @@
+"""The studies of benchmarks/ still run: each once, as briefly as it can be told to."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parent.parent / "benchmarks"
+BRIEF = {
+    "random_cylinders.py": ["5"],
+    "random_files.py": ["5"],
+    "random_machines.py": ["5"],
+    "reading.py": ["500"],
+    "start_up.py": ["1"],
+    "sweep.py": ["20"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(file.name for file in FOLDER.glob("*.py")))
+def test_benchmark_runs(name: str) -> None:
+    command = [sys.executable, str(FOLDER / name), *BRIEF.get(name, [])]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
