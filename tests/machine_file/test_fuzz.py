@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 import yaml
-from good_machines import ALL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from good_machines import ALL
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import reader, source

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from good_machines import DEMO, EQUAL, LIKE_ONE
 
+from good_machines import DEMO, EQUAL, LIKE_ONE
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError
 from kurbel.machine_file import loads

@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 
 import pytest
-from good_machines import ALL, DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
 
+from good_machines import ALL, DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 

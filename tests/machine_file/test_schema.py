@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 import yaml
-from good_machines import ALL
 
+from good_machines import ALL
 from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import ZEROED_UNITS, example, parse_quantity, unit_names
 from kurbel.errors import UnitError
