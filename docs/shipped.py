@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
-from kurbel.machine.alike import gathered
+from kurbel.machine.cylinder import gathered
 from kurbel.render.text import Look
 from kurbel.report.alike import together
 

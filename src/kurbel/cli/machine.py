@@ -54,7 +54,7 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
 
     case = asked.case()
     if cycle is not None:
-        from kurbel.machine.one_cycle import of_cycle
+        from kurbel.machine import of_cycle
 
         case = type(case)(of_cycle(case.machine, cycle))
     if each_cycle:

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import Fault, Path, UnitError
-from kurbel.numerics.arithmetic import every, some
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
@@ -81,10 +80,12 @@ def out_of_size(value: Any, kind: str) -> str:
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
+    import numpy as np
+
     smallest, largest, unit, *_ = KINDS[kind]
-    if not every(abs(value) <= largest):
+    if not np.all(abs(value) <= largest):
         return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
-    if some((value != 0) & (abs(value) < smallest)):
+    if np.any((value != 0) & (abs(value) < smallest)):
         return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
     return ""
 

@@ -59,10 +59,10 @@ class _Slot(NamedTuple):
         alone = len(self.varied) == 1 and not self.varied[0][1]
         return alone and self.form.is_number and not isinstance(self.given.made, Indivisible)
 
-    def read(self, texts: Sequence[str], folder: str) -> Any:
-        """Return what texts of its varied keys become, or Unbound, unraised."""
+    def read(self, texts: Sequence[str], whole: Reading) -> Any:
+        """Return what texts of its varied keys become, or Unbound, unraised; whole: how the file was read."""
         tree = self.given.mapping[self.name]
-        reading = Reading(folder)
+        reading = Reading(whole.folder, key_values=whole.key_values)
         try:
             for (_, inner), text in zip(self.varied, texts):
                 tree = _with(tree, inner, Plain(text)) if inner else Plain(text)
@@ -133,7 +133,7 @@ class Binder:
         if slot.numeric and (plain := slot.form.numbers(own[0])) is not None:
             return np.array(plain)
         texts = list(zip(*own))
-        known = {one: slot.read(one, self._reading.folder) for one in dict.fromkeys(texts)}
+        known = {one: slot.read(one, self._reading) for one in dict.fromkeys(texts)}
         for row, text in enumerate(texts):
             if isinstance(known[text], Unbound):
                 failures.setdefault(row, str(known[text]))
@@ -228,15 +228,19 @@ class _Maker(Maker):
         other = Given(given.form, given.mapping, given.path, values)
         if self._count == 1:
             return super()._record(other)
+        inside = len(self._rules)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
         record = given.form.load().of_keys(**values)
         stages: list[Iterable[Rule]] = [given.form.load().rules_of_keys(values)]
         if isinstance(record, Described):
             stages += [record.rules(), [Rule((), too_extreme(record, values), TOO_EXTREME)]]
         for rules in stages:
-            before = self.broken.copy()  # what a part or a stage breaks is not told of the whole or the next
+            # what a part or a stage breaks is not told of the whole or the next
+            below = np.zeros(self._count, dtype=bool)
+            for _, _, rule in self._rules[inside:]:
+                below |= rule.broken
             for rule in rules:
-                rows = np.broadcast_to(rule.broken, self._count) & ~before
+                rows = np.broadcast_to(rule.broken, self._count) & ~below
                 if rows.any():
                     self._rules.append((given, record, rule._replace(broken=rows)))
                     self.broken |= rows
@@ -249,12 +253,13 @@ class _Maker(Maker):
             for row in np.flatnonzero(rule.broken).tolist():
                 faults = given.form.flattened(RuleError(rule.fault(record, row)), given.mapping).faults
                 found.setdefault(row, []).extend(one.below(given.path) for one in faults)
-        return {row: _as_read(faults) for row, faults in found.items()}
+        return {row: _as_read(faults, self.reading.alike) for row, faults in found.items()}
 
 
-def _as_read(faults: Sequence[Fault]) -> list[Fault]:
-    """Return faults as a reading notes them, which stops where there are too many."""
+def _as_read(faults: Sequence[Fault], alike: dict[Path, Path]) -> list[Fault]:
+    """Return faults as a reading notes them: those that were taken over once, and not too many of them."""
     reading = Reading()
+    reading.alike = alike
     try:
         for fault in faults:
             reading.note(fault)

@@ -30,15 +30,17 @@ from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.errors import Fault, RuleError, refuse
+from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.origin import Origin
-from kurbel.machine.several import EqualCylinders, in_order
+from kurbel.machine.parts import Piston
+from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.near_words import did_you_mean
+from kurbel.traces.correct import Trace
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -346,3 +348,58 @@ class Machine(Record):
         if not any(piston.indicator for piston in cylinder.pistons):
             return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
         return ""
+
+
+def firings(machine: Machine) -> list[tuple[float, int]]:
+    """Return the crank angles of a cycle in degrees at which cylinders fire, each with the number of its cylinder."""
+    cycle = 360.0 * machine.revolutions
+    return sorted(
+        (within_cycle(turn + angle + cylinder.crank_position, cycle), number)
+        for number, cylinder in enumerate(machine.cylinders, 1)
+        for length, angle in _of_cylinder(machine, cylinder)
+        for turn in range(0, round(cycle), length)
+    )
+
+
+def _of_cylinder(machine: Machine, cylinder: Cylinder) -> Iterator[tuple[int, float]]:
+    """Yield for every end that fires the length of its cycle and its dead centre, in degrees of its own crank."""
+    four = machine.cycle_of(cylinder) == "four-stroke"
+    if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
+        yield 720, cylinder.mechanism.dead_centres()[0]
+    for number, piston in enumerate(cylinder.pistons):
+        turns = CYCLES[machine.cycle_of_piston(cylinder, number)]
+        for end, chamber in piston.chambers.items():
+            # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
+            if getattr(chamber, "fires", turns == 2 and getattr(chamber, "mean", 1.0) > 0):
+                yield 360 * turns, cylinder.mechanism.dead_centres()[end == "crank_end"]
+
+
+def of_cycle(machine: Machine, number: int) -> Machine:
+    """Return the machine with the cycle of this number, counted from 1, of every trace that has several.
+
+    Raises UsageError where no trace has so many.
+    """
+    counts = [len(trace.over(period).samples) for trace, period in _of_several(machine)]
+    if not counts:
+        raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")
+    if number > min(counts):
+        raise UsageError(f"--cycle {number}: there are {min(counts)} cycles, counted from 1")
+    # a mirrored end stays the same trace
+    alone: dict[int, Any] = {id(trace): trace.of_cycle(number, period) for trace, period in _of_several(machine)}
+
+    def changed(piston: Piston) -> Piston:
+        ends = {end: alone[id(chamber)] for end, chamber in piston.chambers.items() if id(chamber) in alone}
+        return replace(piston, indicator=replace(piston.indicator, **ends)) if piston.indicator else piston
+
+    cylinders = (replace(one, pistons=tuple(map(changed, one.pistons))) for one in machine.cylinders)
+    return replace(machine, cylinders=tuple(cylinders))
+
+
+def _of_several(machine: Machine) -> Iterator[tuple[Trace, float]]:
+    """Yield the traces of several cycles, each with the degrees of one."""
+    for cylinder in machine.cylinders:
+        for index, piston in enumerate(cylinder.pistons):
+            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
+            for chamber in piston.chambers.values():
+                if isinstance(chamber, Trace) and len(chamber.over(period).samples) > 1:
+                    yield chamber, period

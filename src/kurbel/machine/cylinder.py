@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Moment, Piston, RamForce, RodPoint
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
+
+Item = TypeVar("Item")
 
 CYCLES = {"two-stroke": 1, "four-stroke": 2}
 """Cycle -> revolutions of the shaft."""
@@ -219,3 +221,32 @@ def _on_rod(rod: ConnectingRod, length: Any) -> Iterator[Rule]:
     beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
     numbers = {"at": rod.center_of_gravity, "length": length}
     yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
+
+
+_PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")
+"""Keys of a cylinder that say where on the shaft it stands, and what the shaft carries there."""
+
+
+def work_alike(one: Cylinder, other: Cylinder) -> bool:
+    """Whether two cylinders move and are pushed alike, wherever on the shaft they stand."""
+    keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
+    return all(_same(getattr(one, key), getattr(other, key)) for key in keys)
+
+
+def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
+    """Return the items in groups of equal ones, in the order of their first ones."""
+    groups: list[list[Item]] = []
+    for item in items:
+        found = next((group for group in groups if equal(group[0], item)), None)
+        groups.append([item]) if found is None else found.append(item)
+    return groups
+
+
+def _same(one: Any, other: Any) -> bool:
+    if one is other or type(one) is not type(other):
+        return one is other
+    if is_dataclass(one):
+        return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(_same, one, other))
+    return bool(np.array_equal(one, other))

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise, product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from kurbel.declared.forms import FiringOrder
 from kurbel.declared.forms import Record as RecordForm
@@ -12,9 +12,6 @@ from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
-
-if TYPE_CHECKING:
-    from kurbel.machine import Machine
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -211,8 +208,8 @@ def _pins(cylinders: Sequence[Cylinder], places: Iterable[int]) -> list[list[int
 
 def _most_even(fixed: Mapping[int, float], open_: Mapping[int, float]) -> dict[int, float]:
     """Return the angles of those that are fixed and of those of which each may fire a turn later."""
-    here = [_within(angle, 720.0) for angle in fixed.values()]
-    either = [(_within(angle, 720.0), _within(angle + 360.0, 720.0)) for angle in open_.values()]
+    here = [within_cycle(angle, 720.0) for angle in fixed.values()]
+    either = [(within_cycle(angle, 720.0), within_cycle(angle + 360.0, 720.0)) for angle in open_.values()]
     sums = [_squared([*here, *angles]) for angles in product(*either)]
     least = min(sums) * (1 + _EQUAL)
     turns = product(*((angle, angle + 360.0) for angle in open_.values()))
@@ -232,10 +229,10 @@ def _squared(angles: list[float]) -> float:
 def _order(angles: Mapping[int, float]) -> list[int]:
     """Return the cylinders in the order in which they fire, from the first one on."""
     first = angles[min(angles)]
-    return sorted(angles, key=lambda place: (_within(angles[place] - first, 720.0), place))
+    return sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
 
 
-def _within(angle: float, cycle: float) -> float:
+def within_cycle(angle: float, cycle: float) -> float:
     """Return an angle of the cycle, in degrees."""
     return round(angle % cycle, 9) % cycle
 
@@ -246,29 +243,5 @@ def intervals(angles: Iterable[float], cycle: float) -> list[float]:
     >>> intervals([450, 0], 720)
     [450.0, 270.0]
     """
-    found = sorted(_within(angle, cycle) for angle in angles)
+    found = sorted(within_cycle(angle, cycle) for angle in angles)
     return [float(round(after - one, 9)) for one, after in zip(found, (*found[1:], found[0] + cycle))]
-
-
-def firings(machine: "Machine") -> list[tuple[float, int]]:
-    """Return the crank angles of a cycle in degrees at which cylinders fire, each with the number of its cylinder."""
-    cycle = 360.0 * machine.revolutions
-    return sorted(
-        (_within(turn + angle + cylinder.crank_position, cycle), number)
-        for number, cylinder in enumerate(machine.cylinders, 1)
-        for length, angle in _of_cylinder(machine, cylinder)
-        for turn in range(0, round(cycle), length)
-    )
-
-
-def _of_cylinder(machine: "Machine", cylinder: Cylinder) -> Iterable[tuple[int, float]]:
-    """Yield for every end that fires the length of its cycle and its dead centre, in degrees of its own crank."""
-    four = machine.cycle_of(cylinder) == "four-stroke"
-    if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
-        yield 720, cylinder.mechanism.dead_centres()[0]
-    for number, piston in enumerate(cylinder.pistons):
-        turns = CYCLES[machine.cycle_of_piston(cylinder, number)]
-        for end, chamber in piston.chambers.items():
-            # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
-            if getattr(chamber, "fires", turns == 2 and getattr(chamber, "mean", 1.0) > 0):
-                yield 360 * turns, cylinder.mechanism.dead_centres()[end == "crank_end"]

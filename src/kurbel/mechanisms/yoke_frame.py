@@ -49,7 +49,7 @@ class YokeFrame(SliderCrank):
     )
 
     def rules(self) -> Iterator[Rule]:
-        yield from super().rules()
+        yield from SliderCrank.rules(self)
         yield from finite(self, "gland")
 
     def bending_arm(self, angle: CrankAngle) -> Any | None:

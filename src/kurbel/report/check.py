@@ -7,8 +7,8 @@ from typing import NamedTuple
 from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
-from kurbel.machine import Cylinder, Machine
-from kurbel.machine.several import firings, intervals
+from kurbel.machine import Cylinder, Machine, firings
+from kurbel.machine.several import intervals
 from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
 from kurbel.report.frame import provenance

@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.alike import gathered, work_alike
+from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together

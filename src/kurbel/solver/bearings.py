@@ -25,8 +25,8 @@ from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.alike import work_alike
 from kurbel.machine.batch import taken
+from kurbel.machine.cylinder import work_alike
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved

@@ -22,7 +22,7 @@ from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.alike import gathered, work_alike
+from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.turning import Effort, Harmonics
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
