@@ -4,6 +4,7 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 import dataclasses
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
@@ -15,11 +16,13 @@ import numpy as np
 from kurbel.arrays import Flags
 from kurbel.declared.reading import REFUSED, Reading, Tree
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, RuleError, refuse
+from kurbel.errors import Fault, Path, RuleError, refuse, refused
 
 Schema = dict[str, Any]
 ABSENT = object()
 """What is found of a key that is not given."""
+
+TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Form(ABC):
@@ -295,7 +298,10 @@ class Described:
         cls.KEYS = own
 
     def __post_init__(self) -> None:
-        refuse(*self.faults())
+        try:
+            refuse(*self.faults())
+        except ArithmeticError:
+            refused(TOO_EXTREME)
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
@@ -329,8 +335,11 @@ class Described:
         for name, key in self.KEYS.items():
             value: Any = vars(self).get(key.attribute)
             given = value is not None and value is not defaults.get(key.attribute)
-            if given and np.ndim(value) == 0 and (wrong := key.form.out_of_bounds(value)):
-                yield Fault((name,), f"{value:g} {wrong}")
+            if not given or np.ndim(value):
+                continue
+            wrong = key.form.out_of_bounds(value)
+            if wrong or (isinstance(value, float) and math.isnan(value)):
+                yield Fault((name,), f"{value:g} {wrong or 'is no number'}")
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import TOO_EXTREME, Maker, too_extreme
-from kurbel.declared.keys import Described, Form, Rule
+from kurbel.declared.forms.structures import Maker, too_extreme
+from kurbel.declared.keys import TOO_EXTREME, Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
