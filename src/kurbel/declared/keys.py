@@ -4,7 +4,6 @@ A record (`Cylinder`, `Piston`, …) carries a table `KEYS` of these.
 """
 
 import dataclasses
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
@@ -326,20 +325,23 @@ class Described:
         return (Rule(one.path, True, one.message) for one in contradictions(self.KEYS, known))
 
     def faults(self) -> Iterator[Fault]:
-        """Yield what is wrong with the record of one machine: the bounds, or else the rules."""
-        beyond = list(self._out_of_bounds())
-        yield from beyond or (rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken)
+        """Yield what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
+        numbers = list(self._numbers())
+        found = [
+            Fault((name,), f"{value:g} {wrong}")
+            for name, form, value in numbers
+            if (wrong := form.out_of_bounds(value))
+        ]
+        found = found or [rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken]
+        yield from found or (Fault((name,), "nan is no number") for name, _, value in numbers if value != value)
 
-    def _out_of_bounds(self) -> Iterator[Fault]:
+    def _numbers(self) -> Iterator[tuple[str, Form, Any]]:
+        """Yield the entries that are given, but for arrays, with their forms."""
         defaults = {one.name: one.default for one in fields(self)}  # type: ignore[arg-type]
         for name, key in self.KEYS.items():
             value: Any = vars(self).get(key.attribute)
-            given = value is not None and value is not defaults.get(key.attribute)
-            if not given or np.ndim(value):
-                continue
-            wrong = key.form.out_of_bounds(value)
-            if wrong or (isinstance(value, float) and math.isnan(value)):
-                yield Fault((name,), f"{value:g} {wrong or 'is no number'}")
+            if value is not None and value is not defaults.get(key.attribute) and np.ndim(value) == 0:
+                yield name, key.form, value
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:
