@@ -48,6 +48,14 @@ def test_a_case_is_the_file_with_its_values(pump: Path) -> None:
     assert half.machine.name == "pump, half the pressure"
 
 
+def test_check_tells_the_faults_of_every_case(pump: Path) -> None:
+    pump.write_text(PUMP.replace("80 rpm", "-80 rpm").replace("1.5 bar", "1.5 bra"), encoding="utf-8")
+    found = json.loads(run("check", pump, "-f", "json").stdout)["findings"]
+    key = "indicator.head_end.constant.compression"
+    assert [one["line"] for one in found] == [8, 11]
+    assert [one["key"] for one in found] == ["cases[0].set.speed", f"cases[1].set.{key}"]
+
+
 def test_set_stands_over_the_case_and_vary_over_both(pump: Path) -> None:
     set_over = run("motion", pump, "--case", "full speed", "--set", "speed=100 rpm", "--key-values", "-f", "json")
     found = run("sweep", pump, "--case", "full speed", "--vary", "rod=2 m", "--columns", "c_max", "-f", "csv")

@@ -176,6 +176,35 @@ def test_machines_that_differ_in_numbers_are_one_lot_and_those_of_another_kind_a
     }
 
 
+GASES = "{{stroke: 1 m, rod: 3 m, offset: 0.1 m, bore: 0.4 m, cycle: {}, indicator: {{head_end: {}}}}}"
+STEAM = GASES.format("two-stroke", "{steam: {admission: 8 bar, exhaust: 0.2 bar, cut_off: 0.3, clearance: 0.05}}")
+OTTO = GASES.format("four-stroke", "{otto: {intake: 0 bar, peak: 40 bar, clearance: 0.15}}")
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "start", "end"),
+    [
+        (OTTO, ("stroke",), "1 m", "7 m"),
+        (OTTO, ("stroke", "offset"), "1 m", "5.5 m"),
+        (OTTO, ("offset", "rod"), "0.01 m", "1.5 m"),
+        (OTTO, ("indicator.head_end.otto.peak",), "40 bar", "0.1 bar"),
+        (STEAM, ("indicator.head_end.steam.admission",), "8 bar", "-0.5 bar"),
+    ],
+)
+def test_rules_take_arrays(text: str, keys: tuple[str, ...], start: str, end: str) -> None:
+    """A rule that does not is slow: its rows are made one by one."""
+    file, unit = source.decode("m.yaml", text.encode()), start.partition(" ")[2]
+    low, high = (float(one.partition(" ")[0]) for one in (start, end))
+    rows = [
+        (f"{value!r} {unit}", f"{2 - value / 5!r} {unit}")[: len(keys)] for value in np.linspace(low, high, 20).tolist()
+    ]
+    found = Binder(file, keys, rows[0]).bound(rows)
+    assert len(found.lots) == 1
+    machines = {row: found.lots[0].one(place) for place, row in enumerate(found.lots[0].rows)} | found.failures
+    for row, texts in enumerate(rows):
+        assert same(machines[row], read(file, keys, texts)), texts
+
+
 def test_several_points_of_one_card_vary_together() -> None:
     """Each was read beside the others as the file has them: the last one alone counted."""
     keys = [f"indicator.head_end.expansion.{place}.1" for place in (0, 1, 2)]

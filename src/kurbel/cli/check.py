@@ -1,18 +1,19 @@
 """`kurbel check`: reads machines, says what will be computed, and holds each against its limits."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from kurbel.cli.group import DONE, message_of, to_stderr
 from kurbel.cli.options import format_of, loaded, output_option, set_options, width_option
-from kurbel.errors import KurbelError
+from kurbel.errors import Fault, KurbelError, MachineFileError
 from kurbel.render import Look
 from kurbel.report.commands import BROKEN
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
+    from kurbel.machine.origin import Origin
     from kurbel.report.check import Checked
 
 _GRAVEST = 2, 3, BROKEN, DONE
@@ -83,7 +84,6 @@ def check(
 def _outcome(file: str, case_name: str, overrides: tuple[str, ...], file_name: str | None) -> _Outcome:
     """Read and check one machine; raises UsageError where the output would overwrite a trace that it names."""
     from kurbel.designs.uncertainty import given_uncertainty
-    from kurbel.machine_file.reader import read_machine
     from kurbel.render.output import refuse_overwriting
     from kurbel.report.check import checked
     from kurbel.solver.case import Case
@@ -94,11 +94,27 @@ def _outcome(file: str, case_name: str, overrides: tuple[str, ...], file_name: s
             given_uncertainty(machine)
         origin = machine.origin
         names = [one.name for one in machine.cases] if not case_name else []
-        cases = [Case(read_machine(origin._replace(case=name))) for name in names if origin]
+        cases = [*map(Case, _of_cases(origin, names))] if origin else []
     except KurbelError as error:
         return _Outcome(file, error=error)
     refuse_overwriting(file_name, machine.trace_files)
     return _Outcome(file, machine, checked(Case(machine), cases))
+
+
+def _of_cases(origin: "Origin", names: Iterable[str]) -> "list[Machine]":
+    """Return the machine of each load case; raises MachineFileError with the faults of all of them."""
+    from kurbel.machine_file.reader import read_machine
+
+    machines: list[Machine] = []
+    faults: list[Fault] = []
+    for name in names:
+        try:
+            machines.append(read_machine(origin._replace(case=name)))
+        except MachineFileError as error:
+            faults += error.faults
+    if faults:
+        raise MachineFileError(origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column)))
+    return machines
 
 
 def _error(outcome: _Outcome) -> KurbelError | None:

@@ -15,11 +15,13 @@ import numpy as np
 from kurbel.arrays import Flags
 from kurbel.declared.reading import REFUSED, Reading, Tree
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, RuleError, refuse
+from kurbel.errors import Fault, Path, RuleError, refuse, refused
 
 Schema = dict[str, Any]
 ABSENT = object()
 """What is found of a key that is not given."""
+
+TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Form(ABC):
@@ -295,7 +297,10 @@ class Described:
         cls.KEYS = own
 
     def __post_init__(self) -> None:
-        refuse(*self.faults())
+        try:
+            refuse(*self.faults())
+        except ArithmeticError:
+            refused(TOO_EXTREME)
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
@@ -320,17 +325,23 @@ class Described:
         return (Rule(one.path, True, one.message) for one in contradictions(self.KEYS, known))
 
     def faults(self) -> Iterator[Fault]:
-        """Yield what is wrong with the record of one machine: the bounds, or else the rules."""
-        beyond = list(self._out_of_bounds())
-        yield from beyond or (rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken)
+        """Yield what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
+        numbers = list(self._numbers())
+        found = [
+            Fault((name,), f"{value:g} {wrong}")
+            for name, form, value in numbers
+            if (wrong := form.out_of_bounds(value))
+        ]
+        found = found or [rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken]
+        yield from found or (Fault((name,), "nan is no number") for name, _, value in numbers if value != value)
 
-    def _out_of_bounds(self) -> Iterator[Fault]:
+    def _numbers(self) -> Iterator[tuple[str, Form, Any]]:
+        """Yield the entries that are given, but for arrays, with their forms."""
         defaults = {one.name: one.default for one in fields(self)}  # type: ignore[arg-type]
         for name, key in self.KEYS.items():
             value: Any = vars(self).get(key.attribute)
-            given = value is not None and value is not defaults.get(key.attribute)
-            if given and np.ndim(value) == 0 and (wrong := key.form.out_of_bounds(value)):
-                yield Fault((name,), f"{value:g} {wrong}")
+            if value is not None and value is not defaults.get(key.attribute) and np.ndim(value) == 0:
+                yield name, key.form, value
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:

@@ -35,6 +35,11 @@ class _Refused:
 REFUSED = _Refused()
 
 
+def has_refused(values: Iterable[Any]) -> bool:
+    """Return whether a value could not be read; others may be arrays, which `in` would compare by their numbers."""
+    return any(one is REFUSED for one in values)
+
+
 @dataclass(eq=False)
 class Given:
     """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.

@@ -5,14 +5,14 @@ numbers are arrays (machines,), and the rows that break a rule. Words, counts an
 that differ in these are made apart.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import TOO_EXTREME, Maker, too_extreme
-from kurbel.declared.keys import Described, Form, Rule
+from kurbel.declared.forms.structures import Maker, too_extreme
+from kurbel.declared.keys import TOO_EXTREME, Described, Form, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
@@ -230,19 +230,20 @@ class _Maker(Maker):
             return super()._record(other)
         inside = len(self._rules)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
-        # what a part breaks is not told of the whole
-        below = np.zeros(self._count, dtype=bool)
-        for _, _, rule in self._rules[inside:]:
-            below |= rule.broken
         record = given.form.load().of_keys(**values)
-        rules = [*given.form.load().rules_of_keys(values)]
+        stages: list[Iterable[Rule]] = [given.form.load().rules_of_keys(values)]
         if isinstance(record, Described):
-            rules += [*record.rules(), Rule((), too_extreme(record, values), TOO_EXTREME)]
-        for rule in rules:
-            rows = np.broadcast_to(rule.broken, self._count) & ~below
-            if rows.any():
-                self._rules.append((given, record, rule._replace(broken=rows)))
-                self.broken |= rows
+            stages += [record.rules(), [Rule((), too_extreme(record, values), TOO_EXTREME)]]
+        for rules in stages:
+            # what a part or a stage breaks is not told of the whole or the next
+            below = np.zeros(self._count, dtype=bool)
+            for _, _, rule in self._rules[inside:]:
+                below |= rule.broken
+            for rule in rules:
+                rows = np.broadcast_to(rule.broken, self._count) & ~below
+                if rows.any():
+                    self._rules.append((given, record, rule._replace(broken=rows)))
+                    self.broken |= rows
         return record
 
     def failures(self) -> dict[int, list[Fault]]:

@@ -64,7 +64,11 @@ class LoadCase(Record):
 
     name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
     values: tuple[tuple[str, Any], ...] = field(
-        Settings(), "Values instead of those of the file, by dotted key", required=True, key="set"
+        Settings(),
+        "Values instead of those of the file, by dotted key",
+        required=True,
+        example="{speed: 40 rpm}",
+        key="set",
     )
 
 

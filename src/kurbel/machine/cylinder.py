@@ -12,6 +12,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import Inline, Listing, OneOf, Variant
 from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
@@ -123,7 +124,7 @@ class Cylinder(Record):
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
         like = "'like' stands in a list of 'cylinders', which has another one above"
-        yield Rule("like", bool(given.get("like")), like)
+        yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
         alone = "a tandem piston stands beside the cylinder's own one; give its 'bore'"
         yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 

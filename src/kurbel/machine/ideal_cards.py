@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Union
 import numpy as np
 
 from kurbel.declared.forms import Number
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import REFUSED, has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 
 CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
@@ -72,7 +72,7 @@ class _TwoStroke(Record):
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
         high, low = given.get(cls.higher, REFUSED), given.get(cls.lower, REFUSED)
-        if REFUSED in given.values() and high is not REFUSED and low is not REFUSED:
+        if has_refused(given.values()) and high is not REFUSED and low is not REFUSED:
             yield _order(cls.higher, high, cls.lower, low)
 
     def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:

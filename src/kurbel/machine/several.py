@@ -7,7 +7,7 @@ from typing import Any
 
 from kurbel.declared.forms import FiringOrder
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
@@ -67,7 +67,7 @@ class EqualCylinders(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if REFUSED in given.values():
+        if has_refused(given.values()):
             return
         count, banks = given["count"], given.get("bank_angles", (0.0,))
         number = f"{len(banks)} angles for {count} cylinders; give one for each bank or for each cylinder"

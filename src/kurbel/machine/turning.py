@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms import Points, UnitName
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import Fault, Path, refuse
@@ -75,7 +76,7 @@ class Rim(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if "outer_diameter" in given and "inner_diameter" in given:
+        if "outer_diameter" in given and "inner_diameter" in given and not has_refused(given.values()):
             inner, outer = given["inner_diameter"], given["outer_diameter"]
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
             yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})

@@ -8,7 +8,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import FilePath, Points, UnitName
 from kurbel.declared.keys import Key
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative
 from kurbel.declared.units import Factor, Point, size_faults
 from kurbel.errors import refuse, refused
@@ -61,7 +61,7 @@ class Known(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if REFUSED in given.values():
+        if has_refused(given.values()):
             return
         one = sum(name in given for name in ("points", "file", "harmonics")) == 1
         yield Rule((), not one, "give one of 'points', 'file' or 'harmonics'")

@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, Physical, Points, UnitName
 from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point, unit_factor
 from kurbel.errors import Fault, RuleError, UnitError, refuse, refused
@@ -134,7 +134,7 @@ class Measured(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if "file" in given and REFUSED not in given.values():
+        if "file" in given and not has_refused(given.values()):
             yield from layout_rules("pressure", given)
 
     @classmethod

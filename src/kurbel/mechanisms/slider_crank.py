@@ -11,7 +11,7 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, alternative, field
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
@@ -102,7 +102,7 @@ class SliderCrank(Mechanism):
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
         stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
-        if stroke is None or offset is None or REFUSED in (stroke, rod, k, offset):
+        if stroke is None or offset is None or has_refused((stroke, rod, k, offset)):
             return
         numbers = {"rod": rod, "offset": offset}
         if rod is not None:
@@ -129,9 +129,9 @@ class SliderCrank(Mechanism):
         yield Rule("rod", straight & (rod < crank), f"{{rod}} is shorter than {fully}")
 
     @property
-    def _rounding(self) -> float:
+    def _rounding(self) -> Any:
         """How far three lengths that add up as people write them may miss each other as floats; two miss by nothing."""
-        return ulp(self.rod) + ulp(abs(self.offset)) / 2 if self.offset else 0.0
+        return where(self.offset == 0, 0.0, ulp(self.rod) + ulp(abs(self.offset)) / 2)
 
     @property
     def rod_length(self) -> float:

@@ -10,14 +10,23 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import Choice, reference
-from kurbel.declared.keys import ABSENT, Described, Form, Key, Keys, Schema, contradictions, none_of, required
+from kurbel.declared.keys import (
+    ABSENT,
+    TOO_EXTREME,
+    Described,
+    Form,
+    Key,
+    Keys,
+    Schema,
+    contradictions,
+    none_of,
+    required,
+)
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, Tree, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, RuleError, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
-
-TOO_EXTREME = "these numbers are too large or too small to compute with"
 
 
 class Record(Form):
