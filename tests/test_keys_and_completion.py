@@ -51,9 +51,12 @@ def test_one_key_in_full() -> None:
         "meaning  Reciprocating share of the mass",
         "form     a number",
         "absent   1/2",
+        "or give  center_of_gravity",
         "example  share: 0.1",
     ]
     assert "must be given" in told("crankshaft.a")
+    rim = told("flywheel.rim.mean_diameter")
+    assert "absent   mean_diameter or outer_diameter must be given\nor give  outer_diameter" in rim
 
 
 def test_a_key_that_several_mechanisms_have_is_told_for_each() -> None:

@@ -10,8 +10,9 @@ from kurbel.render.html import page
 from kurbel.render.markup import Html, document, listed, written
 from kurbel.render.svg import css, svg
 from kurbel.render.text_tables import TextTable, texts
+from kurbel.report.document import Document, Grid, Item, Pair
 from kurbel.report.picture import Picture
-from kurbel.report.tables import Document, Grid, Item, Pair, Provenance, Report
+from kurbel.report.tables import Provenance, Report
 
 _STYLE = (
     "header{border-bottom:2px solid var(--ink);margin-bottom:1rem}nav ul{columns:16rem;padding-left:1.2rem}\n"

@@ -12,11 +12,12 @@ from kurbel.near_words import did_you_mean
 
 
 class ListedKey(NamedTuple):
-    """A key with its dotted path, whether it must be given, and the word next to which it is allowed."""
+    """A key with its dotted path, whether it must be given, what may stand for it, and the word that it is beside."""
 
     path: str
     key: Key
     needed: bool
+    others: tuple[str, ...] = ()
     beside: str = ""
 
     @property
@@ -30,16 +31,18 @@ class ListedKey(NamedTuple):
         key, example = self.key, self.key.example or self.key.form.example()
         item = key.form.item if isinstance(key.form, Listing) else None
         inner = _of_record(item, self.path) if isinstance(item, Record) else _below(key.form, self.path)
+        name = self.path.rpartition(".")[2]
+        either = f"{' or '.join((name, *self.others))} must be given" if key.required and self.others else ""
         below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
         found = {
             "beside": self.beside,
             "meaning": key.text.replace("`", ""),
             "symbol": key.symbol,
             "form": self._form,
-            "absent": "must be given" if self.needed else key.absent or "left out",
-            "or give": key.instead,
+            "absent": "must be given" if self.needed else either or key.absent or "left out",
+            "or give": key.instead or ", ".join(self.others),
             "needs": key.needs,
-            "example": "" if example == "…" else f"{self.path.rpartition('.')[2]}: {example}",
+            "example": "" if example == "…" else f"{name}: {example}",
             "below it": ", ".join(below),
         }
         return [(head, text) for head, text in found.items() if text]
@@ -98,7 +101,8 @@ def _of_record(record: Record, path: str, beside: str = "") -> Iterator[ListedKe
     for name, key in record.keys.items():
         if not key.form.shared:
             here = f"{path}.{name}" if path else name
-            yield ListedKey(here, key, name in needed, beside)
+            others = tuple(other for other, one in record.keys.items() if one.instead == name)
+            yield ListedKey(here, key, name in needed, others, beside)
             yield from _below(key.form, here)
         for word, inner in key.form.records(name) if key.form.inline() else ():
             yield from _of_record(inner, path, "" if key.form.shared else word)

@@ -5,7 +5,6 @@ from typing import NamedTuple, Union
 
 from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.report.picture import Picture
 
 Value = Union[float, int, None]
 
@@ -174,40 +173,3 @@ def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
             f"write '{own}' or '{shown(numbered[name])}'"
         )
     return numbered.get(name, name)
-
-
-class Grid(NamedTuple):
-    """A table of texts; numbers, units: which of its columns are that; verdicts: which rows are good, and which bad."""
-
-    title: str
-    heads: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers: tuple[int, ...] = ()
-    units: tuple[int, ...] = ()
-    verdicts: tuple[str, ...] = ()
-
-
-class Pair(NamedTuple):
-    """A picture of each of two machines, None of one that does not have it."""
-
-    left: Picture | None
-    right: Picture | None
-
-
-Item = Union[str, Grid, Report, Picture, Pair]
-
-
-class Section(NamedTuple):
-    """A section: its word in links, its title, and its items."""
-
-    id: str
-    title: str
-    items: tuple[Item, ...]
-
-
-class Document(NamedTuple):
-    """A report on one machine, or on several next to one another."""
-
-    title: str
-    provenance: tuple[Provenance, ...]
-    sections: tuple[Section, ...]

@@ -13,14 +13,15 @@ from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
+from kurbel.report.angles import stepped
 from kurbel.report.check import Checked, checked
 from kurbel.report.commands import REPORTS, Command, report_of, subjects_of
+from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.frame import Frame, Subject, provenance
 from kurbel.report.keys import every_place, meaning
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
-from kurbel.report.rows import stepped
-from kurbel.report.tables import Document, Grid, Item, LeftOut, Pair, Section
+from kurbel.report.tables import LeftOut
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
