@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.forms import Record
-from kurbel.declared.keys import Described, Key, Keys, required
+from kurbel.declared.forms import Keyed, Record
+from kurbel.declared.keys import Described, Form, Key, Keys, required
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
@@ -141,10 +141,25 @@ def _keys(keys: Keys) -> str:
     needed = required(keys)
     rows = (
         (f"`{word}`", key.symbol, key.form.written(), _absent(key, word in needed), _example(word, key), key.text)
-        for word, key in keys.items()
+        for word, key in _with_cases(keys)
         if not key.form.shared
     )
     return _table(("key", "symbol", "form", "absent", "example", "meaning"), rows)
+
+
+def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
+    """Yield the keys of a table, each with those keys below it that have no table of their own."""
+    for word, key in keys.items():
+        yield word, key
+        for name, case in _cases(key.form):
+            yield f"{word}.{name}", case
+
+
+def _cases(form: Form) -> Iterator[tuple[str, Key]]:
+    if isinstance(form, Keyed):
+        own = ((name, case) for name, case in form.cases.items() if not isinstance(case, Record))
+        yield from ((name, Key(case, form.texts.get(name, ""))) for name, case in own)
+    yield from (one for word, inner in form.parts() if not word for one in _cases(inner))
 
 
 def _absent(key: Key, needed: bool) -> str:
@@ -153,7 +168,7 @@ def _absent(key: Key, needed: bool) -> str:
 
 def _example(word: str, key: Key) -> str:
     example = key.example or key.form.example()
-    return "" if example == "…" else f"`{word}: {example}`"
+    return "" if example == "…" else f"`{word.rpartition('.')[2]}: {example}`"
 
 
 def _command(name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import json
 import os
@@ -276,11 +277,14 @@ def test_an_interrupt_while_importing_is_130_and_silent(module: str, tmp_path: P
 
 def peak(work: Callable[[], object]) -> tuple[object, int]:
     """Return what some work answers, and the bytes that it needed at most, the answer included."""
+    gc.collect()
+    gc.freeze()  # what other tests have left must not put off the collection of what this one leaves
     tracemalloc.start()
     try:
         return work(), tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
+        gc.unfreeze()
 
 
 def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
