@@ -142,7 +142,7 @@ def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
         ("outer_diameter: 7 ft, inner_diameter: 8 ft, width: 1 ft", "inner_diameter: 2438.4 mm leaves no rim inside"),
         ("outer_diameter: 7 ft, inner_diameter: 7 ft, width: 1 ft", "inner_diameter: 2133.6 mm leaves no rim inside"),
         ("mean_diameter: 2 m, depth: 3 m, width: 2 m", "rim.depth: 3000 mm is more than the mean diameter (2000 mm)"),
-        ("mean_diameter: 2 m, width: 3 m", "rim.width: tells no moment of inertia without the depth of the rim"),
+        ("mean_diameter: 2 m, width: 3 m", "rim.width: gives no moment of inertia without the depth of the rim"),
         ("outer_diameter: 3 m, width: 3 m", "'outer_diameter' needs 'inner_diameter' beside it"),
         ("outer_diameter: 3 m, inner_diameter: 2 m, width: 1 m, mass: 1 t", "'width' and 'mass' say the same thing"),
         ("mean_diameter: 3 m, outer_diameter: 3 m, inner_diameter: 2 m", "'mean_diameter' and 'outer_diameter' say"),

@@ -1,4 +1,10 @@
-"""How a record of the machine file says its entries: one `field` or `alternative` each, and rules beside them."""
+"""How a record of the machine file says its entries: one `field` or `alternative` each, and rules beside them.
+
+A record says `rules`, conditions on its values, and `rules_of_keys`, conditions on what the file has, before there is a
+record. `faults` and `faults_of_keys` are those that one machine breaks; a sweep asks the rules themselves, with arrays.
+Which keys contradict or lack one another follows from `instead` and `needs`: the reader asks that of every file, and a
+record that is also made in Python yields its `contradictions` among its rules.
+"""
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping
@@ -73,7 +79,10 @@ def entry(
     gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
     **bounds: Any,
 ) -> Key:
-    """Return the declaration of an entry; see `Key` and `form_of`."""
+    """Return the declaration of an entry; see `Key` and `form_of`.
+
+    attribute: the key that it has in the file, '' for the name of the attribute, until the class of the record is made.
+    """
     formed = form_of(form, bounds)
     return Key(formed, text, symbol, required, absent, instead, needs, example, also, attribute, gives)
 

@@ -59,7 +59,7 @@ class Rim(Record):
         "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b", above=0
     )
     mass: float | None = field(
-        "mass", "Mass of the rim, which tells its moment of inertia as the width does", "m", above=0, instead="width"
+        "mass", "Mass of the rim, which gives its moment of inertia as the width does", "m", above=0, instead="width"
     )
     density: float = field(
         "density",
@@ -86,12 +86,12 @@ class Rim(Record):
         yield Rule("depth", beyond, "{depth} is more than the mean diameter ({mean_diameter}), that of a disc")
         if self.sized_by:
             message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
-            without = f"tells no moment of inertia without the depth of the rim; {message}"
+            without = f"gives no moment of inertia without the depth of the rim; {message}"
             yield Rule(self.sized_by, self.depth == 0, without)
 
     @property
     def sized_by(self) -> str:
-        """What tells its moment of inertia: `mass` or `width`, or an empty text."""
+        """What gives its moment of inertia: `mass` or `width`, or an empty text."""
         return "mass" if self.mass is not None else "width" if self.width is not None else ""
 
     @property
@@ -155,7 +155,7 @@ class Flywheel(Record):
         "Radius of gyration",
         "k",
         above=0,
-        instead="gd2",
+        instead="gd2",  # beside `mass`, which is instead of `inertia`
         needs="mass",
         key="radius_of_gyration",
     )
@@ -169,7 +169,7 @@ class Flywheel(Record):
     )
     _rim = alternative(
         Rim,
-        "A rim that has the whole moment of inertia; its sizes tell it, or else its section is told",
+        "A rim that has the whole moment of inertia; its sizes give it, or else the section that it needs is printed",
         absent="no section",
         gives=_of_rim,
         key="rim",

@@ -42,7 +42,7 @@ _BALANCED = 1e-9
 """Relative difference below which the means of effort and load are equal."""
 
 
-def inertia_torque(state: State) -> Any:
+def torque_of_inertia(state: State) -> Any:
     """Return the torque −m x′ x″ ω² in N m of the inertia forces at uniform rotation, −½ ω² dJ/dφ (Tolle).
 
     An exact rod adds its couple times −ψ′.
@@ -67,19 +67,20 @@ def moves(group: Sequence[CylinderForces]) -> bool:
 
 
 class Term(NamedTuple):
-    """A torque, or another quantity, of cylinders that work alike; factor: a number, or one of every machine (n,)."""
+    """A quantity of cylinders that work alike, as a torque; factor: a number, or one of every machine (machines,)."""
 
     factor: Any
     cylinders: Sequence[CylinderForces]
-    torque: Callable[[State], Any] = lambda state: state.M
+    quantity: Callable[[State], Any] = lambda state: state.M
 
 
 class TurningEffort:
     """The turning effort of a machine, or of `count` machines of one kind, over their common cycle in degrees.
 
-    Samples are (nodes, pieces) at the nodes of `pieces`, numbers of the machines (n,); of one machine, n = 1.
-    refused: which machines (n,) of many have no result; with one machine an error is raised instead, by `pieces` where
-    nothing turns it and where its speed is beyond floats, and by `excess` where it cannot run.
+    Samples are (nodes, pieces) at the nodes of `pieces`, numbers are (machines,), of one machine (1,).
+    refused: which of many machines (machines,) have no result, complete once `pieces` and `excess` have been asked for.
+    With one machine they raise an error instead: `pieces` where nothing turns it and where its speed is beyond floats,
+    `excess` where it cannot run.
     """
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
@@ -95,7 +96,7 @@ class TurningEffort:
         self._moving = [group for group in self.groups if moves(group)]
 
     def result(self, values: Array) -> Any:
-        """Return values (n,), nan for refused machines; for one machine a float."""
+        """Return values (machines,), nan for refused machines; for one machine a float."""
         return float(values[0]) if self.count is None else np.where(self.refused, np.nan, values)
 
     @cached_property
@@ -187,7 +188,7 @@ class TurningEffort:
 
     @cached_property
     def mean(self) -> Array:
-        """Mean of M in N m, (n,)."""
+        """Mean of M in N m, (machines,)."""
         return self._mean_of(self.M)
 
     def _mean_of(self, torque: Array) -> Array:
@@ -211,7 +212,7 @@ class TurningEffort:
 
     @property
     def deficit(self) -> Array:
-        """Mean of M less that of a load by points in N m, (n,); 0 where they agree, and for another load."""
+        """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
         given = self.mean if self._given_load is None else self.pieces.mean(self._given_load)
         return np.asarray(unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED))
 
@@ -220,12 +221,12 @@ class TurningEffort:
     @property
     def inertia_terms(self) -> list[Term]:
         """The terms of the torque of the moving masses in N m, each with its share of the losses; see `M`."""
-        return [Term(self.share(one[0].drive), one, inertia_torque) for one in self._moving]
+        return [Term(self.share(one[0].drive), one, torque_of_inertia) for one in self._moving]
 
     @cached_property
     def inertia_torque(self) -> Array:
         """The torque of all moving masses in N m, −½ ω_n² dJ/dφ, without losses."""
-        return self.sampled([Term(1.0, one, inertia_torque) for one in self._moving])
+        return self.sampled([Term(1.0, one, torque_of_inertia) for one in self._moving])
 
     @cached_property
     def J_moving(self) -> Array:
@@ -260,7 +261,7 @@ class TurningEffort:
     @property
     def missing_inertia(self) -> list[Term]:
         """The terms that the losses take off the torque of the moving masses, which turn all the same."""
-        return [Term(1 - share, one, torque) for share, one, torque in self.inertia_terms if some(share != 1)]
+        return [Term(1 - share, one, quantity) for share, one, quantity in self.inertia_terms if some(share != 1)]
 
     @cached_property
     def true_excess(self) -> ExcessWork:
@@ -281,7 +282,7 @@ class ExcessWork:
         """∫ (M − M_load) dφ in J from φ = 0, (nodes, pieces)."""
         pieces = self.pieces
         found = pieces.running(self.torque)
-        gained = np.append(found[-1, pieces.first[1:] - 1], found[-1, -1])  # rounding of the mean
+        gained = np.append(found[-1, pieces.first[1:] - 1], found[-1, -1])  # by the rounding of the mean
         return np.asarray(found - pieces.of(gained) * (pieces.degrees / pieces.cycle))
 
     @cached_property
@@ -295,6 +296,7 @@ class ExcessWork:
         """Work in J of every lobe from its crossing to the next, cyclically; positive ones speed the machine up."""
         machine, heights = self.crossings.machine, self.pieces.at(self.E, *self.crossings)
         following = np.roll(heights, -1)
+        # the last crossing of each machine is followed by its own first one
         following[np.flatnonzero(np.diff(machine, append=-1))] = heights[np.flatnonzero(np.diff(machine, prepend=-1))]
         return np.asarray(following - heights)
 
@@ -307,7 +309,7 @@ class ExcessWork:
 
     @cached_property
     def dE(self) -> Array:
-        """ΔE in J, the largest swing of the excess work, (n,)."""
+        """ΔE in J, the largest swing of the excess work, (machines,)."""
         return np.asarray(np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0))
 
 

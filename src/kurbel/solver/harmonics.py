@@ -21,7 +21,7 @@ from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import key_value
-from kurbel.solver.effort import TurningEffort, inertia_torque, moves, position
+from kurbel.solver.effort import TurningEffort, moves, position, torque_of_inertia
 from kurbel.solver.figures import Results
 from kurbel.solver.forces import CylinderForces
 
@@ -170,8 +170,8 @@ class MachineOrders(Results):
         found: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
             samples, share, lost = group[0].samples, self.effort.share(group[0].drive), self.effort.lost(group)
-            inertia = inertia_torque(samples) if moves(group) else np.zeros(1)
-            torques = [samples.M - inertia, inertia, *(one.torque(samples) for one in lost)]
+            inertia = torque_of_inertia(samples) if moves(group) else np.zeros(1)
+            torques = [samples.M - inertia, inertia, *(one.quantity(samples) for one in lost)]
             each = self.spectra(group[0].pieces, torques)
             own = Orders(self.orders, each[:2], moves(group)).cleared(np.abs(each[:2]).max(axis=(0, 1)))
             shared = own.parts * share
