@@ -157,8 +157,7 @@ def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
 
 def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     if isinstance(form, Keyed):
-        own = ((name, case) for name, case in form.cases.items() if not isinstance(case, Record))
-        yield from ((name, Key(case, form.texts.get(name, ""))) for name, case in own)
+        yield from form.single_keys()
     yield from (one for word, inner in form.parts() if not word for one in _cases(inner))
 
 
@@ -167,8 +166,8 @@ def _absent(key: Key, needed: bool) -> str:
 
 
 def _example(word: str, key: Key) -> str:
-    example = key.example or key.form.example()
-    return "" if example == "…" else f"`{word.rpartition('.')[2]}: {example}`"
+    line = key.line(word.rpartition(".")[2])
+    return line and f"`{line}`"
 
 
 def _command(name: str) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from good_machines import DEMO
 from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.quantities import every_quantity
@@ -21,19 +22,6 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
-DEMO = """\
-name: Demo steam engine
-speed: 50 rpm
-crank: 400 mm              # or stroke: 800 mm
-rod: 2000 mm               # or rod_ratio: 5  (L/R)
-bore: 450 mm
-indicator:
-  head_end:
-    unit: at
-    expansion:   [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]]
-    compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]
-  crank_end: mirrored
-"""
 
 
 def run(*arguments: str, text: str | None = None) -> Result:

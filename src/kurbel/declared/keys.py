@@ -178,7 +178,15 @@ class Key(NamedTuple):
 
     def write(self, name: str) -> str:
         """Return what to write where it is missing."""
-        return f"write for instance '{name}: {self.example or self.form.example()}'"
+        return f"write for instance '{name}: {self._example}'"
+
+    def line(self, name: str) -> str:
+        """Return a line of a file that gives it, such as `bore: 450 mm`; '' where it takes more than a line."""
+        return "" if self._example == "…" else f"{name}: {self._example}"
+
+    @property
+    def _example(self) -> str:
+        return self.example or self.form.example()
 
 
 Keys = dict[str, Key]

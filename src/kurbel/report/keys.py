@@ -28,7 +28,7 @@ class ListedKey(NamedTuple):
     @property
     def full(self) -> list[tuple[str, str]]:
         """All about the key, each after its head."""
-        key, example = self.key, self.key.example or self.key.form.example()
+        key = self.key
         item = key.form.item if isinstance(key.form, Listing) else None
         inner = _of_record(item, self.path) if isinstance(item, Record) else _below(key.form, self.path)
         name = self.path.rpartition(".")[2]
@@ -42,7 +42,7 @@ class ListedKey(NamedTuple):
             "absent": "must be given" if self.needed else either or key.absent or "left out",
             "or give": key.instead or ", ".join(self.others),
             "needs": key.needs,
-            "example": "" if example == "…" else f"{name}: {example}",
+            "example": key.line(name),
             "below it": ", ".join(below),
         }
         return [(head, text) for head, text in found.items() if text]
@@ -114,9 +114,7 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
         yield from () if form.inline_too else _of_record(form, path)
         return
     if isinstance(form, Keyed):
-        for name, case in form.cases.items():
-            if not isinstance(case, Record):
-                yield ListedKey(f"{path}.{name}", Key(case, form.texts.get(name, "")), False)
+        yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single_keys())
     if not form.inline():
         for name, inner in form.parts():
             yield from _below(inner, f"{path}.{name}" if name else path)

@@ -406,6 +406,12 @@ class Keyed(Form):
     def __init__(self, cases: dict[str, Form], otherwise: Record, texts: dict[str, str]) -> None:
         self.cases, self.otherwise, self.texts = cases, otherwise, texts
 
+    def single_keys(self) -> Iterator[tuple[str, Key]]:
+        """Yield the telling keys under which no mapping stands, by name."""
+        for name, case in self.cases.items():
+            if not isinstance(case, Record):
+                yield name, Key(case, self.texts.get(name, ""))
+
     def expected(self) -> str:
         keys = self.otherwise.expected().removeprefix("a mapping with ")
         return f"a mapping with {keys}; or with one of {', '.join(self.cases)}"
