@@ -9,7 +9,6 @@ from __future__ import annotations
 import cProfile
 import pstats
 import time
-import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import memory
 from indicated import Engine, absolute, columns_file
 from kurbel.cli import kurbel
 from swept_rows import WATERWORKS
@@ -46,12 +46,7 @@ def calls(*words: str) -> int:
 
 def peak(*words: str) -> int:
     """Bytes that a command has at most."""
-    tracemalloc.start()
-    try:
-        run(*words)
-        return tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
+    return memory.peak(lambda: run(*words))[1]
 
 
 def cpu(work: Callable[[], object]) -> float:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import gc
 import hashlib
 import json
 import os
 import shlex
 import subprocess
 import sys
-import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +27,7 @@ from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
+from memory import peak
 from representative import few, law_of_each
 
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")
@@ -273,18 +272,6 @@ def test_an_interrupt_while_importing_is_130_and_silent(module: str, tmp_path: P
 
 
 # long tables
-
-
-def peak(work: Callable[[], object]) -> tuple[object, int]:
-    """Return what some work answers, and the bytes that it needed at most, the answer included."""
-    gc.collect()
-    gc.freeze()  # what other tests have left must not put off the collection of what this one leaves
-    tracemalloc.start()
-    try:
-        return work(), tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-        gc.unfreeze()
 
 
 def test_columns_are_computed_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
