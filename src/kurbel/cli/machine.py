@@ -1,6 +1,4 @@
-"""The commands on one machine that print tables: motion, forces, flywheel, stress, bearings, balance, …, and check."""
-
-from typing import TYPE_CHECKING
+"""The commands on one machine that print tables: motion, forces, flywheel, stress, bearings, balance and the rest."""
 
 import click
 
@@ -15,9 +13,6 @@ from kurbel.cli.options import (
     uncertainty_option,
     where_option,
 )
-
-if TYPE_CHECKING:
-    pass
 
 
 @click.command()

@@ -477,11 +477,6 @@ def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: b
     return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
 
 
-def _crosshead_power(state: State) -> Any:
-    """Return f |N| |dx/dφ|, the work of friction at the crosshead in J per radian."""
-    return state.crosshead_drag * (state.slope * state.direction)
-
-
 def _sum_of_all(values: Sequence[Any]) -> Any:
     """Return the sum of the values of all cylinders; None where one has none."""
     known = [value for value in values if value is not None]
