@@ -354,6 +354,34 @@ def for_each(
     return made
 
 
+class Tabled(Computed[V]):
+    """A quantity that one expression gives, in a line of the table at the head of its class; see `value`."""
+
+    def __init__(self, of: Callable[[Any], V], texts: tuple[str, str, str], unless: Condition | None, **words: Any):
+        super().__init__(of, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
+        self.__doc__ = texts[2]
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        (row,) = self.rows
+        self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
+
+
+def value(
+    symbol: str,
+    kind: str,
+    text: str,
+    of: Callable[[Any], V],
+    *,
+    unless: Condition | None = None,
+    **words: Any,
+) -> Tabled[V]:
+    """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
+
+    of: takes the object and returns the value in SI. words: those of `Quantity`.
+    """
+    return Tabled(of, (symbol, kind, text), unless, **words)
+
+
 def _sentence(function: Callable[..., Any]) -> str:
     """Return the first paragraph of a docstring, without the dot at its end."""
     return " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")

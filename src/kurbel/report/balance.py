@@ -179,9 +179,9 @@ def _weight_tables(balance: MachineBalance, system: str) -> Iterator[PlaceTable]
     if best:
         title = "Counterweights in two planes, and balance shafts"
         yield place_table("best_weights", title, ("weight",), WEIGHTS, best, system)
-    if balance.locomotive:
+    if balance.machine.locomotive:
         square = (balance.omega or 0.0) ** 2
-        wheels = zip("AB", balance.locomotive.unbalanced, balance.wheels)
+        wheels = zip("AB", balance.in_wheels(), balance.wheels)
         rows = [_weight(name, Weight(product, 1, place), square) for name, product, place in wheels]
         yield place_table("wheels", "Beyond what turns, in the wheels", ("wheel",), WEIGHTS, rows, system)
 

@@ -40,7 +40,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import some, where
-from kurbel.solver.weights import OwnThrow, counterweights_of
+from kurbel.solver.weights import counterweights_of, throws_with_masses
 
 _ALIKE = 1e-9
 """Degrees, and metres, by which throws differ by rounding only."""
@@ -267,7 +267,7 @@ class ShaftLine:
         throw that is nearest to its place; where that is not known, of the throw that it belongs to. What of a rod
         turns pulls at its pin.
         """
-        cranks = [OwnThrow(number, one) for number, one in enumerate(self.machine.cylinders)]
+        cranks = throws_with_masses(self.machine)
         of_cylinders = {cylinder: number for number, throw in enumerate(throws) for cylinder in throw.cylinders}
         weights = (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(self.machine, cranks))
         for one in weights:
@@ -311,7 +311,7 @@ def shaft_obstacle(machine: Machine) -> str:
     if machine.crankshaft.overhung and count > 2:
         return f"{count} throws cannot all be overhung; a shaft has two ends"
     try:
-        list(counterweights_of(machine, [OwnThrow(number, one) for number, one in enumerate(machine.cylinders)]))
+        list(counterweights_of(machine, throws_with_masses(machine)))
     except UsageError as error:
         return str(error)
     return ""
