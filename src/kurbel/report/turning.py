@@ -161,7 +161,7 @@ def harmonics_report(
         warnings=of_machine(case) if frame.prose else (),
         tables=tuple(tables),
     )
-    return report_on(frame, machine, "Orders of the turning effort", cylinders, whole, _orders_notes(found))
+    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, _orders_notes(found))
 
 
 def harmonics_subjects(case: Case) -> list[Subject]:
