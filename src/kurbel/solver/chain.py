@@ -280,12 +280,12 @@ class ChainEquation:
         def by_machine(numbers: Array) -> Array:
             return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
 
-        self._twists = chain.twists
+        self._twists, inertias = chain.twists, by_machine(chain.inertias)
         self._damping, self._against = by_machine(chain.segment_damping), by_machine(chain.mass_damping)
-        self._speeds = 1 / (by_machine(chain.inertias) * omega)
-        self._springs = by_machine(chain.stiffnesses) / (omega * self._order)
-        self.unknowns, self.bounded = sum(chain.twists.shape), len(chain.stiffnesses) + loaded
-        self._energy = omega / self._speeds[loaded] if law else np.full(pieces.count, np.inf)
+        self._speeds, self._springs = 1 / (inertias * omega), by_machine(chain.stiffnesses) / (omega * self._order)
+        self.unknowns = sum(chain.twists.shape)
+        self.bounded = len(chain.stiffnesses) + loaded if law else None
+        self._height = inertias[loaded] * omega**2
         unit = np.broadcast_to(np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count))
         self._matrix = self._flow(unit, np.arange(pieces.count))[1]
 
@@ -299,26 +299,23 @@ class ChainEquation:
         return torques, np.concatenate((self._springs[:, None, machine] * apart, masses))
 
     def known(self, pieces: Pieces) -> Array:
-        """Return the torques on the masses."""
-        return pieces.carried(self._driving, self._source)
+        """Return the torques on the masses, and J ω_n² of the one under the load: less by so much, it stands still."""
+        torques = pieces.carried(self._driving, self._source)
+        return np.concatenate((torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:]))))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
-        """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+        """Return y′ and its derivative by y."""
+        torques, height = known[:-1], known[-1]
         rate = self._flow(y, pieces.machine)[1]
-        rate[-len(known) :] += known
+        rate[-len(torques) :] += torques
         slope = self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2)
         if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
-            height = self.height(known, pieces, eased)
             u = y[self.bounded] / height
             rise, by_square = self._law.rise(u * (2 + u), pieces)
             rate[self.bounded] -= rise
             slope[self.bounded, self.bounded] -= by_square * 2 * (1 + u) / height
         return rate, slope
-
-    def height(self, known: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return J ω_n² of the mass under the load: less by so much, it stands still."""
-        return np.asarray(pieces.of(self._energy + eased))
 
     def torques(self, y: Array, pieces: Pieces) -> Array:
         """Return the torques in the segments less their means in N m, (segments, nodes, pieces)."""
