@@ -357,8 +357,11 @@ def for_each(
 class Tabled(Computed[V]):
     """A quantity that one expression gives, in a line of the table at the head of its class; see `value`."""
 
-    def __init__(self, of: Callable[[Any], V], texts: tuple[str, str, str], unless: Condition | None, **words: Any):
-        super().__init__(of, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
+    def __init__(
+        self, of: Callable[[Any], V] | None, texts: tuple[str, str, str], unless: Condition | None, words: Any
+    ):
+        function = of or (lambda one: one.answers.get(self.name))
+        super().__init__(function, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
         self.__doc__ = texts[2]
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -370,16 +373,17 @@ def value(
     symbol: str,
     kind: str,
     text: str,
-    of: Callable[[Any], V],
+    of: Callable[[Any], V] | None = None,
     *,
     unless: Condition | None = None,
     **words: Any,
 ) -> Tabled[V]:
     """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
 
-    of: takes the object and returns the value in SI. words: those of `Quantity`.
+    of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,
+    by id, or there is none. words: those of `Quantity`.
     """
-    return Tabled(of, (symbol, kind, text), unless, **words)
+    return Tabled(of, (symbol, kind, text), unless, words)
 
 
 def _sentence(function: Callable[..., Any]) -> str:
