@@ -354,11 +354,11 @@ def for_each(
     return made
 
 
-class Tabled(Computed[V]):
+class Tabled(Computed[Any]):
     """A quantity that one expression gives, in a line of the table at the head of its class; see `value`."""
 
     def __init__(
-        self, of: Callable[[Any], V] | None, texts: tuple[str, str, str], unless: Condition | None, words: Any
+        self, of: Callable[[Any], Any] | None, texts: tuple[str, str, str], unless: Condition | None, words: Any
     ):
         function = of or (lambda one: one.answers.get(self.name))
         super().__init__(function, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
@@ -373,11 +373,11 @@ def value(
     symbol: str,
     kind: str,
     text: str,
-    of: Callable[[Any], V] | None = None,
+    of: Callable[[Any], Any] | None = None,
     *,
     unless: Condition | None = None,
     **words: Any,
-) -> Tabled[V]:
+) -> Tabled:
     """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
 
     of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,

@@ -170,7 +170,7 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 # over the crank angle
 
 
-def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled[Any]:
+def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled:
     """Return a column that is a part, or the size, of a vector of BalanceColumns; asked: printed on request alone."""
 
     def part(columns: BalanceColumns) -> Any:

@@ -33,7 +33,7 @@ from kurbel.numerics.pieces import Pieces, common, resolved
 from kurbel.quantity import value
 from kurbel.solver.figures import AtAngles, Results, told
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
+from kurbel.solver.shaft import SupportedShaft, Vector, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 HALF_CONTACT = 60.0
@@ -148,7 +148,7 @@ class Bearing(Results):
 
     @abstractmethod
     def _samples(self) -> Array:
-        """Return the load on the common pieces in the frames of journal and shell, two parts each, (4, nodes, pieces)."""
+        """Return the load on the common pieces of journal and of shell, two parts each, (4, nodes, pieces)."""
 
     @abstractmethod
     def _rate(self) -> tuple[Extreme, Any]:
@@ -262,14 +262,14 @@ class MainBearing(Bearing):
     contact = 0.0
 
     def __init__(
-        self, name: str, number: int, line: ShaftLine, every: Sequence[Follower], size: tuple[Any, Any]
+        self, name: str, number: int, line: SupportedShaft, every: Sequence[Follower], size: tuple[Any, Any]
     ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
         self._members = {index: every[index] for throw in throws for index in throw.cylinders}
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
         self._number, self._line = number, line
 
-    def _force(self, line: ShaftLine, pins: dict[int, Vector], degrees: Array) -> ComplexArray:
+    def _force(self, line: SupportedShaft, pins: dict[int, Vector], degrees: Array) -> ComplexArray:
         """Return the force in N in the frame of crank 1, whose angles in degrees these are.
 
         line: with the numbers of the machines whose angles they are; pins: forces of each cylinder on its crank pin.
@@ -296,8 +296,8 @@ class MainBearing(Bearing):
         for number, own in self._members.items():
             state = own.forces.samples if rubbed else own.forces.samples.unrubbed
             pins[number] = Vector(*own.carried(pieces, *_pin_load(state)))
-        machine = self.machine if self.count is None else taken(self.machine, pieces.machine)
-        return self._force(ShaftLine(machine, machine.crankshaft), pins, pieces.degrees)
+        line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
+        return self._force(line, pins, pieces.degrees)
 
     def _samples(self) -> Array:
         force, angle = self._sampled(rubbed=True), CrankAngle.at_nodes(self._common)
@@ -431,7 +431,7 @@ class ShaftBearings:
             )
         self.obstacle = shaft_obstacle(machine)
         known = machine.crankshaft and not self.obstacle
-        self.line = ShaftLine(machine, machine.crankshaft) if known else None
+        self.line = SupportedShaft(machine) if known else None
 
     @cached_property
     def parts(self) -> tuple[Bearing, ...]:
@@ -449,7 +449,7 @@ class ShaftBearings:
         for number, (one, loads) in enumerate(zip(every, self._loading)):
             if loads:
                 friction, of = one.cylinder.friction, f" of {one.cylinder.name}" if len(every) > 1 else ""
-                pin = friction.crank_pin_diameter if friction else None, None
+                pin: tuple[Any, Any] = friction.crank_pin_diameter if friction else None, None
                 if shaft:  # rods on one pin have equal parts of its length
                     pin = shaft.pin_diameter, shaft.pin_length / (len(line.throw_of(number).cylinders) if line else 1)
                 crosshead = (

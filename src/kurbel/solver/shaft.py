@@ -222,14 +222,16 @@ def _of_first(condition: Any) -> Any:
     return np.ravel(condition)[0]
 
 
-class ShaftLine:
+class SupportedShaft:
     """The crankshaft of a machine. throws: in order along the shaft; bearings: how many main bearings there are.
 
     Of many machines the throws are those of the first; the forces of one that has others are nan.
     """
 
-    def __init__(self, machine: Machine, shaft: Crankshaft) -> None:
-        self.machine, self.shaft = machine, shaft
+    def __init__(self, machine: Machine) -> None:
+        assert machine.crankshaft is not None
+        self.machine, shaft = machine, machine.crankshaft
+        self.shaft = shaft
         self._like_first: Any = True
         throws = throws_of(machine.cylinders, self._decided)
         found = sorted(throws, key=lambda throw: float(_of_first(throw.place)))
