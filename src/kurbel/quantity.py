@@ -386,6 +386,27 @@ def value(
     return Tabled(of, (symbol, kind, text), unless, words)
 
 
+def values_for(
+    parts: Parts,
+    id: str,
+    symbol: str,
+    kind: str,
+    text: str,
+    *,
+    of: Callable[[Any, str], Any] | None = None,
+    group: Callable[[str], str] = lambda part: "",
+    after: str = "",
+) -> ForEach[Any]:
+    """Return a key value or column of each of several parts, as `value` of one; of: takes object and part."""
+
+    def answer(one: Any, part: str) -> Any:
+        return one.answers.get(id.replace("*", part))
+
+    function = of or answer
+    function.__doc__ = text
+    return for_each(parts, id, symbol, kind, group=group, after=after)(function)
+
+
 def _sentence(function: Callable[..., Any]) -> str:
     """Return the first paragraph of a docstring, without the dot at its end."""
     return " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
