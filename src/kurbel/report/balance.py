@@ -74,7 +74,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
         left_out=tuple(balance_left_out(case, frame.compare)),
         warnings=tuple(pin_warnings(case.machine)),
     )
-    return report_on(frame, case.machine, "Massenausgleich", (), whole, _notes(case.balance))
+    return report_on(frame, case.machine, "Balancing", (), whole, _notes(case.balance))
 
 
 def balance_subjects(case: Case, compare: bool = False) -> list[Subject]:
