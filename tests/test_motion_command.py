@@ -113,7 +113,7 @@ def test_every_format(name: str, format: str, units: str) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     assert "nan" not in result.stdout
     if format in ("table", "markdown"):
-        assert "It. Bewegung des Kurbeltriebes" in result.stdout
+        assert "It. Motion of the crank train" in result.stdout
     if format == "csv":
         rows = list(csv.reader(io.StringIO(result.stdout)))
         assert len(rows) == 1 + 13
