@@ -144,7 +144,7 @@ def test_output_to_what_is_no_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "begin"), [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Bew"), ("o", "m. Bew")]
+    ("name", "begin"), [("o.csv", "phi_deg"), ("o.JSON", "{"), ("o.md", "# "), ("o.txt", "m. Mot"), ("o", "m. Mot")]
 )
 def test_the_suffix_says_the_format(name: str, begin: str, tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(MACHINE)

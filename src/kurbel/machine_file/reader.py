@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from kurbel.declared.forms import Record
-from kurbel.declared.forms.structures import Maker
+from kurbel.declared.forms.structures import Maker, RecordForm, places
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
 from kurbel.errors import Fault, UsageError
 from kurbel.machine import Machine
@@ -21,7 +20,7 @@ from kurbel.quantity import Quantity, by_id
 if TYPE_CHECKING:
     from kurbel.machine_file.overrides import Override
 
-ROOT = Record(Machine)
+ROOT = RecordForm(Machine)
 """The form of a whole machine file."""
 
 
@@ -63,7 +62,7 @@ def machine_of(given: Any) -> Machine:
 
 def reading_of(origin: Origin) -> Reading:
     """Return a pass over a file that has not begun."""
-    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"), key_values)
+    return Reading(origin.folder, lambda: places(ROOT), key_values)
 
 
 def key_values() -> Mapping[str, Quantity]:
