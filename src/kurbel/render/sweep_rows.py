@@ -233,9 +233,10 @@ def kept_rows(
     path = part if os.path.isfile(part := _part_of(file_name)) else file_name
     if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
         return Kept(), rows
-    heads, line_of = lines_of(titles, look)
+    heads, whole_line = lines_of(titles, look)
     head = heads if rows.start == 0 else ""
-    names = titles.whole
+    names, width = titles.whole, 1 + len(sweep.plan.inputs)
+    _, line_of_inputs = lines_of(Titles(titles.names[: width - 1]), look)
 
     def refuse(why: str) -> NoReturn:
         raise UsageError(
@@ -243,8 +244,8 @@ def kept_rows(
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
 
-    def compare(cells: Sequence[str], row: Row, count: int) -> None:
-        for name, there, here in zip(names[:count], cells, _cells(line_of(row), names, look)):
+    def compare(cells: Sequence[str], line: str, count: int) -> None:
+        for name, there, here in zip(names, cells, _cells(line, names[:count], look)):
             if there != here and not _same(there, here):
                 refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
 
@@ -258,7 +259,6 @@ def kept_rows(
             file.seek(size)
 
             count, following, last = 0, rows.start, None
-            width = 1 + len(sweep.plan.inputs)
             whole = (line for line in file if line.endswith(b"\n"))
             while lines := list(islice(whole, _COMPARED_AT_ONCE)):
                 parsed = []
@@ -276,8 +276,7 @@ def kept_rows(
                         refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
                     if row < following or (not conditions and row != following):
                         refuse(f"row {following + 1} is missing in it")
-                    answers = (None,) * (len(sweep.heads) - len(inputs[row]))
-                    compare(cells, Row(row + 1, (*inputs[row], *answers)), width)
+                    compare(cells, line_of_inputs(Row(row + 1, inputs[row])), width)
                     following = row + 1
                     last = cells if any(cells[width : 1 + len(sweep.heads)]) else last
                 count, size = count + len(lines), size + sum(map(len, lines))
@@ -286,7 +285,7 @@ def kept_rows(
 
     if last:
         computed = next(rows_of(sweep, range(int(last[0]) - 1, int(last[0]))))
-        compare(last, computed, len(names))
+        compare(last, whole_line(computed), len(names))
         if not all(one.holds(computed) for one in conditions):
             refuse(f"row {last[0]} is in it, which --where leaves out")
     return Kept(count, size), rows[following - rows.start :]
