@@ -6,7 +6,7 @@ Numbers stay text: what a scalar means is decided by the key that it stands unde
 """
 
 import re
-from collections.abc import Set
+from collections.abc import Iterator, Set
 from typing import Any
 
 import yaml
@@ -59,7 +59,7 @@ class Parser:
         self.values: dict[Path, tuple[int, int]] = {}
         self._path: list[Step] = []
         self._scalars = 0
-        self._events = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        self._events: Iterator[Any] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
     def document(self) -> Any:
         """Return the tree of the only document."""
@@ -118,7 +118,7 @@ class Parser:
                     wrong = self._report(event, "a key is missing before the colon")
                 place: Path = (*self._path, name)
                 if place in self.wanted:
-                    self.keys.setdefault(place, (event.start_mark.line, event.start_mark.column))
+                    self.keys.setdefault(place, _place_of(event))
             else:
                 name = "?"
                 wrong = isinstance(event, yaml.AliasEvent) or self._report(
@@ -138,7 +138,7 @@ class Parser:
     def _guard(self, event: Any) -> bool:
         """Note a tag, an anchor or an alias, and return whether there is one."""
         if isinstance(event, yaml.AliasEvent):
-            return self._report(event, f"'*{shown(event.anchor)}' is not supported; write the value itself{_LIKE}")
+            return self._report(event, f"'*{shown(str(event.anchor))}' is not supported; write the value itself{_LIKE}")
         if event.tag is not None:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             return self._report(event, f"the tag '{shown(tag)}' is not supported; leave it out")
@@ -154,20 +154,23 @@ class Parser:
             # an empty value is pointed at by its key, as is a mapping or a list; items of a list have no key
             text = isinstance(event, yaml.ScalarEvent) and event.value
             places = self.values if text else self.keys
-            places.setdefault(path, (event.start_mark.line, event.start_mark.column))
+            places.setdefault(path, _place_of(event))
             self.wanted.discard(path)
         if not self.wanted:
             raise StopReading
 
     def _report(self, event: Any, message: str) -> bool:
-        mark = event.start_mark
-        self.reading.note(Fault(tuple(self._path), message).at(mark.line, mark.column))
+        self.reading.note(Fault(tuple(self._path), message).at(*_place_of(event)))
         return True
 
     def _stop(self, event: Any, message: str) -> None:
         self._path.clear()
         self._report(event, message)
         raise StopReading
+
+
+def _place_of(event: Any) -> tuple[int, int]:
+    return event.start_mark.line, event.start_mark.column
 
 
 _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
