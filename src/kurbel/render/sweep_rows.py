@@ -244,8 +244,18 @@ def kept_rows(
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
 
-    def compare(cells: Sequence[str], line: str, count: int) -> None:
-        for name, there, here in zip(names, cells, _cells(line, names[:count], look)):
+    def parsed(lines: Sequence[str], count: int) -> list[list[str]]:
+        try:
+            found = _cells(lines, look)
+        except csv.Error as error:
+            refuse(f"it is no csv: {error}")
+        for line, (heads, cells) in zip(lines, found):
+            if len(cells) != count or (heads and heads != names[:count]) or not cells[0].isdecimal():
+                refuse(f"it has a line {line.rstrip()[:60]!r}")
+        return [cells for _, cells in found]
+
+    def compare(cells: Sequence[str], now: Sequence[str]) -> None:
+        for name, there, here in zip(names, cells, now):
             if there != here and not _same(there, here):
                 refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
 
@@ -261,22 +271,17 @@ def kept_rows(
             count, following, last = 0, rows.start, None
             whole = (line for line in file if line.endswith(b"\n"))
             while lines := list(islice(whole, _COMPARED_AT_ONCE)):
-                parsed = []
-                for line in lines:
-                    text = line.decode("utf-8", "replace").rstrip("\n")
-                    try:
-                        cells = _cells(text, names, look)
-                        parsed.append((int(cells[0]) - 1, cells))
-                    except (ValueError, IndexError, AttributeError, csv.Error):
-                        refuse(f"it has a line {text[:60]!r}")
-                known = [row for row, _ in parsed if row in rows]
-                inputs = dict(zip(known, sweep.inputs(known)))
-                for row, cells in parsed:
+                some = parsed([line.decode("utf-8", "replace") for line in lines], len(names))
+                known = [row for cells in some if (row := int(cells[0]) - 1) in rows]
+                inputs = zip(known, sweep.inputs(known))
+                now = dict(zip(known, parsed([line_of_inputs(Row(row + 1, values)) for row, values in inputs], width)))
+                for cells in some:
+                    row = int(cells[0]) - 1
                     if row not in rows:
                         refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
                     if row < following or (not conditions and row != following):
                         refuse(f"row {following + 1} is missing in it")
-                    compare(cells, line_of_inputs(Row(row + 1, inputs[row])), width)
+                    compare(cells, now[row])
                     following = row + 1
                     last = cells if any(cells[width : 1 + len(sweep.heads)]) else last
                 count, size = count + len(lines), size + sum(map(len, lines))
@@ -285,23 +290,25 @@ def kept_rows(
 
     if last:
         computed = next(rows_of(sweep, range(int(last[0]) - 1, int(last[0]))))
-        compare(last, whole_line(computed), len(names))
+        compare(last, parsed([whole_line(computed)], len(names))[0])
         if not all(one.holds(computed) for one in conditions):
             refuse(f"row {last[0]} is in it, which --where leaves out")
     return Kept(count, size), rows[following - rows.start :]
 
 
-def _cells(line: str, names: Sequence[str], look: Look) -> list[str]:
-    """Return the texts of the cells of a line; raises ValueError for other heads."""
+def _cells(lines: Sequence[str], look: Look) -> list[tuple[list[str], list[str]]]:
+    """Return the heads, none in csv, and the texts of the cells of each line; no cells of one that is of neither."""
     if look.format == "csv":
-        found = dict(zip(names, cells := next(csv.reader([line], delimiter=";" if look.comma else ","))))
-    else:
-        found = json.loads(line)
-        each = [one if isinstance(one, list) else [one] for one in found.values()]
-        cells = [" ".join("" if one is None else str(one) for one in parts) for parts in each]
-    if list(found) != list(names) or len(cells) != len(names):
-        raise ValueError(line)
-    return cells
+        return [([], cells) for cells in csv.reader(lines, delimiter=";" if look.comma else ",")]
+    found = []
+    for line in lines:
+        try:
+            values = dict(json.loads(line))
+        except (ValueError, TypeError):
+            values = {}
+        each = [one if isinstance(one, list) else [one] for one in values.values()]
+        found.append((list(values), [" ".join("" if one is None else str(one) for one in parts) for parts in each]))
+    return found
 
 
 def _same(there: str, here: str) -> bool:
