@@ -1,6 +1,5 @@
 """Bracketed roots of many functions at once, after Chandrupatla (1997): inverse quadratic steps, safe as bisection."""
 
-import math
 from collections.abc import Callable
 
 import numpy as np
