@@ -43,7 +43,7 @@ _CLOSE = 1e-9
 """By what δ may miss the wanted one, relatively, with the flywheel that gives it."""
 
 
-def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Tabled[Any]:
+def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Tabled:
     """Return a column whose samples `MachineTurning.samples_of` has."""
     return value(symbol, kind, text, lambda state: state[id], **words)
 
