@@ -11,7 +11,7 @@ from there to the first mass, or from the last mass there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -59,21 +59,11 @@ class Chain:
         held = np.eye(len(self.inertias) + first + last)
         return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
 
-    @property
-    def damped(self) -> bool:
-        """Whether anything damps it."""
-        return bool(self.segment_damping.any() or self.mass_damping.any() or self.loss.any())
-
-    def each(self, change: Callable[[Array], Array], ground: str = "") -> Chain:
-        """Return the chain whose arrays are changed."""
-        inertias, stiffnesses, damping, against, loss = map(
-            change, (self.inertias, self.stiffnesses, self.segment_damping, self.mass_damping, self.loss)
-        )
-        return Chain(inertias, stiffnesses, damping, against, loss, ground)
-
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
-        return self.each(lambda one: one[::-1], {"before": "after", "after": "before"}.get(self.ground, ""))
+        ground = {"before": "after", "after": "before"}.get(self.ground, "")
+        inertias, against = self.inertias[::-1], self.mass_damping[::-1]
+        return Chain(inertias, self.stiffnesses[::-1], self.segment_damping[::-1], against, self.loss[::-1], ground)
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""

@@ -150,7 +150,7 @@ class TurningEffort:
     def drives(self) -> Any:
         """Whether any piston drives; for a given effort, whether its mean does."""
         if self.given is not None:
-            return self.result(self._mean_of(self.given)) >= 0
+            return self.result(self.mean_of(self.given)) >= 0
         return any_of(group[0].drive.drives for group in self.groups)
 
     def share(self, drive: Drive | None) -> Any:
@@ -189,9 +189,10 @@ class TurningEffort:
     @cached_property
     def mean(self) -> Array:
         """Mean of M in N m, (machines,)."""
-        return self._mean_of(self.M)
+        return self.mean_of(self.M)
 
-    def _mean_of(self, torque: Array) -> Array:
+    def mean_of(self, torque: Array) -> Array:
+        """Return means in N m (…, machines) of torques (…, nodes, pieces); 0 where nothing but rounding is left."""
         return np.asarray(unless_cancelled(self.pieces.mean(torque), self.pieces.largest(torque), _ROUNDING))
 
     # the load
@@ -246,7 +247,7 @@ class TurningEffort:
         if self.count is None and too_little.any():
             eta, mean = self.machine.efficiency, float(self.mean[0])
             indicated = self.sampled([Term(1.0, group) for group in self.groups]) if self.given is None else self.given
-            whole = float(self._mean_of(indicated)[0])
+            whole = float(self.mean_of(indicated)[0])
             runs = "with no efficiency"
             if whole >= 0:  # the mean is linear in η
                 least = 1 - (1 - eta) * whole / (whole - mean)
