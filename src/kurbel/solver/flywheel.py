@@ -45,7 +45,7 @@ _CLOSE = 1e-9
 
 def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Tabled:
     """Return a column whose samples `MachineTurning.samples_of` has."""
-    return value(symbol, kind, text, lambda state: state[id], **words)
+    return value(symbol, kind, text, lambda state: state.course(id), **words)
 
 
 class TurningState(AtAngles):
@@ -82,6 +82,10 @@ class TurningState(AtAngles):
 
     def __getitem__(self, id: str) -> Any:
         """Return a column by its id, the load M_load in N m at the nominal speed among them; None for no column."""
+        return self.course(id) if id == "M_load" else super().__getitem__(id)
+
+    def course(self, id: str) -> Array | None:
+        """Return the values (n,) of what `MachineTurning.samples_of` has; None for what is left out."""
         found = self._turning.samples_of(id)
         return None if found is None else self._turning.effort.at(*found, self.phi, self._within)
 
