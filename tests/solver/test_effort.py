@@ -382,8 +382,8 @@ def test_the_swing_agrees_with_forty_digits(name: str) -> None:
 def test_the_last_digit_of_the_mean_does_not_move_the_swing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Balanced cranks pass on 25 times their swing: a unit in the last place of the mean moved it by some 3e-15."""
     cylinders, rpm = CASES["leading"]
-    swing, mean_of = turning(*cylinders, rpm=rpm).dE, TurningEffort._mean_of
-    monkeypatch.setattr(TurningEffort, "_mean_of", lambda self, torque: np.nextafter(mean_of(self, torque), np.inf))
+    swing, mean_of = turning(*cylinders, rpm=rpm).dE, TurningEffort.mean_of
+    monkeypatch.setattr(TurningEffort, "mean_of", lambda self, torque: np.nextafter(mean_of(self, torque), np.inf))
     assert turning(*cylinders, rpm=rpm).dE == pytest.approx(swing, rel=5e-16)
 
 
