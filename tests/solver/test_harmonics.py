@@ -19,8 +19,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import ConnectingRod, Masses, Piston
-from kurbel.machine.turning import Harmonics
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.case import Case
@@ -87,40 +86,6 @@ def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
     assert found.machine.whole.amplitudes == pytest.approx(by_integrals(machine, orders), abs=1e-12 * largest)
 
 
-def test_a_trace_against_straight_lines_between_its_samples() -> None:
-    """p A dx/dφ with p straight over the angle, 40 digits; the trace jumps at 360 degrees."""
-    points = [
-        (0, 40),
-        (10, 75),
-        (25, 50),
-        (90, 8),
-        (180, 2),
-        (360, 1),
-        (360, 1.5),
-        (540, 1),
-        (620, 3),
-        (700, 25),
-        (720, 40),
-    ]
-    listed = ", ".join(f"[{angle}, {pressure}]" for angle, pressure in points)
-    trace = f"{{head_end: {{trace: {{unit: bar, points: [{listed}]}}}}}}"
-    text = f"crank: 60 mm\nrod: 150 mm\nbore: 100 mm\ncycle: four-stroke\nindicator: {trace}"
-    orders = [0.5, 1.0, 3.5, 24.0]
-    found = orders_of(loads(text), orders).machine.whole.amplitudes
-
-    def torque(angle: float) -> Any:
-        (low, first), (high, last) = next(one for one in pairwise(points) if one[0][0] <= angle < one[1][0])
-        pressure = first + (mpmath.mpf(last) - mpmath.mpf(first)) * (angle - low) / (high - low)
-        sin, cos, lam = mp.sin(mp.radians(angle)), mp.cos(mp.radians(angle)), mpmath.mpf("0.4")
-        slope = mpmath.mpf("0.06") * (sin + lam * sin * cos / mp.sqrt(1 - (lam * sin) ** 2))
-        return pressure * 100000 * mp.pi / 4 * mpmath.mpf("0.01") * slope
-
-    with mpmath.workdps(40):
-        edges = sorted({*(float(angle) for angle, _ in points), *np.arange(0.0, 721.0, 15.0).tolist()})
-        exact = gauss(torque, edges, orders)
-    assert found == pytest.approx(exact, abs=1e-12 * 75e5 * 0.00785 * 0.06)
-
-
 def test_a_diagram_with_jumps_in_closed_form() -> None:
     """Straight pieces by parts with mpmath: ∫ (a + bφ) e^{−iνφ} dφ."""
     points = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
@@ -183,14 +148,6 @@ def test_the_series_of_the_inertia_torque() -> None:
     assert -found.imag == pytest.approx(known, abs=1e-12)
 
 
-def test_effort_by_harmonics_comes_back() -> None:
-    first = orders_of(load(CONFIGS / "waterworks-two-cranks.yaml")).machine.whole
-    terms = tuple((v, m.real, -m.imag) for v, m in zip(first.orders.tolist(), first.amplitudes.tolist()))
-    again = orders_of(Machine((), effort=Harmonics(first.mean, terms))).machine.whole
-    assert again.mean == pytest.approx(first.mean, rel=1e-14)
-    assert again.amplitudes == pytest.approx(first.amplitudes, abs=1e-13 * np.abs(first.amplitudes).max())
-
-
 @pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "diesel-four-stroke"])
 def test_their_sum_is_the_torque(name: str) -> None:
     """Bessel: the mean square of what 24 orders leave is what Parseval says."""
@@ -204,14 +161,6 @@ def test_their_sum_is_the_torque(name: str) -> None:
     swing = whole.mean((found.effort.M - found.effort.mean) ** 2)[0]
     assert square == pytest.approx((1 - found.orders_share) * swing, rel=1e-6)
     assert 0.99 < found.orders_share < 1
-
-
-def test_the_inertia_goes_with_the_square_of_the_speed() -> None:
-    slow, fast = (Machine((steam(),), speed=rpm / 60) for rpm in (50.0, 85.0))
-    found = orders_of(slow).machine.at_speed(85 / 50)
-    assert found.amplitudes == pytest.approx(
-        orders_of(fast).machine.whole.amplitudes, abs=1e-13 * np.abs(found.amplitudes).max()
-    )
 
 
 def test_a_crank_that_follows_turns_its_orders() -> None:
@@ -269,9 +218,3 @@ def test_without_a_speed_there_is_no_inertia() -> None:
     assert (found.machine.whole.amplitudes == found.machine.gas.amplitudes).all()
     with pytest.raises(UsageError, match="no force acts"):
         orders_of(Machine((steam(pistons=(), masses=None),)))
-
-
-def test_the_mean_torque_of_masses_alone_is_zero() -> None:
-    """∮ m x′ x″ dφ = 0: it is the mean torque of the flywheel's page, where its rounding was told as a torque here."""
-    case = Case(load(CONFIGS / "boxer.yaml"))
-    assert case.harmonics().M_mean == case.flywheel.M_mean == 0.0
