@@ -239,7 +239,8 @@ def test_an_effort_beyond_all_speeds_needs_a_flywheel_beyond_all_wheels() -> Non
     text = "{speed: 60 rpm, effort: {unit: N m, mean: 300, harmonics: [[5, 1e18, 0]]}, flywheel: {inertia: 3 kg m2}}"
     result = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text)
     assert result.exit_code == 3
-    assert "the machine stops near φ = 54°" in result.stderr
+    stops = float(result.stderr.partition("the machine stops near φ = ")[2].partition("°")[0])
+    assert stops % 72 == 54  # any of the five troughs of the speed, which are alike
     enough = float(result.stderr.partition("it turns with a flywheel from J = ")[2].partition(" kg m^2")[0])
     for share, slowest in (
         (1.0, True),

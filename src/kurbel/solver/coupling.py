@@ -9,7 +9,6 @@ It is the shortest chain of `kurbel.solver.chain`. Its natural order is q = √(
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -29,10 +28,9 @@ from kurbel.solver.speed import SpeedLaw, SpeedLine
 _NEAR, _WORTH, _AMPLIFIED = 0.1, 1e-3, 1.5
 """A harmonic whose order is so near the natural one, relatively, is worth a warning if its amplitude is at least so
 much of one that swings as the whole torque does in the mean, and if it is amplified at least so many times."""
-_ENDLESS = 1e9
-"""Amplification beyond which nothing but rounding keeps a resonance from being endless."""
-_PRESENT = 1e-9
-"""Of that size: a smaller harmonic is not there."""
+_ENDLESS, _MEETS = 1e9, 1e-6
+"""Amplification from which on nothing but rounding keeps a resonance from being endless, at an order that is so near
+the natural one, relatively."""
 
 
 class Harmonic(NamedTuple):
@@ -74,34 +72,43 @@ class ElasticCoupling(SpeedLine):
             np.broadcast_to(one, own.shape)
             for one in (effort.omega, coupling.stiffness, coupling.damping, coupling.inertia)
         )
-        self.effort, self._order = effort, natural_order(coupling, own, effort.omega)
+        self.effort, self._order, self._step = effort, natural_order(coupling, own, effort.omega), 360 / effort.cycle
         self._masses, self._stiffness = np.stack((own, driven)), stiffness
         self.load_slope = np.zeros(own.shape) if law is None else law.steepness / effort.omega
         load = effort.load - pieces.of(effort.mean)
         self._torques = np.stack((effort.true_excess.torque + load, -load))  # on either mass, less the mean
-        failed = np.array([self._resonates(machine) for machine in range(pieces.count)])
-        if law:
-            failed |= law.mean == 0
 
         nothing = np.zeros((2, *own.shape))
         chain = Chain(self._masses, stiffness[None], self._damping[None], nothing, nothing[:1])
         equation = ChainEquation(chain, self._order, effort.omega, pieces, self._torques, law, 1)
         self._found = periodic(equation, equation.pieces)
-        if effort.count is None and self._found.failed[0]:
-            if law is None:
+        pieces, y, failed = self._found.pieces, self._found.samples, self._found.failed
+        if law is None:  # any mean speed would do: it is the nominal one
+            y[1:] -= (self._masses * pieces.mean(y[1]) / own)[:, None, pieces.machine]
+        torque = equation.torques(y, pieces)[0]
+        if law:
+            failed = failed | (law.mean == 0)
+        else:
+            nearest = np.maximum(np.rint(self._order / self._step), 1) * self._step
+            endless = ~(pieces.largest(torque) < _ENDLESS * effort.pieces.largest(self._torques).sum(axis=0))
+            meets = (self._damping == 0) & (np.abs(self._order / nearest - 1) < _MEETS)
+            resonates, failed = meets & (failed | endless), failed | (meets & endless)
+            if effort.count is None and resonates[0]:
+                raise NoSolutionError(
+                    f"the coupling is in resonance with harmonic {nearest[0]:g} of the torque and "
+                    "nothing damps it: give 'coupling.damping', or change its stiffness or the speed"
+                )
+            if effort.count is None and failed[0]:
                 raise NoSolutionError(
                     "stiffness, damping and inertia of the coupling are too far apart to compute with; "
                     "look at their units"
                 )
+        if effort.count is None:
             self._found.refuse()
-        pieces, y = self._found.pieces, self._found.samples
-        if law is None:  # any mean speed would do: it is the nominal one
-            y[1:] -= (self._masses * pieces.mean(y[1]) / own)[:, None, pieces.machine]
-        torque = equation.torques(y, pieces)[0]
         self.torque = pieces, pieces.of(effort.mean) + torque
         self.alpha = pieces, (equation.known(pieces)[0] - torque) / pieces.of(own)
         u = y[1] / pieces.of(own * effort.omega**2)
-        super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed | self._found.failed, -1.0)
+        super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed, -1.0)
 
     @property
     def natural_order(self) -> Any:
@@ -128,52 +135,26 @@ class ElasticCoupling(SpeedLine):
         found = self.torque_extremes
         return (found.largest.value - found.smallest.value) / self.result(high - low)
 
-    # resonance
-
-    def _harmonics(self, machine: int) -> tuple[Array, Array, Array, float]:
-        """Return the orders (k,) near the natural one of a machine, their amplitudes on both masses (2, k) in N m,
-        those in the coupling (k,), and the amplitude of a single harmonic of the mean square of effort and load.
+    @property
+    def resonances(self) -> tuple[Harmonic, ...]:
+        """Harmonics of the only machine that are present in the torque and near the natural order.
 
         With a load c ω₂, a₁ = −Ω² J₁ and a₂ = −Ω² J₂ + iΩ c, T = s (M₁/a₁ − M₂/a₂)/(1 + s/a₁ + s/a₂), s = k + iΩ d.
         """
-        pieces, step = self.effort.pieces, 360 / self.effort.cycle
-        low, high = (self._order[machine] * (1 + side * _NEAR) / step for side in (-1, 1))
-        orders = step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
-        rows = pieces.machine == machine
-        alone = replace(pieces.taken(rows), machine=np.zeros(rows.sum(), int), count=1)
-        torques = self._torques[..., rows]
-        first, second = acting = amplitudes(alone, torques, orders)[..., 0]
-
-        frequencies = orders * self._omega[machine]
-        own, driven = -np.multiply.outer(self._masses[:, machine], frequencies**2).astype(complex)
-        driven += 1j * frequencies * self.load_slope[machine]
-        spring = self._stiffness[machine] + 1j * frequencies * self._damping[machine]
+        pieces, (order,), masses = self.effort.pieces, self._order, self._masses
+        low, high = (order * (1 + side * _NEAR) / self._step for side in (-1, 1))
+        orders = self._step * np.arange(max(np.ceil(low), 1), np.floor(high) + 1)
+        first, second = acting = amplitudes(pieces, self._torques, orders)[..., 0]
+        frequencies = orders * self._omega[0]
+        own, driven = -np.multiply.outer(masses[:, 0], frequencies**2).astype(complex)
+        driven += 1j * frequencies * self.load_slope[0]
+        spring = self._stiffness[0] + 1j * frequencies * self._damping[0]
         with np.errstate(all="ignore"):
             passed = np.abs(spring * (first * driven - second * own) / (own * driven + spring * (own + driven)))
-        return orders, np.abs(acting), passed, float(np.sqrt(2 * alone.mean(torques**2)).sum())
 
-    def _resonates(self, machine: int) -> bool:
-        """Return whether a harmonic that is there meets the natural order and nothing damps it.
-
-        Raises NoSolutionError for the only machine.
-        """
-        if self._damping[machine] or self.load_slope[machine]:
-            return False
-        orders, acting, passed, size = self._harmonics(machine)
-        stuck = ~(passed < _ENDLESS * size) & (acting.max(axis=0) > _PRESENT * size)
-        if stuck.any() and self.effort.count is None:
-            raise NoSolutionError(
-                f"the coupling is in resonance with harmonic {orders[np.argmax(stuck)]:g} of the torque and "
-                "nothing damps it: give 'coupling.damping', or change its stiffness or the speed"
-            )
-        return bool(stuck.any())
-
-    @property
-    def resonances(self) -> tuple[Harmonic, ...]:
-        """Harmonics of the only machine that are present in the torque and near the natural order."""
-        orders, acting, passed, size = self._harmonics(0)
-        amplitude, distance = acting.sum(axis=0), orders / self._order[0] - 1
-        rigid = (acting * self._masses[::-1]).sum(axis=0) / self._masses.sum()
+        amplitude, distance = np.abs(acting).sum(axis=0), orders / order - 1
+        rigid = (np.abs(acting) * masses[::-1]).sum(axis=0) / masses.sum()
         gain = passed / np.where(rigid > 0, rigid, np.inf)
+        size = np.sqrt(2 * pieces.mean(self._torques**2)).sum()  # the amplitude of one wave with their mean squares
         near = (amplitude > _WORTH * size) & (gain >= _AMPLIFIED)
         return tuple(Harmonic(*row) for row in np.stack((orders, distance, amplitude, gain))[:, near].T.tolist())
