@@ -204,7 +204,7 @@ class TurningEffort:
         if self.diagram is None:
             return level
         given = torque_on(self.diagram, self.pieces)
-        return level + (given - self.pieces.of(self.pieces.mean(given)))
+        return np.asarray(level + (given - self.pieces.of(self.pieces.mean(given))))
 
     @property
     def deficit(self) -> Array:
