@@ -235,10 +235,8 @@ def test_unloaded_arcs_against_many_samples() -> None:
 
 
 def free(*arcs: tuple[float, float]) -> tuple[float, float]:
-    """What these arcs leave free of the circle of one machine, and the middle of its widest stretch."""
-    start, end = np.array(arcs).T
-    (arc,), (middle,) = unreached(np.zeros(len(arcs), int), start, end, 1)
-    return arc, middle
+    """What arcs from start to end leave free of the circle, and the middle of its widest stretch."""
+    return unreached([(start, end - start) for start, end in arcs])
 
 
 def test_arcs_join_round_the_circle() -> None:

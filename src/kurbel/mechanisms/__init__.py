@@ -15,8 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Record, Rule
-from kurbel.declared.record import field
+from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
