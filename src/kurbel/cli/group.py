@@ -135,9 +135,8 @@ def message_of(error: KurbelError) -> str:
     """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    from kurbel.render.text import width
 
-    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text, width)
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text)
 
 
 def _stderr_look() -> "Look":

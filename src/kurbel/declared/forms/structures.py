@@ -4,6 +4,7 @@ A file is read in two passes: forms turn texts into numbers, words and lists, on
 makes records of them.
 """
 
+import functools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,7 +15,18 @@ import numpy as np
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, Number, Schema, Truth, reference
 from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, Tree, glued_hint, is_nothing, kind_of, shown
+from kurbel.declared.reading import (
+    REFUSED,
+    Given,
+    Plain,
+    Reading,
+    Tree,
+    glued_hint,
+    has_refused,
+    is_nothing,
+    kind_of,
+    shown,
+)
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, RuleError, refused
 from kurbel.near_words import did_you_mean, near
@@ -264,15 +276,17 @@ def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
 
 def too_extreme(born: Any, values: Tree) -> Any:
     """Return whether, or where, a number of a record is not finite, nor infinite by a word or by default."""
-    meant: Any = False
-    for value in values.values():
-        if is_number(value) or isinstance(value, np.ndarray):
-            meant = meant | (value == math.inf)
+
+    def numbers(of: Tree) -> dict[str, Any]:
+        return {name: one for name, one in of.items() if is_number(one) or isinstance(one, np.ndarray)}
+
+    meant: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
     broken: Any = False
-    for name, value in vars(born).items():
-        if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(born, Indivisible)):
-            endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
-            broken = broken | ~np.asarray(np.isfinite(value) | endless)
+    for name, value in numbers(vars(born)).items():
+        if isinstance(value, np.ndarray) and isinstance(born, Indivisible):
+            continue
+        endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
+        broken = broken | ~np.asarray(np.isfinite(value) | endless)
     return broken
 
 
@@ -282,36 +296,26 @@ class Maker:
     def __init__(self, reading: Reading) -> None:
         self.reading = reading
 
-    def made(self, value: Any, path: Path = ()) -> Any:
+    def made(self, value: Any) -> Any:
         """Return what a value that was read becomes; REFUSED after noting what is wrong with it."""
         if isinstance(value, Given):
             value.made = self._record(value)
             return value.made
         if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
-            items = tuple(self.made(one, (*path, index)) for index, one in enumerate(value))
-            if not any(one is REFUSED for one in items):
-                return items
-            self.reading.partly[path] = items
-            return REFUSED
+            return tuple(map(self.made, value))
         return value
 
     def _record(self, given: Given) -> Any:
         path, form = given.path, given.form
-        values = {name: self.made(one, (*path, name)) for name, one in given.values.items()}
+        values = {name: self.made(one) for name, one in given.values.items()}
         try:
-            if not any(one is REFUSED for one in values.values()):
+            if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
                 return form.born(values)
             # what is there contradicts the rest whether it could be read or not
-            known = {name: self._partly(self.reading.partly.get((*path, name), one)) for name, one in values.items()}
-            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(known))
+            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(values))
             return self.reading.refuse(path, RuleError(*faults))
         except RuleError as error:
             return self.reading.refuse(path, form.flattened(error, given.mapping))
-
-    def _partly(self, value: Any) -> Any:
-        """Return a list of which some items could not be read, the others made."""
-        items = value if isinstance(value, tuple) else ()
-        return tuple(self.made(one) if isinstance(one, Given) else one for one in items) or value
 
 
 class Variant(Choice):
@@ -354,7 +358,7 @@ class Listing(Form):
         return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Read a list into a tuple."""
+        """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
             refused("nothing stands here; write a list below it, each item after '- '")
         if not isinstance(value, list):
@@ -364,11 +368,7 @@ class Listing(Form):
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
         whole = self._completed(reading, value, path) if self.called else value
-        items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
-        if any(item is REFUSED for item in items):
-            reading.partly[path] = items
-            return REFUSED
-        return items
+        return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
 
     def _completed(self, reading: Reading, items: Sequence[Any], path: Path) -> list[Any]:
         """Return items with what they take over; their faults are those of the other one where they are the same."""
@@ -405,7 +405,7 @@ class OneOf(Form):
         super().__init__(expected, forms[0].example, " or ".join(form.written for form in forms))
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
-        self.numeric = any(form.numeric for form in forms)
+        self.number = next((form.number for form in forms if form.number), None)
 
     def schema(self, definitions: Schema) -> Schema:
         return {"anyOf": [form.schema(definitions) for form in self.forms]}
@@ -421,12 +421,6 @@ class OneOf(Form):
         if alike:  # of a word and a number, the one that it looks like
             return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-
-    def of_numbers(self, numbers: Any) -> Any:
-        return next(form for form in self.forms if form.numeric).of_numbers(numbers)
-
-    def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
 
     def parts(self) -> Iterable[tuple[str, Form]]:
         return [("", form) for form in self.forms]

@@ -6,6 +6,7 @@ import os
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,14 +41,14 @@ class Form(ABC):
 
     expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: what
     stands there in a few words, for pages. kind: of the number that stands there, or of each one of a list, '' where
-    none does; numeric: it becomes a number, so that many machines have an array there; inline: records whose keys stand
-    in the same mapping.
+    none does; number: the form of the number that it becomes, which many machines have as an array; inline: records
+    whose keys stand in the same mapping.
     """
 
     shape: ClassVar[type] = str
     """Of the tree: str, list or dict."""
     kind: str = ""
-    numeric: bool = False
+    number: "Number | None" = None
     inline: tuple[Any, ...] = ()
 
     def __init__(self, expected: str, example: str = "…", written: str = "") -> None:
@@ -78,14 +79,6 @@ class Form(ABC):
     def out_of_bounds(self, value: Any) -> str:
         """Return in what way a value is too small or too large, with the bound; '' when it is not."""
         return ""
-
-    def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
-        return None
-
-    def of_numbers(self, numbers: Any) -> Any:
-        """Return what a number in the base of its kind, or those of many machines, becomes."""
-        return numbers
 
     def parts(self) -> "Iterable[tuple[str, Form]]":
         """Return the forms that this one is made of, each after the key that it stands under, '' for none."""
@@ -128,6 +121,7 @@ def size_faults(points: list[Point], unit: Factor, kind: str, path: Path) -> lis
     return []
 
 
+@dataclass(eq=False)
 class Number(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
@@ -138,34 +132,32 @@ class Number(Form):
     apart: each value by itself.
     """
 
-    def __init__(
-        self,
-        kind: str = "ratio",
-        *,
-        above: float | None = None,
-        least: float | None = None,
-        below: float | None = None,
-        most: float | None = None,
-        words: tuple[tuple[str, float], ...] = (),
-        zero: bool = False,
-        whole: bool = False,
-        share_of: str = "",
-        or_else: str = "",
-        becomes: Callable[[Any, str], Any] | None = None,
-        apart: bool = False,
-    ) -> None:
-        self.kind, self.words, self.zero, self.whole = kind, words, zero, whole
-        self.above, self.least, self.below, self.most = above, least, below, most
-        self.share_of, self.or_else, self.becomes = share_of, or_else, becomes
-        self.numeric = not whole and not apart
-        if whole:
-            super().__init__("a whole number", str(max(least or 0, 3) if most is None else least))
-            return
-        bare, instead = kind == "ratio", [word for word, _ in words]
-        sample = ("5" if (above or 0) >= 1 else "0.1") if bare else example(kind)
-        expected = "a number" if bare else f"a number with its unit, such as '{sample}'"
+    kind: str = "ratio"
+    _: KW_ONLY
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    words: tuple[tuple[str, float], ...] = ()
+    zero: bool = False
+    whole: bool = False
+    share_of: str = ""
+    or_else: str = ""
+    becomes: Callable[[Any, str], Any] | None = None
+    apart: bool = False
+
+    def __post_init__(self) -> None:
+        instead, bare = [word for word, _ in self.words], self.kind == "ratio"
+        if self.whole:
+            sample, expected = str(max(self.least or 0, 3) if self.most is None else self.least), "a whole number"
+        elif bare:
+            sample, expected = "5" if (self.above or 0) >= 1 else "0.1", "a number"
+        else:
+            sample = example(self.kind)
+            expected = f"a number with its unit, such as '{sample}'"
         written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in instead)
         super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
+        self.number = None if self.whole or self.apart else self
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read the number, and hold it against its bounds."""
@@ -208,6 +200,7 @@ class Number(Form):
         return found
 
     def of_numbers(self, numbers: Any) -> Any:
+        """Return what a number in the base of its kind, or those of many machines, becomes."""
         return self.becomes(numbers, "") if self.becomes else numbers
 
     def out_of_bounds(self, value: Any) -> str:
