@@ -299,7 +299,7 @@ def kinds_of_numbers() -> set[tuple[str, str]]:
         if isinstance(form, RecordForm):
             name = form.record.__name__
             found.update((name, key) for key, one in form.keys.items() if one.form.number)
-        for _, inner in form.parts():
+        for _, inner in form.parts:
             visit(inner)
         for inner in form.inline:
             visit(inner)

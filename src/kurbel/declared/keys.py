@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Flags
-from kurbel.declared.forms.values import Form
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse, refused
 
@@ -81,7 +81,8 @@ def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
 def out_of_bounds(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield which numbers are out of the bounds of their keys."""
     for name, value in given.items():
-        if name in keys and (wrong := keys[name].form.out_of_bounds(value)):
+        form = keys[name].form if name in keys else None
+        if isinstance(form, Number) and (wrong := form.out_of_bounds(value)):
             yield Fault((name,), f"{value:g} {wrong}")
 
 
