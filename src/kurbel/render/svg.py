@@ -219,19 +219,17 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
 
 
 def thinned(places: ComplexArray) -> ComplexArray:
-    """Return places x + iy (n,) without those that are nearly on the straight line between two that are left."""
-    kept = np.zeros(len(places), dtype=bool)
-    spans = [(0, len(places) - 1)]
-    while spans:
-        first, last = spans.pop()
-        kept[[first, last]] = True
-        off, chord = places[first : last + 1] - places[first], places[last] - places[first]
-        share = (off * np.conj(chord)).real / max(abs(chord) ** 2, 1e-12)
-        miss = np.abs(off - np.clip(share, 0.0, 1.0) * chord)
-        far = first + int(miss.argmax())
-        if miss[far - first] > _STRAIGHT:
-            spans += [(first, far), (far, last)]
-    return places[kept]
+    """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
+    while len(places) > 2:
+        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
+        share = (off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
+        dull = np.abs(off - np.minimum(np.maximum(share, 0.0), 1.0) * chord) <= _STRAIGHT
+        if not dull.any():
+            break
+        order = np.arange(len(dull))  # of neighbours every other one
+        dull &= (order - np.maximum.accumulate(np.where(dull, -1, order))) % 2 == 1
+        places = places[np.concatenate(([True], ~dull, [True]))]
+    return places
 
 
 def _path(places: ComplexArray) -> str:
