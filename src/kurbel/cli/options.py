@@ -89,7 +89,7 @@ def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, .
 
 def spread(text: str) -> tuple[str, str]:
     """Return a dotted key with its standard uncertainty as a text."""
-    from kurbel.declared.forms.values import spread_text
+    from kurbel.declared.forms.figures import spread_text
 
     key, _, size = text.partition("=")
     if not (key.strip() and spread_text(size)):
