@@ -235,10 +235,11 @@ columns_option = click.option(
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=completing(_columns),
 )
+cylinder_option = click.option(
+    "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
+)
 _part_options = stacked(
-    click.option(
-        "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
-    ),
+    cylinder_option,
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
 units_option = click.option(
@@ -254,8 +255,15 @@ output_option = click.option(
     "--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."
 )
 number_options = stacked(
-    click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
-    click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given."),
+    click.option(
+        "--decimal",
+        type=click.Choice(["point", "comma"]),
+        default="point",
+        help="Decimal sign; a comma makes csv use ';'.",
+    ),
+    click.option(
+        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
+    ),
 )
 _look_options = stacked(
     click.option(
@@ -269,15 +277,7 @@ _look_options = stacked(
         help="By the suffix of --output, or table, if not given.",
     ),
     output_option,
-    click.option(
-        "--decimal",
-        type=click.Choice(["point", "comma"]),
-        default="point",
-        help="Decimal sign; a comma makes csv use ';'.",
-    ),
-    click.option(
-        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
-    ),
+    number_options,
     width_option,
 )
 

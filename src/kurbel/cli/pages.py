@@ -9,8 +9,8 @@ import click
 
 from kurbel.cli.options import (
     Output,
-    complete_cylinder,
     complete_picture,
+    cylinder_option,
     format_of,
     number,
     number_options,
@@ -97,12 +97,10 @@ def progress_of(command: str) -> Callable[[str], None]:
 )
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
-@click.option(
-    "--cylinder", metavar="NAME", help="Only of this cylinder, by name or number.", shell_complete=complete_cylinder
-)
+@cylinder_option
 @units_option
 @number_options
-@click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
+@width_option
 def plot(
     file: str | None,
     case_name: str,

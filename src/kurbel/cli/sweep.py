@@ -7,6 +7,7 @@ import click
 from kurbel.cli.options import (
     complete_override,
     machine_file,
+    number_options,
     output_option,
     stacked,
     units_option,
@@ -49,8 +50,7 @@ _what_is_told = stacked(
 _where_it_goes = stacked(
     click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
     output_option,
-    click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
-    click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4, and all in csv and json."),
+    number_options,
     click.option(
         "--resume", is_flag=True, help="Continue from the FILE.part of a run of --output FILE that ended early."
     ),
