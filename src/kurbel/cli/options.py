@@ -14,6 +14,7 @@ from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
+from kurbel.render.formats import write_report
 from kurbel.report.tables import Report
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
@@ -174,8 +175,6 @@ class Output(NamedTuple):
 
     def write(self, report: Report) -> None:
         """Write the report."""
-        from kurbel.render.formats import write_report
-
         write_report(report, self.look, self.file_name)
 
 

@@ -14,7 +14,7 @@ from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Line, width
+from kurbel.render.text import Line
 
 _MOST_COLOURED_LINES = 400
 STYLES = {
@@ -57,9 +57,7 @@ def write_coloured(page: Iterable[Line], look: Look) -> bool:
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return False
     lines = list(islice(page, _MOST_COLOURED_LINES + 1))
-    tables = (one for one in lines if any(piece.role in ("rule", "head") for piece in one))
-    too_wide = look.width is not None and any(sum(width(piece.text) for piece in one) > look.width for one in tables)
-    if len(lines) > _MOST_COLOURED_LINES or too_wide:
+    if len(lines) > _MOST_COLOURED_LINES:
         return False
     from rich.console import Console  # takes longer to load than most tables to print
     from rich.text import Text
