@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import islice
 from shutil import copyfile, get_terminal_size
 from typing import BinaryIO, TextIO
@@ -84,7 +85,11 @@ def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None 
     Raises UsageError where it cannot be written.
     """
     if file_name in (None, "-"):
-        encoding = encoding or _stdout().encoding
+        stdout = _stdout()
+        if not isinstance(stdout, TextIOWrapper):  # that of a notebook has no bytes below it
+            stdout.writelines(texts)
+            return
+        encoding = encoding or stdout.encoding
     # one byte order mark at most
     encoder = codecs.getincrementalencoder(encoding or "utf-8")("replace")
     with opened(file_name) as file:
