@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from kurbel.arrays import Indivisible
-from kurbel.declared.forms.values import TEXT, Choice, Form, Number, Truth
+from kurbel.declared.forms.values import TEXT, Choice, Form, Number
 from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
@@ -411,7 +411,7 @@ def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     if form is int:
         return Number(whole=True, **{"least": 1, **bounds})
     if form is bool:
-        return Truth()
+        return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:
         return TEXT
     return RecordForm(form) if isinstance(form, type) else form
