@@ -45,7 +45,7 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
     count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
     do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.crank import cycles_report, forces_report
+    from kurbel.report.crank import forces_report
 
     case = asked.case()
     if cycle is not None:
@@ -54,10 +54,8 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
         case = type(case)(of_cycle(case.machine, cycle))
     if each_cycle:
         _refuse_columns(asked, cycle)
-        asked.write(cycles_report(case, asked.units))
-        return
     frame = asked.frame("forces", 360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.write(forces_report(case, frame), case, spreads)
+    asked.write(forces_report(case, frame, each_cycle), None if each_cycle else case, spreads)
 
 
 def _refuse_columns(asked: Asked, cycle: int | None) -> None:
@@ -98,7 +96,7 @@ def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     von Mises (sigma_v). Key values are exact and do not depend on --step. FILE needs 'crankshaft', one cylinder and
     a pressure; it may be - for standard input.
     """
-    from kurbel.report.loads import stress_report
+    from kurbel.report.crank import stress_report
 
     case = asked.case()
     frame = asked.frame("stress", 360.0 * case.machine.revolutions)
@@ -115,7 +113,7 @@ def bearings(asked: Asked) -> None:
     throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
     are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.loads import bearings_report
+    from kurbel.report.crank import bearings_report
 
     case = asked.case()
     asked.write(bearings_report(case, asked.frame("bearings", 360.0 * case.machine.revolutions)))

@@ -390,7 +390,7 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
     """Return the angles given, or 0, step, 2 step, … `end` in degrees; parts: cylinders or L/R that have them each."""
-    from kurbel.report.angles import check_rows, stepped
+    from kurbel.report.tables import check_rows, stepped
 
     if angles is None:
         return stepped(step, end, parts)
