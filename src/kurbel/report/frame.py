@@ -282,10 +282,11 @@ def shown_column(
     given = np.frombuffer(known)
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
-    largest = float(np.abs(given).max(initial=0.0))
+    largest = float(max(given.max(initial=0.0), -given.min(initial=0.0)))
     size = size if largest <= _ROUNDING * size else 0.0
     unit = shown_unit(quantity.kind, system, max(size or largest, beside))
-    given[:] = convert(given, quantity.kind, unit) + 0.0  # in place: a long table is held once
+    given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
+    given += 0.0
     numbers = iter(known)
     texts = values if known is values else tuple(None if v is None else next(numbers) for v in values)
     symbols = quantity.symbol, quantity.ascii_symbol
