@@ -20,7 +20,7 @@ from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.report.loads import STRESSES
+from kurbel.report.crank import STRESSES
 from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.report.zusammenstellung import FACTORS
 

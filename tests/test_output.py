@@ -23,9 +23,9 @@ from kurbel.render import FORMATS, Look, data
 from kurbel.render.formats import _WRITERS, render
 from kurbel.render.output import write_out
 from kurbel.report import frame
-from kurbel.report.angles import MOST_ROWS, check_rows, stepped
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
+from kurbel.report.tables import MOST_ROWS, check_rows, stepped
 from kurbel.solver.case import Case
 from memory import peak
 from representative import few, law_of_each

@@ -21,7 +21,7 @@ from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
-from kurbel.report.angles import crank_angles
+from kurbel.report.tables import crank_angles
 
 
 def _ratio(text: str) -> float:

@@ -15,7 +15,7 @@ from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
-from kurbel.report.loads import equal_bearings
+from kurbel.report.crank import equal_bearings
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
