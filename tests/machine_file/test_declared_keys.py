@@ -10,8 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from kurbel.declared.forms import RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import RecordForm, records
 from kurbel.declared.keys import Key
 from kurbel.errors import RuleError
 from kurbel.machine.parts import ConnectingRod
