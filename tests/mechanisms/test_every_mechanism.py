@@ -25,8 +25,8 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.numerics.lobatto import chebyshev
 from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import few, law_of_each
 
