@@ -66,7 +66,7 @@ def explanation(report: Report) -> str:
     rough = errors(engine, "model_error", lambda names: names[1] == "infinite rod")
     hand = errors(engine, "numerical_error", lambda names: names[1] in EQUIDISTANT and names[2] == "36")
     own = errors(engine, "numerical_error", lambda names: names[1] == "kurbel")
-    return f"""Which error should an engineer worry about? For the first of the built-in machines, a steam engine with L/R = 5:
+    return f"""Which error should an engineer worry about? For the first built-in machine, a steam engine with L/R = 5:
 
 | error | from | to |
 | --- | --: | --: |
@@ -76,8 +76,8 @@ def explanation(report: Report) -> str:
 | of reading the diagrams every 10°, as tables by hand do | {power(min(hand))} | {power(max(hand))} |
 | of the arithmetic: kurbel | {power(min(own))} | {power(max(own))} |
 
-- **Data.** A dead centre that is found 0.1° too late, or an indicator with half a percent of noise in the gas force, changes the answers
-  by {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
+- **Data.** A dead centre that is found 0.1° too late, or half a percent of noise in the gas force, changes the answers by
+  {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
 - **Model.** The infinite rod costs up to {max(rough):.0%}, the formulas of first order up to {power(max(model))}.
   A computer has no reason left to use either.
 - **Reading.** 18 divisions of the half turn, as the book has them, miss by up to {max(hand):.1%}: the peaks and
@@ -98,14 +98,14 @@ of mpmath, with Gauss rules whose pieces are halved until 25 digits agree. `benc
 def main() -> None:
     """Write both files."""
     report = accuracy_report(None, False, loads)
-    extremes, passed = extremes_report(loads)
+    extremes, _ = extremes_report(loads)
     draw_file([accuracy_picture(report)], Look(), str(FOLDER / PICTURE))
     engine = render(report._replace(parts=report.parts[:1]), Look(format="markdown"))
     text = "\n\n".join(
         (
             "# How exact, and how fast",
-            "`python docs/accuracy.py` writes this page from a run of `kurbel accuracy`, whose first machine is shown, and "
-            "of `kurbel accuracy --extremes`.",
+            "`python docs/accuracy.py` writes this page from a run of `kurbel accuracy`, whose first machine is shown, "
+            "and of `kurbel accuracy --extremes`.",
             explanation(report),
             f"![Time over error]({PICTURE})",
             engine.strip(),
