@@ -14,7 +14,7 @@ from kurbel.machine_file import loads
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.render.formats import render
-from kurbel.render.output import write_file
+from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
 from kurbel.report.tables import Report
 
@@ -76,8 +76,8 @@ def explanation(report: Report) -> str:
 | of reading the diagrams every 10°, as tables by hand do | {power(min(hand))} | {power(max(hand))} |
 | of the arithmetic: kurbel | {power(min(own))} | {power(max(own))} |
 
-- **Data.** A dead centre that is found 0.1° too late, or half a percent of noise in the gas force, changes the answers by
-  {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
+- **Data.** A dead centre that is found 0.1° too late, or half a percent of noise in the gas force, changes the answers
+  by {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
 - **Model.** The infinite rod costs up to {max(rough):.0%}, the formulas of first order up to {power(max(model))}.
   A computer has no reason left to use either.
 - **Reading.** 18 divisions of the half turn, as the book has them, miss by up to {max(hand):.1%}: the peaks and
@@ -113,7 +113,7 @@ def main() -> None:
             f"{extremes.parts[0].place_tables[0].title}.",
         )
     )
-    write_file(str(FOLDER / "accuracy.md"), text + "\n")
+    write_out((text, "\n"), str(FOLDER / "accuracy.md"))
 
 
 if __name__ == "__main__":

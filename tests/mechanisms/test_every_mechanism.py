@@ -12,7 +12,6 @@ from precise import by_radian, exact_angle
 from statics import FREE_BODIES
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.parts import Moment, RamForce
@@ -26,8 +25,8 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.numerics.lobatto import chebyshev
 from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import few, law_of_each
 
@@ -171,24 +170,6 @@ def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, inverse, outs
     assert (abs(machine.coordinate(angle) - machine.start - way) <= rounding).all()
 
 
-@every(STROKES)
-def test_closed_extremes_are_the_largest_of_many(machine):
-    angles = CrankAngle.of(np.linspace(0.0, 360.0, 3601))
-    for function, extremes in (
-        (machine.slope, machine.velocity_extremes()),
-        (machine.curvature, machine.acceleration_extremes()),
-    ):
-        for extreme in extremes:
-            assert function(CrankAngle.of(extreme.degrees)) == pytest.approx(extreme.value, rel=1e-14)
-        if extremes:
-            values = function(angles)
-            tops = [extreme.value for extreme in extremes]
-            assert values.max() == pytest.approx(max(tops), rel=1e-5)
-            assert values.min() == pytest.approx(min(tops), rel=1e-5)
-            assert values.max() <= max(tops) + 1e-14 * abs(max(tops))
-            assert values.min() >= min(tops) - 1e-14 * abs(min(tops))
-
-
 @every()
 def test_the_two_strokes_fill_the_turn(machine):
     assert machine.phi_work + machine.phi_return == 360
@@ -209,12 +190,12 @@ def test_what_it_offers_fits_what_it_says(machine):
 
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_every_word_names_its_class(name):
-    mechanism = MECHANISMS[name].load()
+    mechanism = MECHANISMS[name].record
     assert mechanism.name == name
 
 
 def test_every_mechanism_is_under_the_laws():
-    registered = {record.load() for record in MECHANISMS.values()}
+    registered = {record.record for record in MECHANISMS.values()}
     assert {type(machine) for machine in MACHINES.values()} == registered
     assert set(FREE_BODIES) == registered
 
@@ -268,7 +249,7 @@ def test_lengths_must_be_positive_and_finite(machine):
 def resized(machine, scale):
     """Return the mechanism with all its lengths, and nothing else, times the scale."""
     fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
-    lengths = {key for key, one in machine.KEYS.items() if isinstance(one.form, Physical) and one.form.kind == "length"}
+    lengths = {key for key, one in machine.KEYS.items() if one.form.kind == "length"}
     return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 
