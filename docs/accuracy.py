@@ -51,7 +51,7 @@ def worst(report: Report) -> str:
         for part in report.parts
         for table in part.place_tables
         if table.id == "numerical_error"
-        for names, error in zip(table.names, table.columns[1].values)
+        for names, error in zip(table.names, next(c for c in table.columns if c.id == "error").values)
         if names[1] == "kurbel" and error is not None
     ]
     error, quantity, scene = max(found)
