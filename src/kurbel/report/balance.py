@@ -92,7 +92,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
         left_out=balance_left_out(case, frame.compare),
         warnings=tuple(pin_warnings(machine)),
     )
-    return report_on(frame, machine, "Massenausgleich", (), whole, notes)
+    return report_on(frame, machine, "Balancing", (), whole, notes)
 
 
 def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTable]:
@@ -154,9 +154,9 @@ def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
     if rows:
         title = "Counterweights in two planes, and balance shafts"
         tables.append(place_table("best_weights", title, ("weight",), WEIGHTS, rows, system))
-    if balance.locomotive:
+    if balance.machine.locomotive:
         square = (balance.omega or 0.0) ** 2
-        wheels = zip("AB", balance.wheels, balance.locomotive.unbalanced)
+        wheels = zip("AB", balance.wheels, balance.in_wheels())
         rows = [row(name, place, product, square) for name, place, product in wheels]
         tables.append(place_table("wheels", "Beyond what turns, in the wheels", ("wheel",), WEIGHTS, rows, system))
     return tables

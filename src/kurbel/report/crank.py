@@ -54,7 +54,7 @@ def motion_report(case: Case, frame: Frame) -> Report:
         replace(one, left_out=motion_left_out(case.machine, cylinder))
         for one, cylinder in zip(subjects_of(case, "motion"), case.machine.cylinders)
     ]
-    return report_on(frame, case.machine, "Bewegung des Kurbeltriebes", cylinders, notes=notes)
+    return report_on(frame, case.machine, "Motion of the crank train", cylinders, notes=notes)
 
 
 @np.errstate(all="ignore")
@@ -80,7 +80,7 @@ def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
             for one, forces in zip(cylinders, case.cylinders)
         ]
         notes = [] if each_cycle else [*notes, *_forces_notes(case)]
-    return report_on(frame, case.machine, "Kräfte im Kurbeltriebe", cylinders, notes=notes if frame.prose else ())
+    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
 
 
 def _mechanism_notes(machine: Machine, command: str) -> list[str]:
@@ -145,7 +145,7 @@ def bearings_report(case: Case, frame: Frame) -> Report:
     if frame.prose:
         warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
         whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings)
-    report = report_on(frame, case.machine, "Lagerkräfte", parts, whole, _bearing_notes(case))
+    report = report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
     return report._replace(group="bearings")
 
 
@@ -225,4 +225,4 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
     if frame.prose:
         lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
         whole = replace(whole, left_out=lacking, warnings=of_machine(case))
-    return report_on(frame, machine, "Festigkeit der Kurbelwelle", (), whole, notes)
+    return report_on(frame, machine, "Strength of the crankshaft", (), whole, notes)

@@ -115,7 +115,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
             "the driven inertia turns with the flywheel."
         )
-    return report_on(frame, machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
+    return report_on(frame, machine, "Turning effort and flywheel", having, whole, notes)
 
 
 # orders of the torque
@@ -160,7 +160,7 @@ def harmonics_report(
     apart = missing({"gas and inertia apart": "" if found.machine.inertia else no_masses})
     lacking, warnings = (*flywheel_left_out(machine), *apart), of_machine(case) if frame.prose else ()
     whole = Subject("whole machine", found, left_out=lacking, warnings=warnings, tables=tables)
-    return report_on(frame, machine, "Drehkraft nach Ordnungen", cylinders, whole, notes)
+    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, notes)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -285,7 +285,7 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     whole = Subject("shaft line", found, left_out=torsion_left_out(found), warnings=warnings, tables=tables)
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
     notes = _torsion_notes(found, wanted.orders is None, hidden)
-    return report_on(frame, case.machine, "Drehschwingungen", pieces, whole, notes)
+    return report_on(frame, case.machine, "Torsional vibration", pieces, whole, notes)
 
 
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
