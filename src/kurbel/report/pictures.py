@@ -111,7 +111,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
 
         samples = source.samples(("x", *(id for id, _ in ends)), values=values)
         x, *pressures = samples.values
-        places, curves = [x], []
+        places, curves = list[Array](), list[Curve]()
         for (id, _), pressure in zip(ends, pressures):
             place = x
             if over_volume:
@@ -120,7 +120,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
                 clearance = getattr(chamber, "clearance", None) or 0.0
                 swept = (x if head else gas.stroke - x) + clearance * gas.stroke
                 place = np.asarray(swept * (piston.head_area if head else piston.crank_area))
-                places = [*places[len(curves) == 0 :], place]
+            places.append(place)
             curves.append(samples.curve(source.words(id), place, pressure))
         marks: tuple[Mark, ...] = ()
         if number == 0 and not over_volume and (highest := results.p_max):
@@ -381,8 +381,8 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
             raise UsageError(f"{name}: there is nothing to draw; kurbel check says what is missing")
         return
 
-    having = ", ".join(kind.id for kind in pictures_of(case, options)) if set(names) - set(known) else ""
     if unknown := [id for id in names if id not in known]:
+        having = ", ".join(kind.id for kind in pictures_of(case, options))
         hint = did_you_mean(unknown[0], tuple(known))
         raise UsageError(f"no picture '{shown(unknown[0])}'{hint} ({name} has {having})")
     for id in names:
