@@ -170,24 +170,6 @@ def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, inverse, outs
     assert (abs(machine.coordinate(angle) - machine.start - way) <= rounding).all()
 
 
-@every(STROKES)
-def test_closed_extremes_are_the_largest_of_many(machine):
-    angles = CrankAngle.of(np.linspace(0.0, 360.0, 3601))
-    for function, extremes in (
-        (machine.slope, machine.velocity_extremes()),
-        (machine.curvature, machine.acceleration_extremes()),
-    ):
-        for extreme in extremes:
-            assert function(CrankAngle.of(extreme.degrees)) == pytest.approx(extreme.value, rel=1e-14)
-        if extremes:
-            values = function(angles)
-            tops = [extreme.value for extreme in extremes]
-            assert values.max() == pytest.approx(max(tops), rel=1e-5)
-            assert values.min() == pytest.approx(min(tops), rel=1e-5)
-            assert values.max() <= max(tops) + 1e-14 * abs(max(tops))
-            assert values.min() >= min(tops) - 1e-14 * abs(min(tops))
-
-
 @every()
 def test_the_two_strokes_fill_the_turn(machine):
     assert machine.phi_work + machine.phi_return == 360
