@@ -256,11 +256,14 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
                 f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires "
                 "15 deg and 3 %"
             )
-    if _guided(forces) and forces.lifted:
+    on_guide = _on_guide(forces)
+    if on_guide and forces.lifted:
         machine = forces.drive.machine
         other = _OTHER_SENSE[machine.rotation or "over"]
-        turned = CylinderForces(replace(machine, rotation=other), forces.drive.cylinder)
-        yield f"{_turning(forces)}; turning {other} it {_rests(turned, 'would rest', 'would lift')} (R p. 602)"
+        turned = _on_guide(
+            CylinderForces(replace(machine, rotation=other), forces.drive.cylinder), "would rest", "would lift"
+        )
+        yield f"Turning {machine.rotation}, the crosshead {on_guide}; turning {other} it {turned} (R p. 602)"
 
 
 # the guide of a horizontal machine of known sense of rotation, R p. 602
@@ -271,31 +274,25 @@ _MOST_SPANS = 4
 
 def guide_notes(case: Case) -> Iterator[str]:
     """Yield of which cylinders the crosshead rests on the lower guide."""
-    resting = [forces for forces in case.cylinders if _guided(forces) and not forces.lifted]
+    resting = [forces for forces in case.cylinders if _on_guide(forces) and not forces.lifted]
     if resting:
         name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
-        yield f"{name}{_turning(resting[0])} (R p. 602)."
+        sense = resting[0].drive.machine.rotation
+        yield f"{name}Turning {sense}, the crosshead {_on_guide(resting[0])} (R p. 602)."
 
 
-def _guided(forces: CylinderForces) -> bool:
-    """Whether there is a guide below, and a sense of rotation is given."""
+def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts") -> str:
+    """Return where the crosshead rests; '' without a guide below, a sense of rotation, or a guide force."""
     drive = forces.drive
-    if drive.machine.rotation is None or not drive.down or not (drive.mechanism.guided and drive.mechanism.has_rod):
-        return False
-    return forces.extremes_of("N") is not None
-
-
-def _turning(forces: CylinderForces) -> str:
-    return f"Turning {forces.drive.machine.rotation}, the crosshead {_rests(forces, 'rests', 'lifts')}"
-
-
-def _rests(forces: CylinderForces, rests: str, lifts: str) -> str:
-    lifted, cycle = forces.lifted, forces.drive.cycle
+    guided = drive.machine.rotation is not None and drive.down and drive.mechanism.guided and drive.mechanism.has_rod
+    if not guided or forces.extremes_of("N") is None:
+        return ""
+    lifted = forces.lifted
     if not lifted:
         return f"{rests} on the lower guide all round"
-    if lifted[0][1] - lifted[0][0] >= cycle:
+    if lifted[0][1] - lifted[0][0] >= drive.cycle:
         return f"{rests} on the upper guide all round"
-    spans = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in lifted)
+    spans = ", ".join(f"from {start:.4g} to {end % drive.cycle:.4g} deg" for start, end in lifted)
     return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
 
 
