@@ -11,8 +11,7 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.forms import Inline, Keyed, RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, Keys, Record, required
 from kurbel.declared.unit_systems import SYSTEMS

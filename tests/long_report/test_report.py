@@ -172,18 +172,6 @@ def test_two_machines_side_by_side() -> None:
     html5lib.HTMLParser(strict=True).parse(page)
 
 
-@pytest.mark.slow
-def test_equal_cylinders_are_told_once_side_by_side() -> None:
-    """The pins of the crossheads, too: each shell has two equal pieces that no load reaches, and all tell the same."""
-    names = re.findall("<caption>(.*?)</caption>", page_of("v8-cross-plane", "v8-cross-plane"))
-    every = "left 1–4, right 1–4"
-    assert names[:2] == [every, every]
-    assert [name for name in names if "crosshead" in name] == [
-        "crosshead pin of left 1–4",
-        "crosshead pin of right 1–4",
-    ]
-
-
 def test_differences_are_in_percent(tmp_path: Path) -> None:
     one, other, out = tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "r.html"
     one.write_text("{name: A, speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}")
@@ -219,18 +207,3 @@ def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch
     assert result.exit_code == 2
     assert message in result.stderr
     assert not list(tmp_path.iterdir())
-
-
-def test_the_machine_file_is_never_overwritten(tmp_path: Path) -> None:
-    file = tmp_path / "m.html"
-    file.write_bytes(CONFIGS["crank-rocker"].read_bytes())
-    assert "would overwrite" in run(str(file), "-o", str(file)).stderr
-
-
-def test_equal_cylinders_are_told_once_in_the_input() -> None:
-    from kurbel.report.check import checked
-
-    case = case_of("v8-cross-plane")
-    told = checked(case)
-    assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.shown_once if one.cylinder] == ["left 1–4, right 1–4"]

@@ -106,11 +106,3 @@ def test_without_typst_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch, tmp
         "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; an svg needs nothing" in result.stderr
     )
     assert run(WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0
-
-
-def test_a_machine_without_solution_ends_with_status_3() -> None:
-    locked = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 2, masses: {piston: 100 kg}, friction: {crosshead: 5}}"
-    result = run("-", "forces", text=locked)
-    assert result.exit_code == 3
-    assert "locks itself" in result.stderr
-    assert run("-", "--list", text=locked).exit_code == 0

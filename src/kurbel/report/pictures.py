@@ -26,6 +26,7 @@ from kurbel.solver.stress import PARTS
 _CROSSING = 1e-9
 """Of the largest distance between two lines: where they cross, rounding alone is between them."""
 _MOST_NUMBERED = 24
+_MOST_SHADES = 100
 _HIGHEST = 12
 """Order up to which bars are drawn: beyond it they are too small to be seen."""
 _MODES = 4
@@ -65,11 +66,15 @@ def _remaining_force(source: Source, ids: Sequence[str], over: str, **how: Any) 
 
 
 def _between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
-    """Yield what is between two lines, cut where they cross."""
+    """Yield what is between two lines, cut where they cross; where they cross all over, what is above and below."""
     apart = line - base
     above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
     # a point on the base belongs to the area before it, and to the next one, too
     crossings = np.flatnonzero((above[1:-1] == 0) | (above[1:-1] * above[2:] < 0)) + 1
+    if len(crossings) > _MOST_SHADES:
+        yield Shade(x, base, np.maximum(line, base))
+        yield Shade(x, base, np.minimum(line, base), gain=False)
+        return
     for start, end in pairwise((0, *crossings.tolist(), len(x) - 1)):
         part = slice(start, end + 1)
         if end > start and (above[part] != 0).any():
