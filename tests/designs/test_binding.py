@@ -13,15 +13,17 @@ import pytest
 
 from good_machines import ALL
 from kurbel.declared.forms import Record
+from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.binding import Binder
+from kurbel.designs.binding import Binder, _every, _owner
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import values_of
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.given import tree_of
-from kurbel.machine_file.reader import ROOT, read_machine
+from kurbel.machine_file.overrides import path_of
+from kurbel.machine_file.reader import ROOT, read_machine, read_values, reading_of
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
@@ -318,18 +320,16 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
             if re.search(r"\.\d+\.\d+$|^kurbel$|^expect|^limits|uncertainty", key):
                 continue
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
-            binder = Binder(file, (key,), (text,))
-            owners = {(slot.given.form.load().__name__, slot.name) for slot in binder._slots.values()}
-            if owners <= met or not all(slot.numeric for slot in binder._slots.values()):
+            owner, name, inner = _owner(path_of(key), list(_every(read_values(file, reading_of(file)))))
+            one = (owner.form.load().__name__, name)
+            if inner or one in met or not owner.form.keys[name].form.is_number:
                 continue
-            met |= owners
-            base = parse_quantity(text, binder.kinds[0])
-            values = base * np.array([1.0, 0.999, 1.001])
-            found = binder.of_columns([values], 3)
-            several = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)} | found.failures
-            for row in range(3):
-                alone = binder.of_columns([values[row : row + 1]], 1)
-                one = alone.lots[0].one(0) if alone.lots else alone.failures[0]
-                assert same(several[row], one), (key, row)
+            met.add(one)
+            kind = owner.form.keys[name].form.kind
+            values = parse_quantity(text, kind) * np.array([1.0, 0.999, 1.001])
+            rows = [(f"{value!r} {SI[kind]}".rstrip(),) for value in values.tolist()]
+            several = bound(file, (key,), (text,), rows)
+            for row in (1, 2):
+                assert same(several[row], bound(file, (key,), (text,), rows[row : row + 1])[0]), (key, row)
     traces = ("Known", "Measured", "Motored", "Pegging")  # are made one by one
     assert {one for one in kinds_of_numbers() - met if one[0] not in traces} == set()

@@ -11,11 +11,10 @@ from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Answer, Values, answers_of, asked_answers, is_slow
-from kurbel.designs.binding import Binder, CasesBinder, written_texts
+from kurbel.designs.binding import Binder, Lot, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Lot
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
@@ -112,7 +111,7 @@ class Sweep:
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Row.text` tells them."""
 
-    def _started(self) -> tuple[Binder | CasesBinder, tuple[Answer, ...], tuple["_Limit", ...]]:
+    def _started(self) -> tuple[Binder, tuple[Answer, ...], tuple["_Limit", ...]]:
         """Return what binds texts, starting from the first row whose machine tells what it answers, and who answers.
 
         That is what is asked for, and what limits are for, with their bounds.
@@ -121,7 +120,7 @@ class Sweep:
         failed: list[KurbelError] = []
         for texts in self._starts(keys):
             try:
-                binder = (CasesBinder if self.spec.cases else Binder)(self.spec.origin, keys, texts)
+                binder = Binder(self.spec.origin, keys, texts, self.spec.cases)
                 asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
                 return binder, asked, tuple(_limit_answers(binder.machine))
             except (MachineFileError, NoSolutionError) as error:
