@@ -1,4 +1,4 @@
-"""Druckwechsel and crossings of random cylinders against a dense scan between exact extremes: none may be missed.
+"""Force reversals and crossings of random cylinders against a dense scan between exact extremes: none may be missed.
 
     python benchmarks/random_cylinders.py [COUNT [SEED]]
 

@@ -1,6 +1,7 @@
-"""The page of the machines that come with kurbel: what each is and teaches, its picture, its answers, its file.
+"""The page of the machines that come with kurbel: what each is and teaches, its picture, its results, its file.
 
-`pytest --rewrite tests/test_documents.py` writes it, and the same on tests/pictures/test_gallery.py its pictures.
+The site includes the file itself (`--8<--`). `pytest --rewrite tests/test_documents.py` writes it, and the same on
+tests/pictures/test_gallery.py its pictures.
 """
 
 from __future__ import annotations
@@ -33,8 +34,7 @@ _ROUNDING = 1e-9
 _HEAD = """# Machines that come with kurbel
 
 `kurbel example` lists them, `kurbel example NAME > engine.yaml` takes one as a pattern. Each begins with a comment that
-says where its figures come from and what it is good for. Written by `pytest --rewrite tests/test_documents.py`; do not
-edit by hand.
+says where its figures come from and what it is good for.
 """
 
 
@@ -48,7 +48,7 @@ def _machine(file: Path) -> str:
     picture = gallery.embedded(gallery.TEACHING[file.stem], file.stem)
     answers = "".join(_answers(command, ids, file) for command, ids in _SHOWN.items())
     table = f"| Key value | Value | At |\n| --- | --: | --: |\n{answers}".rstrip()
-    source = f"<details markdown>\n<summary>The file</summary>\n\n```yaml\n{text.rstrip()}\n```\n\n</details>"
+    source = f'<details markdown>\n<summary>The file</summary>\n\n```yaml\n--8<-- "{file.name}"\n```\n\n</details>'
     return f"## {file.stem}\n\n{_comment(text)}\n\n{picture}\n\n{table}\n\n{source}\n"
 
 

@@ -29,7 +29,7 @@ def test_one_cylinder_has_the_figures_that_it_has_among_the_others(command: str)
 
 def test_the_page_says_which_cylinder() -> None:
     asked = run("forces", FOUR, "--cylinder", "cylinder 3", "--key-values")
-    assert asked.stdout.splitlines()[0].endswith("Kräfte im Kurbeltriebe: cylinder 3")
+    assert asked.stdout.splitlines()[0].endswith("Forces in the crank train: cylinder 3")
     assert "cylinder 1" not in asked.stdout
     assert len(asked.stdout.splitlines()) < 50
 

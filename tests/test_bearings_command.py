@@ -57,7 +57,7 @@ def test_csv_tells_the_bearings_apart() -> None:
 
 def test_one_bearing_alone() -> None:
     text = run("bearings", "-", "--cylinder", "bearing B", "--key-values").stdout
-    assert "Lagerkräfte: bearing B" in text
+    assert "Bearing loads: bearing B" in text
     assert "F_L,max" in text
     wrong = run("bearings", "-", "--cylinder", "cylinder 2")
     assert wrong.exit_code == 2
@@ -76,7 +76,7 @@ def test_the_pins_of_one_cylinder_by_its_name_or_its_number(asked: str, name: st
 def test_several_throws_are_said_to_be_statically_determinate() -> None:
     text = " ".join(run("bearings", "-", "--cylinder", "bearing 3", "--key-values", file=TWO + SHAFT).stdout.split())
     assert "Statically determinate, throw by throw" in text
-    assert "Lagerkräfte: bearing 3" in text
+    assert "Bearing loads: bearing 3" in text
     assert "do not fit bearings between them" not in run("check", "-", file=TWO + SHAFT).stdout
 
 

@@ -49,7 +49,7 @@ def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
     page = run("forces", "-", *form, text=EQUAL).replace("\\", "")
     one = run("forces", "-", *form, "--cylinder", "cylinder 3", text=EQUAL).replace("\\", "")
     assert page.replace("cylinders 1–4", "cylinder 3") == one
-    assert page.splitlines()[0].endswith("Kräfte im Kurbeltriebe: cylinders 1–4")
+    assert page.splitlines()[0].endswith("Forces in the crank train: cylinders 1–4")
 
 
 def test_programs_get_each() -> None:

@@ -83,7 +83,7 @@ def tables(content: dict[str, object]) -> dict[str, dict[str, object]]:
 
 def test_text_names_versions_methods_and_states() -> None:
     text = run("-", "--quick").stdout
-    assert text.startswith("plain. Genauigkeit und Rechenzeit\nkurbel ")
+    assert text.startswith("plain. Accuracy and run time\nkurbel ")
     assert re.search(r"Python 3\.\d+\.\d+, numpy \d", text)
     assert "quantity  method             points  state  evaluations" in text
     assert "textbook, radians" in text
@@ -124,7 +124,7 @@ def test_csv_has_one_head_for_all_sections(formatted: Callable[..., bytes]) -> N
 
 def test_markdown() -> None:
     text = run("-", "--quick", "-f", "markdown").stdout
-    assert text.startswith("## plain. Genauigkeit und Rechenzeit\n\nkurbel ")
+    assert text.startswith("## plain. Accuracy and run time\n\nkurbel ")
     assert (
         "| quantity | method | points | state | evaluations | error | ulp | median (ms) | least (ms) | ratio |" in text
     )

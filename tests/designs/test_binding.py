@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from good_machines import ALL
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import RecordForm
 from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.binding import Binder, _every, _owner
@@ -298,12 +298,12 @@ def kinds_of_numbers() -> set[tuple[str, str]]:
         if id(form) in seen:
             return
         seen.add(id(form))
-        if isinstance(form, Record):
-            name = form.load().__name__
-            found.update((name, key) for key, one in form.keys.items() if one.form.is_number)
+        if isinstance(form, RecordForm):
+            name = form.record.__name__
+            found.update((name, key) for key, one in form.keys.items() if one.form.numeric)
         for _, inner in form.parts():
             visit(inner)
-        for inner in form.inline():
+        for inner in form.inline:
             visit(inner)
 
     visit(ROOT)
@@ -321,8 +321,8 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
                 continue
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
             owner, name, inner = _owner(path_of(key), list(_every(read_values(file, reading_of(file)))))
-            one = (owner.form.load().__name__, name)
-            if inner or one in met or not owner.form.keys[name].form.is_number:
+            one = (owner.form.record.__name__, name)
+            if inner or one in met or not owner.form.keys[name].form.numeric:
                 continue
             met.add(one)
             kind = owner.form.keys[name].form.kind

@@ -16,9 +16,8 @@ from kurbel import loads
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.numerics.enclosing import ClosedCurve, smallest_circle
-from kurbel.solver.balance import MachineBalance
+from kurbel.solver.balance import MachineBalance, vector_at
 from kurbel.solver.case import Case
-from kurbel.solver.unbalanced import vector_at
 from representative import few
 
 ANGLES = np.array([0.0, 7.3, 45.0, 90.0, 133.7, 180.0, 211.0, 299.9])
@@ -424,17 +423,15 @@ def test_a_locomotive() -> None:
         "counterweights={share: 0.6}",
         "locomotive={wheel_distance: 1.6 m, wheel_diameter: 1.7 m, wheel_load: 80 kN, hammer_limit: 40 kN}",
     )
-    loco = found.locomotive
-    assert loco is not None
     unit = 300 * 0.3 * OMEGA**2
-    assert loco.traction_variation.value == pytest.approx(math.sqrt(2) * 0.4 * unit)
-    assert loco.swaying_couple.value == pytest.approx(0.4 * unit * 0.7 / math.sqrt(2))
+    assert found.traction_variation.value == pytest.approx(math.sqrt(2) * 0.4 * unit)
+    assert found.swaying_couple.value == pytest.approx(0.4 * unit * 0.7 / math.sqrt(2))
     blow = math.hypot(1.6 + 0.7, 1.6 - 0.7) / (2 * 1.6) * unit
-    assert loco.hammer_blow == pytest.approx(0.6 * blow)
-    assert loco.share_allowed == pytest.approx(40e3 / blow)
-    assert loco.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
-    assert loco.hammer_train_speed == pytest.approx(loco.hammer_speed * math.pi * 1.7)
-    assert loco.train_speed == pytest.approx(10 * math.pi * 1.7)
+    assert found.hammer_blow == pytest.approx(0.6 * blow)
+    assert found.share_allowed == pytest.approx(40e3 / blow)
+    assert found.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
+    assert found.hammer_train_speed == pytest.approx(found.hammer_speed * math.pi * 1.7)
+    assert found.train_speed == pytest.approx(10 * math.pi * 1.7)
 
 
 @pytest.mark.parametrize("speed", ["", "speed: 0 1/s"])
@@ -444,10 +441,8 @@ def test_the_speed_at_which_a_wheel_lifts_does_not_hang_on_that_of_the_machine(s
         "locomotive={wheel_distance: 1.6 m, wheel_load: 80 kN, wheel_diameter: 1.7 m}",
         "counterweights={share: 0.6}",
     )
-    still = balance_of(TWO_CRANKS.replace("speed: 600 rpm", speed), *wheels).locomotive
-    turning = balance_of(TWO_CRANKS, *wheels).locomotive
-    assert still is not None
-    assert turning is not None
+    still = balance_of(TWO_CRANKS.replace("speed: 600 rpm", speed), *wheels)
+    turning = balance_of(TWO_CRANKS, *wheels)
     assert turning.hammer_blow is not None
     assert still.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / turning.hammer_blow), rel=1e-14)
     assert still.hammer_train_speed == pytest.approx(still.hammer_speed * math.pi * 1.7, rel=1e-14)
@@ -580,6 +575,5 @@ def test_no_weight_beside_the_best_one_leaves_less(name: str) -> None:
 
 def test_wheels_need_to_know_where_the_cylinders_stand() -> None:
     found = balance_of(single(4, ", locomotive: {wheel_distance: 1 m}"))
-    assert found.locomotive is not None
     with pytest.raises(UsageError, match="cylinder 1: weights in two planes need its 'axial_position'"):
-        _ = found.locomotive.hammer_blow
+        _ = found.hammer_blow

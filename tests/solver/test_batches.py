@@ -134,7 +134,7 @@ def test_balance(text: str, ids: Sequence[str], shortest: float) -> None:
 
 def test_wheels_of_locomotives() -> None:
     machines = machines_of(TWO_CRANKS, 12, 3.0)
-    alone, together = (Case(one).balance.locomotive for one in machines), Case(batch(machines), 12).balance.locomotive
+    alone, together = (Case(one).balance for one in machines), Case(batch(machines), 12).balance
     found = [
         differs(id, getattr(one, id), getattr(together, id), k) for k, one in enumerate(alone) for id in LOCOMOTIVE
     ]

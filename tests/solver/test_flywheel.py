@@ -242,7 +242,7 @@ def test_four_cylinders_fire_every_180_degrees() -> None:
 
 def test_technical_units_and_text() -> None:
     text = run(ENGINE + "flywheel: {fluctuation: 0.01}\n", "--units", "technical", "--step", "90").stdout
-    assert "Drehkraftlinie und Schwungrad" in text
+    assert "Turning effort and flywheel" in text
     assert "kgf m²" in text
     assert "T and W are referred to the radius of crank 1, 400 mm" in text
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.keys import Described, Form
+from kurbel.declared.forms.values import Form
+from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Path, RuleError, UsageError, path_text
@@ -22,8 +23,8 @@ from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import by_numbers, dotted, path_of
-from kurbel.machine_file.reader import ROOT, read_values, reading_of, set_over
+from kurbel.machine_file.overrides import by_numbers, dotted, path_of, set_over
+from kurbel.machine_file.reader import ROOT, read_values, reading_of
 from kurbel.machine_file.zeroed_units import without_zeros
 from kurbel.near_words import did_you_mean
 
@@ -66,7 +67,7 @@ class Binder:
             form = owner.form.keys[name].form
             bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
             self.kinds.append(form.kind or ("ratio" if bare else ""))
-            self._numeric.append(not inner and form.is_number and not isinstance(owner.made, Indivisible))
+            self._numeric.append(not inner and form.numeric and not isinstance(owner.made, Indivisible))
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
         """Return the machines of rows of texts, those of one structure in one record, and why other rows make none."""
@@ -178,10 +179,10 @@ class _Maker(Maker):
         }
         if any(one is REFUSED for one in values.values()):
             return REFUSED
-        kind = given.form.load()
+        kind = given.form.record
         record = kind.of_keys(**values)
         rules = list(kind.rules_of_keys(values))
-        if isinstance(record, Described):
+        if isinstance(record, Record):
             rules += record.rules()
             self.broken |= too_extreme(record, values)
         for rule in rules:

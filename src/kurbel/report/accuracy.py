@@ -122,7 +122,7 @@ def accuracy_report(
     edge = beaten or [none for part in parts[:1] if any(table.id == NUMERICAL for table in part.place_tables)]
     name = machine.name if machine else "built-in scenes"
     head = (environment(), "Times are of this machine and this run; compare them only with one another.")
-    title, named = f"{name}. Genauigkeit und Rechenzeit", machine.name if machine else None
+    title, named = f"{name}. Accuracy and run time", machine.name if machine else None
     report = Report(title, "accuracy", named, "scenes", tuple(parts), notes=(*_NOTES, *edge), head=head)
     return report._replace(provenance=provenance(machine)) if machine else report
 
@@ -206,7 +206,7 @@ def extremes_report(loads: Loads) -> tuple[Report, bool]:
     heads = ("case", "asked", "expected", "observed", "verdict")
     table = PlaceTable("extremes", f"{passed} of {len(found)} cases passed", heads, names, columns, True)
     part = Part("stiff and extreme cases", (), place_tables=(table,))
-    title = "Stiff and extreme cases. Grenzfälle"
+    title = "Stiff and extreme cases"
     return Report(title, "accuracy", None, "scenes", (part,), head=(environment(),)), passed == len(found)
 
 

@@ -74,7 +74,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
         left_out=tuple(balance_left_out(case, frame.compare)),
         warnings=tuple(pin_warnings(case.machine)),
     )
-    return report_on(frame, case.machine, "Massenausgleich", (), whole, _notes(case.balance))
+    return report_on(frame, case.machine, "Balancing", (), whole, _notes(case.balance))
 
 
 def balance_subjects(case: Case, compare: bool = False) -> list[Subject]:
@@ -179,9 +179,9 @@ def _weight_tables(balance: MachineBalance, system: str) -> Iterator[PlaceTable]
     if best:
         title = "Counterweights in two planes, and balance shafts"
         yield place_table("best_weights", title, ("weight",), WEIGHTS, best, system)
-    if balance.locomotive:
+    if balance.machine.locomotive:
         square = (balance.omega or 0.0) ** 2
-        wheels = zip("AB", balance.locomotive.unbalanced, balance.wheels)
+        wheels = zip("AB", balance.in_wheels(), balance.wheels)
         rows = [_weight(name, Weight(product, 1, place), square) for name, product, place in wheels]
         yield place_table("wheels", "Beyond what turns, in the wheels", ("wheel",), WEIGHTS, rows, system)
 

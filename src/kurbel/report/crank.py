@@ -16,7 +16,7 @@ from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import CYCLE_ROWS
 from kurbel.solver.trace import TracePressure
 
-_TITLE = "Kräfte im Kurbeltriebe"
+_TITLE = "Forces in the crank train"
 
 
 def motion_report(case: Case, frame: Frame) -> Report:
@@ -27,7 +27,7 @@ def motion_report(case: Case, frame: Frame) -> Report:
         replace(one, left_out=tuple(motion_left_out(machine, cylinder)))
         for one, cylinder in zip(motion_subjects(case), machine.cylinders)
     ]
-    return report_on(frame, machine, "Bewegung des Kurbeltriebes", cylinders, notes=_mechanism_notes(machine))
+    return report_on(frame, machine, "Motion of the crank train", cylinders, notes=_mechanism_notes(machine))
 
 
 def motion_subjects(case: Case) -> list[Subject]:

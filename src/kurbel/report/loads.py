@@ -40,7 +40,7 @@ def bearings_report(case: Case, frame: Frame) -> Report:
     if frame.prose:
         warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
         whole = Subject("whole machine", left_out=tuple(bearings_left_out(case)), warnings=warnings)
-    report = report_on(frame, case.machine, "Lagerkräfte", parts, whole, _bearing_notes(case))
+    report = report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
     return report._replace(group="bearings")
 
 
@@ -115,7 +115,7 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
     if frame.prose:
         lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
         whole = replace(whole, left_out=lacking, warnings=of_machine(case))
-    return report_on(frame, machine, "Festigkeit der Kurbelwelle", (), whole, _stress_notes(case.stress))
+    return report_on(frame, machine, "Strength of the crankshaft", (), whole, _stress_notes(case.stress))
 
 
 def stress_subjects(case: Case) -> list[Subject]:

@@ -95,7 +95,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     if frame.prose:
         whole = replace(whole, left_out=tuple(flywheel_left_out(case.machine)), warnings=of_machine(case))
     notes = _flywheel_notes(case.machine, case.flywheel)
-    return report_on(frame, case.machine, "Drehkraftlinie und Schwungrad", having, whole, notes)
+    return report_on(frame, case.machine, "Turning effort and flywheel", having, whole, notes)
 
 
 def flywheel_subjects(case: Case) -> list[Subject]:
@@ -161,7 +161,7 @@ def harmonics_report(
         warnings=of_machine(case) if frame.prose else (),
         tables=tuple(tables),
     )
-    return report_on(frame, machine, "Drehkraft nach Ordnungen", cylinders, whole, _orders_notes(found))
+    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, _orders_notes(found))
 
 
 def harmonics_subjects(case: Case) -> list[Subject]:
@@ -284,7 +284,7 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     whole = Subject("shaft line", (found,), left_out=lacking, warnings=warnings, tables=tuple(tables))
     pieces = [Subject(one.name, (), one.at) for one in found.pieces] if frame.columns else []
     notes = _torsion_notes(found, wanted, critical, amplitudes)
-    return report_on(frame, case.machine, "Drehschwingungen", pieces, whole, notes)
+    return report_on(frame, case.machine, "Torsional vibration", pieces, whole, notes)
 
 
 def torsion_subjects(case: Case) -> list[Subject]:

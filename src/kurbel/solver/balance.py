@@ -1,36 +1,183 @@
-"""Balancing of the whole machine: key values, the best counterweights and balance shafts, locomotives.
+"""Balancing of the whole machine: what of its moving masses is unbalanced, and the weights against it.
 
-Forces and moments are those of `unbalanced`, complex and over ω², in kg m and kg m². A counterweight u, mass times
-radius, on the crank adds u e^{iφ}. The rolling moment on the frame about the shaft is −(M + dH/dt), with the turning
-effort M and the moment of momentum H of the masses about the shaft.
+The unbalanced (shaking) force is minus the sum of mass times acceleration of all moving parts (d'Alembert), at uniform
+rotation. It is a complex number in the plane square to the shaft, everywhere over ω², so that it is in kg m:
+
+      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      β    angle by which its crank follows crank 1
+          │ ∕                                                       m, m_rot  mass to and fro, mass at the crank pin
+    shaft O────→ F_x  stroke line of cylinder 1, outward            z, z_0    place along the shaft, of the moments
+
+    F = Σ (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ}     all angles in the sense of rotation, x″ = d²x/dφ²
+    M = Σ (z − z_0) F                                     the vector turned back by 90°, so that it points as forces do
+    F = Σ c_n e^{inφ}                                     circles of order n with the rotation, n < 0 against it
+    u n² e^{±inφ}                                         pull of a weight u, mass times radius, that turns n times
+
+The rolling moment on the frame about the shaft is −(M + dH/dt), with the turning effort M and the moment of momentum H
+of the masses about the shaft.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.crank_angle import CrankAngle
+from kurbel.arrays import Array, ComplexArray
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.machine.balance import Locomotive
-from kurbel.numerics.arithmetic import some, sqrt, where
+from kurbel.machine.batch import values_of
+from kurbel.mechanisms import Mechanism
+from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.quantity import column, key_value
+from kurbel.quantity import Tabled, value
 from kurbel.solver.effort import Term, TurningEffort
-from kurbel.solver.figures import AtAngles, Results, part
+from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State
-from kurbel.solver.unbalanced import Free, Terms, book_curvature, vector_at
-from kurbel.solver.weights import OwnThrow, Weight, counterweights_of, levered, middle_of, shafts_of, wheels_of
+from kurbel.solver.weights import (
+    OwnThrow,
+    Weight,
+    counterweights_of,
+    levered,
+    middle_of,
+    throws_with_masses,
+    wheels_of,
+)
 
+_SAMPLES = 256
+"""Equal angles of a turn from which the orders of a mechanism are found, four times as many where a rod is short, …"""
+_MOST_SAMPLES = 1 << 20
+"""… up to these of all machines together: a batch of more raises an error, and its machines are computed alone."""
+_SHOWN = 1e-9
+"""Of the largest order: smaller ones are not listed."""
+_FEWEST = 8
+"""Orders that are kept at least: those of balance shafts."""
+_MOST = 24
+"""Orders that are listed; a rod hardly longer than the crank has thousands, which die away slowly."""
+_AT_ONCE = 1 << 20
+"""Waves that are summed together."""
+_EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """By what a direction, or a lever in m, may miss another by rounding."""
+
+# forces and moments, order by order
+
+
+def orders_of(throw: OwnThrow, curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
+    """Return the orders c_n in m, n from 1 on, (k, count), with x″ = 2 Re Σ c_n e^{inφ}; what is rounding is exactly 0.
+
+    The shorter the rod, the more orders: those above half of the last are to be zero. Raises UsageError for a rod with
+    more of them than can be computed, L/R < 1.00000001.
+    """
+    samples = _SAMPLES
+    while samples * count <= _MOST_SAMPLES:
+        degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
+        values = np.broadcast_to(curvature(throw.mechanism, CrankAngle.of(degrees)), (samples, count))
+        waves, least = np.fft.rfft(values, axis=0)[1:] / samples, _EPS * np.abs(values).max(axis=0)
+        # cosines and sines each: an even function is without sines
+        cos, sin = (np.where(np.abs(part) > least, part, 0.0) for part in (waves.real, waves.imag))
+        waves = cos + 1j * sin
+        last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
+        if last <= samples // 4:
+            return np.asarray(waves[:last])
+        samples *= 4
+    raise UsageError(f"{throw.name}: the rod is so little longer than the crank that its forces have no end of orders")
+
+
+def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+    """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
+    offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+    return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
+
+
+def waves_of(throws: Sequence[OwnThrow], curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
+    """Return m x″(φ − β) e^{iγ} of each throw in kg m by orders from −k to k, (throws, 2k + 1, count).
+
+    Of equal mechanisms the orders are found once.
+    """
+    orders: dict[object, ComplexArray] = {}
+    keys: list[object] = []
+    for throw in throws:
+        lengths = values_of(throw.mechanism).values()
+        said = tuple(one.tobytes() if isinstance(one, np.ndarray) else one for one in lengths)
+        keys.append((type(throw.mechanism), *said))
+        if keys[-1] not in orders:
+            orders[keys[-1]] = orders_of(throw, curvature, count)
+
+    k, found = max(_FEWEST, *map(len, orders.values())), []
+    for key, throw in zip(keys, throws):
+        forward = np.concatenate((orders[key], np.zeros((k - len(orders[key]), count))))
+        waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
+        late = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.late, count))
+        found.append(waves * throw.mass * unit_vector(throw.bank - late))
+    return np.array(found)
+
+
+class Free(NamedTuple):
+    """The unbalanced force over ω² in kg m, and the moment in kg m², None where a place is not known.
+
+    orders: the lowest ones of one machine that some throw or weight has, whether or not they cancel; next_order: the
+    first that is not among them, None where there is none.
+    """
+
+    force: ClosedCurve
+    moment: ClosedCurve | None
+    orders: tuple[int, ...]
+    next_order: int | None
+
+    def at_most(self, vector: ClosedCurve) -> float:
+        """Return what the force or the moment of the higher orders is at most."""
+        higher = np.abs(vector.numbers)[:, None] > self.orders[-1]
+        return float(ClosedCurve(vector.waves * higher).farthest()[0][0])
+
+
+def free_of(throws: Sequence[OwnThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: Any) -> Free:
+    """Return what is unbalanced of throws, with the waves of what goes to and fro, and of weights that turn.
+
+    z_0: from where moments are taken in m, None: not known. What cancels is exactly 0.
+    """
+    turning = [one for one in weights if some(one.product != 0)]
+    pulls = np.zeros((len(turning), *waves.shape[1:]), complex)
+    for row, one in enumerate(turning):
+        pulls[row, one.order + waves.shape[1] // 2] = one.product * one.order**2
+    waves = np.concatenate((waves, pulls))
+
+    def summed(levers: Sequence[Any]) -> ClosedCurve:
+        terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
+        return ClosedCurve(np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0))))
+
+    places = [*(one.place for one in throws), *(one.place for one in turning)]
+    known = z_0 is not None and all(place is not None for place in places)
+    moment = summed([place - z_0 for place in places]) if known else None
+    sizes, k = np.abs(waves[:, :, 0]).max(axis=0), waves.shape[1] // 2
+    both = sizes[k + 1 :] + sizes[:k][::-1]
+    orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
+    return Free(summed([1.0] * len(places)), moment, orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None)
+
+
+def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
+    """Return the vectors (n,) of one machine at angles (n,) in degrees; what cancels is exactly 0."""
+    parts = np.array_split(degrees, math.ceil(len(degrees) * len(curve.waves) / _AT_ONCE) or 1)
+    return np.asarray(
+        unless_cancelled(np.concatenate([curve.at(part)[0] for part in parts]), np.abs(curve.waves).sum())
+    )
+
+
+# over the crank angle
+
+
+def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled:
+    """Return a column that is a part, or the size, of a vector of BalanceColumns; asked: printed on request alone."""
+
+    def part(columns: BalanceColumns) -> Any:
+        found = columns.vector(name)
+        return None if found is None else of(found)
+
+    return value(symbol, kind, text, part, on_request=("balance",) if asked else ())
 
 
 class BalanceColumns(AtAngles):
@@ -40,165 +187,52 @@ class BalanceColumns(AtAngles):
     """
 
     commands = ("balance",)
+    F_x = _vector(
+        "force", "F_x", "force", "Free force along the stroke line of cylinder 1, outward from the shaft", np.real
+    )
+    F_y = _vector("force", "F_y", "force", "Free force across it, 90° on in the sense of rotation", np.imag)
+    F_free = _vector("force", "F", "force", "Free force, its magnitude", np.abs, asked=True)
+    F_x_book = _vector("book force", "F_x,0", "force", "F_x by the acceleration of first order (R 291)", np.real, True)
+    F_y_book = _vector("book force", "F_y,0", "force", "F_y by the acceleration of first order (R 291)", np.imag, True)
+    M_x = _vector("moment", "M_x", "torque", "Free moment Σ (z − z_0) F_x", np.real)
+    M_y = _vector("moment", "M_y", "torque", "Free moment Σ (z − z_0) F_y", np.imag)
+    M_free = _vector("moment", "M_f", "torque", "Free moment, its magnitude", np.abs, asked=True)
+    M_x_book = _vector(
+        "book moment", "M_x,0", "torque", "M_x by the acceleration of first order (R 291)", np.real, True
+    )
+    M_y_book = _vector(
+        "book moment", "M_y,0", "torque", "M_y by the acceleration of first order (R 291)", np.imag, True
+    )
+    M_roll = value(
+        "M_roll",
+        "torque",
+        "Rolling moment on the frame about the shaft, in the sense of rotation",
+        lambda columns: columns.rolling(),
+    )
 
     def __init__(self, balance: MachineBalance, phi: Array, within: Array) -> None:
         self.phi = phi
         self._balance, self._within = balance, within
+        self._vectors: dict[str, ComplexArray | None] = {}
 
-    def _vectors(self, free: Free | None) -> tuple[Any, Any]:
-        """Return the force and the moment (n,), complex; None for what there is not."""
-        omega, curves = self._balance.omega, (free.force, free.moment) if free else (None, None)
-        force, moment = (
-            None if one is None or omega is None else vector_at(one, self.phi) * (omega * omega) for one in curves
-        )
-        return force, moment
+    def vector(self, name: str) -> ComplexArray | None:
+        """Return the `force`, the `moment`, or those of the `book` (n,); None for what there is not."""
+        balance = self._balance
+        if name not in self._vectors:
+            free = balance.book if name.startswith("book") else balance.free
+            curve = None if free is None else free.force if name.endswith("force") else free.moment
+            self._vectors[name] = None
+            if curve is not None and balance.omega is not None:
+                self._vectors[name] = vector_at(curve, self.phi) * (balance.omega * balance.omega)
+        return self._vectors[name]
 
-    @cached_property
-    def _free(self) -> tuple[Any, Any]:
-        return self._vectors(self._balance.free)
-
-    @cached_property
-    def _book(self) -> tuple[Any, Any]:
-        return self._vectors(self._balance.book)
-
-    @column("F_x", "force")
-    def F_x(self) -> Any:
-        """Free force along the stroke line of cylinder 1, outward from the shaft."""
-        return _part(np.real, self._free[0])
-
-    @column("F_y", "force")
-    def F_y(self) -> Any:
-        """Free force across it, 90° on in the sense of rotation."""
-        return _part(np.imag, self._free[0])
-
-    @column("F", "force", on_request=("balance",))
-    def F_free(self) -> Any:
-        """Free force, its magnitude."""
-        return _part(np.abs, self._free[0])
-
-    @column("F_x,0", "force", on_request=("balance",))
-    def F_x_book(self) -> Any:
-        """F_x by the acceleration of first order (R 291)."""
-        return _part(np.real, self._book[0])
-
-    @column("F_y,0", "force", on_request=("balance",))
-    def F_y_book(self) -> Any:
-        """F_y by the acceleration of first order (R 291)."""
-        return _part(np.imag, self._book[0])
-
-    @column("M_x", "torque")
-    def M_x(self) -> Any:
-        """Free moment Σ (z − z_0) F_x."""
-        return _part(np.real, self._free[1])
-
-    @column("M_y", "torque")
-    def M_y(self) -> Any:
-        """Free moment Σ (z − z_0) F_y."""
-        return _part(np.imag, self._free[1])
-
-    @column("M_f", "torque", on_request=("balance",))
-    def M_free(self) -> Any:
-        """Free moment, its magnitude."""
-        return _part(np.abs, self._free[1])
-
-    @column("M_x,0", "torque", on_request=("balance",))
-    def M_x_book(self) -> Any:
-        """M_x by the acceleration of first order (R 291)."""
-        return _part(np.real, self._book[1])
-
-    @column("M_y,0", "torque", on_request=("balance",))
-    def M_y_book(self) -> Any:
-        """M_y by the acceleration of first order (R 291)."""
-        return _part(np.imag, self._book[1])
-
-    @column("M_roll", "torque")
-    def M_roll(self) -> Any:
-        """Rolling moment on the frame about the shaft, in the sense of rotation."""
+    def rolling(self) -> Array | None:
+        """Return the rolling moment (n,) in N m; None without a speed."""
         effort, roll = self._balance.effort, self._balance.roll
         return None if effort is None or roll is None else effort.at(effort.pieces, roll, self.phi, self._within)
 
 
-def _part(component: Callable[[Any], Any], vector: Any) -> Any:
-    return None if vector is None else component(vector)
-
-
-class LocomotiveBalance(Results):
-    """The key values of a locomotive, in SI, at the angular velocity of its machine; None what needs one not given.
-
-    The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes to
-    and fro, loads and lifts the wheel that has it: its hammer blow.
-    """
-
-    command = "balance"
-
-    def __init__(self, balance: MachineBalance, given: Locomotive) -> None:
-        self._balance, self._given = balance, given
-        self._square = balance.omega * balance.omega if balance.omega is not None and some(balance.omega != 0) else None
-
-    def _rolling(self, omega: Any) -> Any:
-        """Return the speed of the train in m/s; None without the diameter of the wheels."""
-        diameter = self._given.wheel_diameter
-        return None if diameter is None else diameter / 2 * omega
-
-    @key_value("v_z", "velocity")
-    def train_speed(self) -> Any:
-        """Speed of the train."""
-        return None if self._square is None else self._rolling(self._balance.omega)
-
-    @key_value("F_z", "force")
-    def traction_variation(self) -> Extreme | None:
-        """Largest variation of the tractive force.
-
-        The largest unbalanced force along the stroke lines.
-        """
-        return self._balance.farthest["force along"]
-
-    @key_value("M_s", "torque")
-    def swaying_couple(self) -> Extreme | None:
-        """Largest swaying couple, about the upright axis."""
-        return self._balance.farthest.get("moment along")
-
-    def _in_wheels(self, weights: Iterable[tuple[str, Weight]]) -> tuple[Any, Any]:
-        """Return the sums of weights in the two wheels, as by a lever, in kg m; each with what it is of."""
-        parts = [levered(one, self._balance.wheels, owner) for owner, one in weights]
-        return sum(part[0].product for part in parts), sum(part[1].product for part in parts)
-
-    @cached_property
-    def unbalanced(self) -> tuple[Any, Any]:
-        """What turns in each wheel in kg m, counterweights and rotating masses together."""
-        rotating = [(one.name, one.weight(one.rotating)) for one in self._balance.throws]
-        return self._in_wheels((*rotating, *(("counterweights", one) for one in self._balance.counterweights)))
-
-    @key_value("H", "force")
-    def hammer_blow(self) -> Any:
-        """Hammer blow: by how much a counterweight loads and lifts its wheel."""
-        return None if self._square is None else _larger(*self.unbalanced) * self._square
-
-    @key_value("n_H", "speed")
-    def hammer_speed(self) -> Any:
-        """Speed of rotation at which the hammer blow is the load of the wheel."""
-        most = _larger(*self.unbalanced)
-        if self._given.wheel_load is None or not some(most != 0):
-            return None
-        return sqrt(self._given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
-
-    @key_value("v_H", "velocity")
-    def hammer_train_speed(self) -> Any:
-        """Speed of the train at which it is."""
-        return None if self.hammer_speed is None else self._rolling(2 * math.pi * self.hammer_speed)
-
-    @key_value("c_H", "ratio")
-    def share_allowed(self) -> Any:
-        """Largest share of the reciprocating masses within the limit of the blow."""
-        if self._given.hammer_limit is None or self._square is None:
-            return None
-        whole = self._in_wheels((one.name, one.weight(one.mass)) for one in self._balance.throws)
-        blow = _larger(*whole) * self._square
-        return self._given.hammer_limit / where(blow > self._given.hammer_limit, blow, self._given.hammer_limit)
-
-
-def _larger(one: Any, other: Any) -> Any:
-    return where(abs(one) >= abs(other), abs(one), abs(other))
+# the whole machine
 
 
 class MachineBalance(Results):
@@ -216,61 +250,121 @@ class MachineBalance(Results):
     command = "balance"
     state = BalanceColumns
 
+    _book = "The same by the acceleration of first order (R 291)"
+    F_free_max = value("F_max", "force", "Largest free force", lambda one: one.farthest["force"])
+    F_free_max_book = value("F_0,max", "force", _book, lambda one: one.farthest_of_book[0])
+    M_free_max = value("M_f,max", "torque", "Largest free moment", lambda one: one.farthest.get("moment"))
+    M_free_max_book = value("M_f,0,max", "torque", _book, lambda one: one.farthest_of_book[1])
+    M_roll_max = value(
+        "M_roll,max",
+        "torque",
+        "Largest rolling moment on the frame",
+        lambda one: one.rolling and one.rolling.largest,
+        unless=lambda one: one.rolls_as_it_turns,
+    )
+    M_roll_min = value(
+        "M_roll,min",
+        "torque",
+        "Smallest rolling moment on the frame",
+        lambda one: one.rolling and one.rolling.smallest,
+        unless=lambda one: one.rolls_as_it_turns,
+    )
+    counterweight_given = value(
+        "u",
+        "unbalance",
+        "Vector sum of the given counterweights, mass times radius",
+        lambda one: abs(sum(weight.product for weight in one.counterweights)) if one.counterweights else None,
+    )
+    # it takes away the forward circle of order 1
+    _direction = "Its direction from throw 1"
+    counterweight_best = value(
+        "u_1",
+        "unbalance",
+        "Counterweight against what rotates and half of what reciprocates",
+        lambda one: abs(one.forward),
+    )
+    counterweight_best_angle = value("α_1", "angle", _direction, lambda one: one.angle_of(-one.forward))
+    counterweight_least = value(
+        "u_min", "unbalance", "Counterweight that leaves the least largest free force", lambda one: abs(one.least)
+    )
+    counterweight_least_angle = value("α_min", "angle", _direction, lambda one: one.angle_of(one.least))
+    share_best = value(
+        "c_min", "ratio", "Share of the reciprocating mass that it balances", lambda one: one.share_of_least()
+    )
+    F_free_best = value("F_min", "force", "Largest free force that it leaves", lambda one: one.least_and_force[1])
+
+    train_speed = value("v_z", "velocity", "Speed of the train")
+    traction_variation = value("F_z", "force", "Largest variation of the tractive force")
+    swaying_couple = value("M_s", "torque", "Largest swaying couple, about the upright axis")
+    hammer_blow = value("H", "force", "Hammer blow: by how much a counterweight loads and lifts its wheel")
+    hammer_speed = value("n_H", "speed", "Speed of rotation at which the hammer blow is the load of the wheel")
+    hammer_train_speed = value("v_H", "velocity", "Speed of the train at which it is")
+    share_allowed = value("c_H", "ratio", "Largest share of the reciprocating masses within the limit of the blow")
+
     def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
         machine = self.machine = effort.machine
         self.count, self._cylinders, self._turning, self._compare = effort.count, effort.cylinders, effort, compare
         first = machine.cylinders[0].bank_angle if machine.cylinders else 0.0
-        own = (OwnThrow(number, one, first) for number, one in enumerate(machine.cylinders) if one.masses)
-        self.throws = tuple(own)
+        self.throws = tuple(
+            throw for throw in throws_with_masses(machine, first) if machine.cylinders[throw.number].masses
+        )
         if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
             raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
         for throw in self.throws:
             if throw.mechanism.quick_return:
                 raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
-        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))
 
     def _columns(self, phi: Array, within: Array) -> BalanceColumns:
         return BalanceColumns(self, phi, within)
 
-    def _told(self, values: Any) -> Any:
+    def _of_one(self, values: Any) -> Any:
         """Return complex numbers (machines,) of every machine, or that of the only one."""
         return values[0].item() if self.count is None else values
 
     # what moves, all of it over ω²
 
     @cached_property
-    def _throws_alone(self) -> Terms:
-        return Terms.of(self.throws, lambda one, angle: one.curvature(angle), self.count or 1)
+    def _waves(self) -> ComplexArray:
+        return waves_of(self.throws, lambda one, angle: one.curvature(angle), self.count or 1)
 
-    @cached_property
-    def bare(self) -> Free:
-        """What the throws give, without counterweights and balance shafts."""
-        return Free(self._throws_alone, self.z_0)
+    def _with(self, waves: ComplexArray, *weights: Weight) -> Free:
+        rotating = (throw.weight(throw.rotating) for throw in self.throws)
+        return free_of(self.throws, waves, (*rotating, *weights), self.z_0)
 
     @cached_property
     def _weights(self) -> tuple[Weight, ...]:
         """The weights of the machine file, on the crank and on shafts."""
-        return (*self.counterweights, *shafts_of(self.machine))
+        shafts = (
+            Weight(one.product * unit_vector(one.angle), -one.order if one.against else one.order, one.axial_position)
+            for one in self.machine.balance_shafts
+        )
+        return (*self.counterweights, *shafts)
+
+    @cached_property
+    def bare(self) -> Free:
+        """What the throws give, without counterweights and balance shafts."""
+        return self._with(self._waves)
 
     @cached_property
     def free(self) -> Free:
         """What is unbalanced, with the counterweights and balance shafts of the machine file."""
-        return Free(self._throws_alone.with_weights(self._weights), self.z_0) if self._weights else self.bare
+        return self._with(self._waves, *self._weights) if self._weights else self.bare
 
     @cached_property
     def book(self) -> Free | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
         if any(book_curvature(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
             return None
-        return Free(Terms.of(self.throws, book_curvature, self.count or 1).with_weights(self._weights), self.z_0)
+        return self._with(waves_of(self.throws, book_curvature, self.count or 1), *self._weights)
 
-    def times_square(self, lengths: Array, degrees: Array) -> Extreme | None:
+    def _times_square(self, lengths: Array, degrees: Array) -> Extreme | None:
         """Return largest lengths over ω² with their angles, times ω²; None without a speed."""
         if self.omega is None:
             return None
-        return Extreme(self._told(lengths) * self.omega * self.omega, self._told(degrees))
+        return Extreme(self._of_one(lengths) * self.omega * self.omega, self._of_one(degrees))
 
     @cached_property
     def farthest(self) -> dict[str, Extreme | None]:
@@ -280,43 +374,15 @@ class MachineBalance(Results):
         if self.machine.locomotive:
             waves |= {f"{name} along": (one + one[::-1].conj()) / 2 for name, one in waves.items()}
         found = ClosedCurve(np.concatenate([*waves.values()], axis=1)).farthest()
-        return dict(zip(waves, map(self.times_square, *(np.split(one, len(waves)) for one in found))))
+        return dict(zip(waves, map(self._times_square, *(np.split(one, len(waves)) for one in found))))
 
     @cached_property
-    def _least(self) -> tuple[Any, Extreme | None]:
-        """The counterweight in kg m that leaves the least largest force, complex, and that force.
-
-        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ), to
-        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
-        circle round it.
-        """
-        turning = self.bare.force.of(1)
-        centre, radius, degrees = self.bare.force.plus(1, -turning).turned_back().least_circle()
-        return self._told(-(turning + centre)), self.times_square(radius, degrees)
-
-    @key_value("F_max", "force")
-    def F_free_max(self) -> Extreme | None:
-        """Largest free force."""
-        return self.farthest["force"]
-
-    @key_value("F_0,max", "force")
-    def F_free_max_book(self) -> Extreme | None:
-        """The same by the acceleration of first order (R 291)."""
-        return self._farthest_of_book(lambda book: book.force)
-
-    def _farthest_of_book(self, part: Callable[[Free], ClosedCurve | None]) -> Extreme | None:
-        curve = part(self.book) if self._compare and self.book else None
-        return None if curve is None else self.times_square(*curve.farthest())
-
-    @key_value("M_f,max", "torque")
-    def M_free_max(self) -> Extreme | None:
-        """Largest free moment."""
-        return self.farthest.get("moment")
-
-    @key_value("M_f,0,max", "torque")
-    def M_free_max_book(self) -> Extreme | None:
-        """The same by the acceleration of first order (R 291)."""
-        return self._farthest_of_book(lambda book: book.moment)
+    def farthest_of_book(self) -> tuple[Extreme | None, Extreme | None]:
+        """The largest force and moment by the acceleration of first order, where they are to be compared."""
+        if not self._compare or self.book is None:
+            return None, None
+        force, moment = self.book.force, self.book.moment
+        return self._times_square(*force.farthest()), self._times_square(*moment.farthest()) if moment else None
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
 
@@ -333,26 +399,24 @@ class MachineBalance(Results):
     @cached_property
     def roll(self) -> Array | None:
         """Samples of the rolling moment in N m on the pieces of the effort. Raises UsageError where no force acts."""
+
+        def swirl(state: State) -> Any:
+            """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
+            drive = state.drive
+            moment = state.b * (drive.mass * drive.mechanism.offset)
+            return moment - state.rod_couple if drive.rod else moment
+
         if self.effort is None:
             return None
         swirling = [Term(-1.0, one, swirl) for one in self.effort.groups if swirls(one[0])]
         return self.effort.sampled(swirling) - self.effort.M
 
     @cached_property
-    def _roll_extremes(self) -> Extremes | None:
+    def rolling(self) -> Extremes | None:
+        """The extremes of the rolling moment."""
         if self.roll is None:
             return None
         return self._turning.pieces.extremes(self.roll[None]).each(self._turning.result)[0]
-
-    @key_value("M_roll,max", "torque", unless=lambda balance: balance.rolls_as_it_turns)
-    def M_roll_max(self) -> Extreme | None:
-        """Largest rolling moment on the frame."""
-        return self._roll_extremes and self._roll_extremes.largest
-
-    @key_value("M_roll,min", "torque", unless=lambda balance: balance.rolls_as_it_turns)
-    def M_roll_min(self) -> Extreme | None:
-        """Smallest rolling moment on the frame."""
-        return self._roll_extremes and self._roll_extremes.smallest
 
     @property
     def cycle(self) -> float:
@@ -365,96 +429,71 @@ class MachineBalance(Results):
         low = self.effort.pieces.low if self.effort else np.zeros(1)
         return np.append(low[low < self.cycle], self.cycle)
 
-    # counterweights
+    # counterweights, and shafts
 
-    def _angle_of(self, product: Any) -> Any:
+    @cached_property
+    def forward(self) -> Any:
+        """The forward circle of order 1 over ω², in kg m."""
+        return self._of_one(self.bare.force.of(1))
+
+    @cached_property
+    def least_and_force(self) -> tuple[Any, Extreme | None]:
+        """The counterweight in kg m, complex, that leaves the least largest force, and that force.
+
+        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ), to
+        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
+        circle round it.
+        """
+        turning = self.bare.force.of(1)
+        centre, radius, degrees = self.bare.force.plus(1, -turning).turned_back().least_circle()
+        return self._of_one(-(turning + centre)), self._times_square(radius, degrees)
+
+    @property
+    def least(self) -> Any:
+        """The counterweight in kg m, complex, that leaves the least largest force."""
+        return self.least_and_force[0]
+
+    def angle_of(self, product: Any) -> Any:
         """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180; None, nan of nothing."""
-        turned = product / self.throws[0].weight(1.0).product
+        turned = product / self.throws[0].arm
         degrees = np.degrees(np.arctan2(turned.imag, turned.real))
         degrees = np.where(degrees > _REAL - 180, degrees, 180.0)
         if self.count is None:
             return float(degrees) if product else None
         return np.where(product != 0, degrees, np.nan)
 
-    @key_value("u", "unbalance")
-    def counterweight_given(self) -> Any:
-        """Vector sum of the given counterweights, mass times radius."""
-        return abs(sum(one.product for one in self.counterweights)) if self.counterweights else None
+    def share_of_least(self) -> Any:
+        """Return the share of the reciprocating mass that the least counterweight balances, opposite the only throw.
 
-    @cached_property
-    def _forward(self) -> Any:
-        """The forward circle of order 1 over ω², in kg m."""
-        return self._told(self.bare.force.of(1))
-
-    @key_value("u_1", "unbalance")
-    def counterweight_best(self) -> Any:
-        """Counterweight against what rotates and half of what reciprocates.
-
-        It takes away the forward circle of order 1.
-        """
-        return abs(self._forward)
-
-    @key_value("α_1", "angle")
-    def counterweight_best_angle(self) -> Any:
-        """Its direction from throw 1."""
-        return self._angle_of(-self._forward)
-
-    @property
-    def least(self) -> Any:
-        """The counterweight in kg m, complex, that leaves the least largest force."""
-        return self._least[0]
-
-    @key_value("u_min", "unbalance")
-    def counterweight_least(self) -> Any:
-        """Counterweight that leaves the least largest free force."""
-        return abs(self.least)
-
-    @key_value("α_min", "angle")
-    def counterweight_least_angle(self) -> Any:
-        """Its direction from throw 1."""
-        return self._angle_of(self.least)
-
-    @key_value("c_min", "ratio")
-    def share_best(self) -> Any:
-        """Share of the reciprocating mass that it balances.
-
-        Of a counterweight opposite the only throw; None where the least one is not opposite.
+        None where there are several throws, or it is not opposite.
         """
         throw, *others = self.throws
         if others or not some(throw.mass != 0):
             return None
-        opposite = -self.least / throw.weight(1.0).product
+        opposite = -self.least / throw.arm
         aside = abs(opposite.imag) > _REAL * abs(opposite)
         if self.count is None:
             return None if aside else (opposite.real - throw.rotating) / throw.mass
         with np.errstate(all="ignore"):
             return np.where(aside | (throw.mass == 0), np.nan, (opposite.real - throw.rotating) / throw.mass)
 
-    @key_value("F_min", "force")
-    def F_free_best(self) -> Extreme | None:
-        """Largest free force that it leaves."""
-        return self._least[1]
-
-    @cached_property
-    def planes(self) -> tuple[Any, ...]:
-        """Places in m of two planes for counterweights: those given, or of the outer cylinders; () if they are one."""
-        given = self.machine.counterweights
-        named = () if isinstance(given, tuple) else given.planes
-        places = [one.place for one in self.throws if one.place is not None]
-        outer = (min(places), max(places)) if places and min(places) < max(places) else ()
-        return named or self.wheels or outer
-
     @cached_property
     def best_in_planes(self) -> tuple[Weight, ...]:
         """The counterweights in two planes that take away all that turns with the crank, force and moment.
 
-        u_a + u_b = −F and (z_a − z_0) u_a + (z_b − z_0) u_b = −M, with F and M of the forward circles of order 1.
+        u_a + u_b = −F and (z_a − z_0) u_a + (z_b − z_0) u_b = −M, with F and M of the forward circles of order 1. The
+        planes are those given, those of the wheels, or of the outer cylinders; () if these are one.
         """
-        if not self.planes or self.bare.moment is None:
+        given = self.machine.counterweights
+        named = () if isinstance(given, tuple) else given.planes
+        places = [one.place for one in self.throws if one.place is not None]
+        outer = (min(places), max(places)) if places and min(places) < max(places) else ()
+        planes = named or self.wheels or outer
+        if not planes or self.bare.moment is None:
             return ()
-        force, moment, (first, second) = self._forward, self._told(self.bare.moment.of(1)), self.planes
-        far = ((first - self.z_0) * force - moment) / (second - first)
-        return Weight(-force - far, 1, first), Weight(far, 1, second)
+        moment, (first, second) = self._of_one(self.bare.moment.of(1)), planes
+        far = ((first - self.z_0) * self.forward - moment) / (second - first)
+        return Weight(-self.forward - far, 1, first), Weight(far, 1, second)
 
     @cached_property
     def best_shafts(self) -> tuple[Weight, ...]:
@@ -466,27 +505,56 @@ class MachineBalance(Results):
         force, moment = self.bare.force, self.bare.moment
         found = []
         for order in (-1, 2, -2):
-            circle = self._told(force.of(order))
+            circle = self._of_one(force.of(order))
             if circle:
-                arm = 1j if moment is None else self._told(moment.of(order)) / circle
+                arm = 1j if moment is None else self._of_one(moment.of(order)) / circle
                 place = None if self.z_0 is None or abs(arm.imag) > _REAL * (1 + abs(arm)) else self.z_0 + arm.real
                 found.append(Weight(-circle / order**2, order, place))
         return tuple(found)
 
-    @part(LocomotiveBalance)
-    def locomotive(self) -> LocomotiveBalance | None:
-        """What of it concerns the wheels of a locomotive; None of another machine."""
-        return LocomotiveBalance(self, self.machine.locomotive) if self.machine.locomotive else None
+    # the wheels of a locomotive
+
+    def in_wheels(self, alone: bool = False) -> tuple[Any, Any]:
+        """Return what turns in each wheel in kg m, as by a lever: counterweights and rotating masses together.
+
+        alone: what the reciprocating masses would give, if they turned with the crank.
+        """
+        weights = [(one.name, one.weight(one.mass if alone else one.rotating)) for one in self.throws]
+        weights += [] if alone else [("counterweights", one) for one in self.counterweights]
+        near, far = zip(*(levered(one, self.wheels, owner) for owner, one in weights))
+        return sum(one.product for one in near), sum(one.product for one in far)
+
+    @cached_property
+    def answers(self) -> dict[str, Any]:
+        """The key values of a locomotive by id, those that there are; {} of another machine.
+
+        The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes
+        to and fro, loads and lifts the wheel that has it: its hammer blow.
+        """
+        given, omega = self.machine.locomotive, self.omega
+        if given is None:
+            return {}
+        found = {
+            "traction_variation": self.farthest["force along"],
+            "swaying_couple": self.farthest.get("moment along"),
+        }
+        wheels = [map(abs, self.in_wheels(alone)) for alone in (False, True)]
+        most, whole = (where(near >= far, near, far) for near, far in wheels)
+        if omega is not None and some(omega != 0):
+            found["hammer_blow"], blow = most * (omega * omega), whole * (omega * omega)
+            if given.hammer_limit is not None:
+                found["share_allowed"] = given.hammer_limit / where(blow > given.hammer_limit, blow, given.hammer_limit)
+            if given.wheel_diameter is not None:
+                found["train_speed"] = given.wheel_diameter / 2 * omega
+        if given.wheel_load is not None and some(most != 0):
+            lifting = sqrt(given.wheel_load / where(most != 0, most, math.nan)) / (2 * math.pi)
+            found["hammer_speed"] = lifting
+            if given.wheel_diameter is not None:
+                found["hammer_train_speed"] = given.wheel_diameter / 2 * (2 * math.pi * lifting)
+        return found
 
 
 def swirls(cylinder: CylinderForces) -> bool:
     """Return whether the moment of momentum of its masses about the shaft changes."""
     drive = cylinder.drive
     return drive.has_inertia and (some(drive.mechanism.offset != 0) or drive.rod is not None)
-
-
-def swirl(state: State) -> Any:
-    """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
-    drive = state.drive
-    moment = state.b * (drive.mass * drive.mechanism.offset)
-    return moment - state.rod_couple if drive.rod else moment

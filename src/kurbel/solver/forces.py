@@ -245,7 +245,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @key_value("φ_P=0", "angle", listed=True)
     def phi_reversal(self) -> tuple[Any, ...] | None:
-        """Druckwechsel: crank angles at which the piston force turns over.
+        """Force reversal: crank angles at which the piston force changes sign.
 
         P changes sign there, through zero or by a jump. Changes that are noise of a trace count once, at the middle
         one. For many machines one tuple each.

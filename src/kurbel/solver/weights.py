@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
-from kurbel.machine import Cylinder, Machine
+from kurbel.machine import Machine
 from kurbel.machine.balance import Counterweight, SharedCounterweights
+from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import where
 
 
@@ -18,51 +19,65 @@ class Weight(NamedTuple):
     owner: number of the cylinder, from 0, whose throw it belongs to, the first one's if it is of the whole machine.
     """
 
-    product: complex
+    product: Any
     order: int
-    place: float | None
+    place: Any
     owner: int = 0
 
 
-class OwnThrow:
+class OwnThrow(NamedTuple):
     """The throw of one cylinder with what moves at it, masses in kg.
 
-    rotating: what turns with the pin, of which unbalanced is that of the crank, without its rod; mass: what goes to and
-    fro. number: of the cylinder, from 0; bank, late: γ from the stroke line `first`, and β, in degrees.
+    number: of the cylinder, from 0; bank, late: γ from the stroke line of cylinder 1, and β, in degrees; arm: the
+    crank in m, complex, in its direction at φ = 0. rotating: what turns with the pin, of which unbalanced is that of
+    the crank, without its rod; mass: what goes to and fro.
     """
 
-    def __init__(self, number: int, cylinder: Cylinder, first: float = 0.0) -> None:
-        self.number, self.name, self.mechanism = number, cylinder.name, cylinder.mechanism
-        self.counterweights = cylinder.counterweights
-        self.bank, self.late, self.place = cylinder.bank_angle - first, cylinder.crank_position, cylinder.axial_position
-        masses, length = cylinder.masses, cylinder.mechanism.rod_length
-        self.rotating = masses.at_pin(length) if masses else 0.0
-        self.unbalanced = masses.rotating if masses else 0.0
-        self.mass = masses.at_crosshead(length) if masses else 0.0
+    number: int
+    name: str
+    mechanism: Mechanism
+    counterweights: SharedCounterweights | tuple[Counterweight, ...]
+    bank: Any
+    late: Any
+    place: Any
+    arm: Any
+    rotating: Any
+    unbalanced: Any
+    mass: Any
 
-    def weight(self, mass: float) -> Weight:
+    def weight(self, mass: Any) -> Weight:
         """Return a mass at the crank pin."""
-        product = mass * self.mechanism.crank * unit_vector(self.bank - self.late)
-        return Weight(product, 1, self.place, self.number)
-
-    def carrying(self, one: Counterweight, otherwise: float | None) -> Weight:
-        """Return a counterweight whose angle counts from this throw; otherwise: its place where none is given."""
-        product = one.product * unit_vector(self.bank - self.late + one.angle)
-        return Weight(product, 1, otherwise if one.axial_position is None else one.axial_position, self.number)
+        return Weight(mass * self.arm, 1, self.place, self.number)
 
 
-def middle_of(machine: Machine) -> float | None:
+def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[OwnThrow]:
+    """Return the throws of all cylinders of a machine; first: stroke line from which their directions count."""
+    found = []
+    for number, one in enumerate(machine.cylinders):
+        masses, length, bank, late = one.masses, one.mechanism.rod_length, one.bank_angle - first, one.crank_position
+        found.append(
+            OwnThrow(
+                *(number, one.name, one.mechanism, one.counterweights, bank, late, one.axial_position),
+                arm=one.mechanism.crank * unit_vector(bank - late),
+                rotating=masses.at_pin(length) if masses else 0.0,
+                unbalanced=masses.rotating if masses else 0.0,
+                mass=masses.at_crosshead(length) if masses else 0.0,
+            )
+        )
+    return found
+
+
+def middle_of(machine: Machine) -> Any:
     """Return from where moments are taken in m: the place given, or the middle of the outer cylinders."""
     places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
-    given = machine.moment_reference
-    if given is not None or not places:
-        return given
+    if machine.moment_reference is not None or not places:
+        return machine.moment_reference
     lowest = reduce(lambda one, other: where(other < one, other, one), places)
     highest = reduce(lambda one, other: where(other > one, other, one), places)
     return (lowest + highest) / 2
 
 
-def wheels_of(machine: Machine) -> tuple[float, ...]:
+def wheels_of(machine: Machine) -> tuple[Any, ...]:
     """Return the places in m of the counterweights in the wheels of a locomotive; () of another machine."""
     if machine.locomotive is None:
         return ()
@@ -75,26 +90,23 @@ def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[
 
     Of a locomotive they are in its wheels. Raises UsageError where a place is missing.
     """
-    wheels = wheels_of(machine)
-    for throw in throws:
-        yield from _given((throw,), throw.counterweights, wheels)
-    yield from _given(throws, machine.counterweights, wheels)
+    given = [((throw,), throw.counterweights) for throw in throws]
+    for owners, weights in (*given, (tuple(throws), machine.counterweights)):
+        if isinstance(weights, tuple):
+            # an angle counts from the throw; with several throws a weight without a place belongs to none of them
+            otherwise = owners[0].place if len(owners) == 1 else None
+            for one in weights:
+                product = one.product * unit_vector(owners[0].bank - owners[0].late + one.angle)
+                place = otherwise if one.axial_position is None else one.axial_position
+                yield Weight(product, 1, place, owners[0].number)
+            continue
+        planes = weights.planes or wheels_of(machine)
+        for throw in owners:
+            weight = throw.weight(-(throw.rotating + weights.share * throw.mass))
+            yield from levered(weight, planes, throw.name) if planes else (weight,)
 
 
-def _given(
-    throws: Sequence[OwnThrow], given: SharedCounterweights | tuple[Counterweight, ...], wheels: tuple[float, ...]
-) -> Iterator[Weight]:
-    if isinstance(given, tuple):
-        # with several throws a weight without a place belongs to none of them
-        yield from (throws[0].carrying(one, throws[0].place if len(throws) == 1 else None) for one in given)
-        return
-    planes = given.planes or wheels
-    for throw in throws:
-        weight = throw.weight(-(throw.rotating + given.share * throw.mass))
-        yield from levered(weight, planes, throw.name) if planes else (weight,)
-
-
-def levered(weight: Weight, planes: tuple[float, ...], owner: str) -> tuple[Weight, Weight]:
+def levered(weight: Weight, planes: tuple[Any, ...], owner: str) -> tuple[Weight, Weight]:
     """Return two weights in these planes that have the force and the moment of one.
 
     Raises UsageError, in the name of the cylinder that it is of, where its place is not known.
@@ -107,10 +119,3 @@ def levered(weight: Weight, planes: tuple[float, ...], owner: str) -> tuple[Weig
         weight._replace(product=weight.product * (1 - share), place=first),
         weight._replace(product=weight.product * share, place=second),
     )
-
-
-def shafts_of(machine: Machine) -> Iterator[Weight]:
-    """Yield the weights of the balance shafts."""
-    for one in machine.balance_shafts:
-        order = -one.order if one.against else one.order
-        yield Weight(one.product * unit_vector(one.angle), order, one.axial_position)
