@@ -19,7 +19,7 @@ import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.designs import uncertainty
 from kurbel.designs.answers import Answer
-from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
+from kurbel.designs.uncertainty import Uncertain, data_uncertainty, read_inputs, uncertainties
 from kurbel.machine_file import source
 from kurbel.quantities import every_quantity
 from kurbel.traces import read as trace_files
@@ -30,7 +30,7 @@ WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = Uncertainty(source.read(WATERWORKS), spreads).of(asked)
+    found = uncertainties(read_inputs(source.read(WATERWORKS), spreads)[0], asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -181,7 +181,7 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
     known = every_quantity().key_values("forces")
     asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
     spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
-    found = Uncertainty(source.read(_rig(tmp_path)), spreads).of(asked, counted)
+    found = uncertainties(read_inputs(source.read(_rig(tmp_path)), spreads)[0], asked, counted)
     assert {one.answer.quantity.id: one.sample for one in found} == {"mean_pressure": 0, "n_expansion": 25, "T_max": 0}
     assert told == [10, 10, 5]
     assert len(read) == 1
