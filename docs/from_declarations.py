@@ -160,7 +160,7 @@ def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
 def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     if isinstance(form, Keyed):
         yield from form.single.items()
-    yield from (one for word, inner in form.parts() if not word for one in _cases(inner))
+    yield from (one for word, inner in form.parts if not word for one in _cases(inner))
 
 
 def _absent(key: Key, needed: bool) -> str:

@@ -229,9 +229,12 @@ def test_closed_streams(command: str, tmp_path: Path) -> None:
 
     def ended(redirected: str) -> tuple[int, bytes, bytes]:
         words = [sys.executable, "-m", "kurbel", *LINES[command]]
-        done = subprocess.run(["bash", "-c", f"{shlex.join(words)} {redirected}"], capture_output=True, cwd=tmp_path)
+        done = subprocess.run(
+            ["bash", "-c", f"{shlex.join(words)} {redirected}"], capture_output=True, cwd=tmp_path, env=environment
+        )
         return done.returncode, done.stdout, done.stderr
 
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[1] / "src")}  # absolute: there is another cwd
     as_ever = ended("")
     assert as_ever[0] == 0
     assert ended("<&-") == as_ever

@@ -300,8 +300,8 @@ def kinds_of_numbers() -> set[tuple[str, str]]:
         seen.add(id(form))
         if isinstance(form, RecordForm):
             name = form.record.__name__
-            found.update((name, key) for key, one in form.keys.items() if one.form.numeric)
-        for _, inner in form.parts():
+            found.update((name, key) for key, one in form.keys.items() if one.form.number)
+        for _, inner in form.parts:
             visit(inner)
         for inner in form.inline:
             visit(inner)
@@ -322,7 +322,7 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
             owner, name, inner = _owner(path_of(key), list(_every(read_values(file, reading_of(file)))))
             one = (owner.form.record.__name__, name)
-            if inner or one in met or not owner.form.keys[name].form.numeric:
+            if inner or one in met or not owner.form.keys[name].form.number:
                 continue
             met.add(one)
             kind = owner.form.keys[name].form.kind

@@ -17,6 +17,7 @@ from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine.parts import ConnectingRod
 from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
+from kurbel.machine_file.schema import describe
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.traces.correct import Trace
 from representative import law_of_each
@@ -49,7 +50,7 @@ def allowed_by_schema(record: RecordForm, *names: str) -> bool:
 @cache
 def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
     rules: list[dict[str, Any]] = []
-    record.describe({}, rules, whole_schema()["definitions"])
+    describe(record, {}, rules, whole_schema()["definitions"])
     return jsonschema.Draft7Validator({"allOf": rules})
 
 

@@ -16,7 +16,6 @@ from kurbel.errors import KurbelError, MachineFileError
 from kurbel.near_words import did_you_mean
 from kurbel.render import Look
 from kurbel.render.output import silence
-from kurbel.render.text import width
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
@@ -121,7 +120,7 @@ def message_of(error: KurbelError) -> str:
     """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text, width)
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text)
 
 
 def _stderr_look() -> Look:

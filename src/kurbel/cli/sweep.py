@@ -198,7 +198,9 @@ class _Asked(NamedTuple):
         jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
         with closing(rows_of(found, rows, jobs, self.dask or "", to_stderr)) as computed:
             wanted: Iterable[Row] = computed
-            if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
+            if self.file_name or not (
+                sys.stdout and sys.stdout.isatty()
+            ):  # else the rows themselves go to the terminal
                 wanted = with_bar(wanted, "designs", length=len(rows), update_min_steps=100)
             chosen: Iterable[Any] = (row for row in wanted if all(one.holds(row) for one in conditions))
             chosen = unbettered(chosen, aims) if aims else chosen

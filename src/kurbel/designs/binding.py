@@ -13,7 +13,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.forms.values import Form
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
@@ -67,7 +67,7 @@ class Binder:
             form = owner.form.keys[name].form
             bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
             self.kinds.append(form.kind or ("ratio" if bare else ""))
-            self._numeric.append(not inner and form.numeric and not isinstance(owner.made, Indivisible))
+            self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
         """Return the machines of rows of texts, those of one structure in one record, and why other rows make none."""
@@ -128,20 +128,23 @@ class Binder:
             if reading.faults:
                 return [], places.tolist()
             every = list(_every(root))
-            slots: list[tuple[Given, str, Array]] = []
+            slots: list[tuple[Given, str, Number, Array]] = []
             read = np.ones(len(places), dtype=bool)
             for number, key in enumerate(self._keys):
                 if self._numeric[number]:
                     owner, name, _ = _owner(path_of(key), every)
-                    numbers = _numbers(owner.form.keys[name].form, [rows[place][number] for place in places])
+                    form = owner.form.keys[name].form
+                    if form.number is None:  # beside these words it is none
+                        return [], places.tolist()
+                    numbers = _numbers(form, form.number, [rows[place][number] for place in places])
                     read &= ~np.isnan(numbers)
                     # also what is like the cylinder of the key
                     own = (one for one in every if _reads(one, name))
                     same = (one for one in own if one.mapping.get(name) is owner.mapping.get(name))
-                    slots += [(one, name, numbers) for one in same]
+                    slots += [(one, name, form.number, numbers) for one in same]
             if not read.any():
                 return [], places.tolist()
-            values = {(id(one), name): one.form.keys[name].form.of_numbers(each[read]) for one, name, each in slots}
+            values = {(id(one), name): form.of_numbers(numbers[read]) for one, name, form, numbers in slots}
             maker = _Maker(reading, values, every, int(read.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(root)
@@ -173,10 +176,7 @@ class _Maker(Maker):
     def _record(self, given: Given) -> Any:
         if id(given) not in self._around:
             return super()._record(given)
-        values = {
-            name: self._values.get((id(given), name), self.made(one, (*given.path, name)))
-            for name, one in given.values.items()
-        }
+        values = {name: self._values.get((id(given), name), self.made(one)) for name, one in given.values.items()}
         if any(one is REFUSED for one in values.values()):
             return REFUSED
         kind = given.form.record
@@ -190,9 +190,9 @@ class _Maker(Maker):
         return record
 
 
-def _numbers(form: Form, texts: Sequence[str]) -> Array:
+def _numbers(form: Form, number: Number, texts: Sequence[str]) -> Array:
     """Return the numbers of texts as a form reads them; nan where it reads none."""
-    plain = form.numbers(texts)
+    plain = number.numbers(texts)
     if plain is not None:
         return np.array(plain)
     known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}

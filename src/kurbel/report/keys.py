@@ -118,5 +118,5 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
     if isinstance(form, Keyed):
         yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single.items())
     if not form.inline:
-        for name, inner in form.parts():
+        for name, inner in form.parts:
             yield from _below(inner, f"{path}.{name}" if name else path)
