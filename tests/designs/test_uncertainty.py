@@ -84,18 +84,6 @@ def test_what_bends_is_told_by_a_sample() -> None:
     assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
 
 
-def test_shares_of_a_sample_are_told_as_what_they_are() -> None:
-    """m g sin i along the stroke line is largest upright, where it turns back: it does not go with the angle at all."""
-    args = ["forces", "-", "--key-values", "--uncertainty", "inclination=5 deg"]
-    text = "{crank: 400 mm, rod_ratio: 5, inclination: 90 deg, masses: {reciprocating: 100 kg}}"
-    page = CliRunner().invoke(command, args, input=text).stdout
-    (line,) = (line for line in page.splitlines() if line.startswith("P_start_max"))
-    share, count = line.split()[-2:]
-    assert count == "2000"
-    assert float(share) < 10
-    assert "squares of correlations" in " ".join(page.split())
-
-
 @pytest.mark.slow
 def test_first_order_is_that_of_a_large_sample() -> None:
     """Sampling noise of a standard deviation from n drawn ones is 1/√(2n)."""
@@ -223,16 +211,6 @@ def test_its_figures_are_numbers_to_programs() -> None:
     assert table["rows"][0] == {"key_value": "A_head", "symbol": "A_H", "unit": "m^2"}
 
 
-def test_its_lines_are_found_by_symbol() -> None:
-    assert [line.split()[1] for line in _table().splitlines() if line.startswith(("power ", "P_start_max "))] == [
-        "P_0,max",
-        "N_i",
-    ]
-    asked = ["forces", str(WATERWORKS), "--key-values", "--columns", "p_i"]
-    told = " ".join(CliRunner().invoke(command, asked).output.split())
-    assert "a key value is a line, grep 'p_i '" in told
-
-
 @pytest.mark.parametrize(
     ("args", "message"),
     [
@@ -282,15 +260,6 @@ uncertainty:
     ]
     assert "did you mean 'rod'" in told[0]
     assert "kg is a unit of mass" in told[1]
-
-
-def test_an_uncertainty_from_outside_is_told_as_such() -> None:
-    asked = ["forces", str(WATERWORKS), "--uncertainty", "bor=1 mm", "--uncertainty", "speed=1 kg"]
-    result = CliRunner().invoke(command, asked)
-    assert result.exit_code == 2
-    assert "--uncertainty bor: no value stands under this key in the file; did you mean 'bore'?" in result.stderr
-    assert "--uncertainty speed: " in result.stderr
-    assert "kg is a unit of mass" in result.stderr
 
 
 @pytest.mark.parametrize("share", [1e-5, 1e-3, 0.02, 0.05])
