@@ -5,15 +5,15 @@ read once, with arrays (machines,) in the places of numbers. Words, counts and p
 differ in these are read apart, and so is each row that breaks a rule, for its message.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices, Indivisible
+from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Number
 from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
@@ -124,38 +124,25 @@ class Binder:
         texts = [first if number else word for first, number, word in zip(self._start, self._numeric, words)]
         reading = reading_of(self._origin)
         try:
-            root = self._read(texts, reading)
-            if reading.faults:
+            every = list(_every(self._read(texts, reading)))
+            columns = {
+                key: [rows[place][number] for place in places]
+                for number, key in enumerate(self._keys)
+                if self._numeric[number]
+            }
+            values, read = _values(columns, every, len(places))
+            if reading.faults or not read.any():
                 return [], places.tolist()
-            every = list(_every(root))
-            slots: list[tuple[Given, str, Number, Array]] = []
-            read = np.ones(len(places), dtype=bool)
-            for number, key in enumerate(self._keys):
-                if self._numeric[number]:
-                    owner, name, _ = _owner(path_of(key), every)
-                    form = owner.form.keys[name].form
-                    if form.number is None:  # beside these words it is none
-                        return [], places.tolist()
-                    numbers = _numbers(form, form.number, [rows[place][number] for place in places])
-                    read &= ~np.isnan(numbers)
-                    # also what is like the cylinder of the key
-                    own = (one for one in every if _reads(one, name))
-                    same = (one for one in own if one.mapping.get(name) is owner.mapping.get(name))
-                    slots += [(one, name, form.number, numbers) for one in same]
-            if not read.any():
-                return [], places.tolist()
-            values = {(id(one), name): form.of_numbers(numbers[read]) for one, name, form, numbers in slots}
             maker = _Maker(reading, values, every, int(read.sum()))
             with np.errstate(all="ignore"):
-                machine = maker.made(root)
-            if reading.faults:
-                return [], places.tolist()
+                machine = maker.made(every[-1])
         # its formulas are those of one machine
         except (RuleError, UsageError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError):
             return [], places.tolist()
-        fit = np.flatnonzero(~maker.broken)
+        if reading.faults:
+            return [], places.tolist()
         lots = []
-        for at in _structures(machine, fit):
+        for at in _structures(machine, np.flatnonzero(~maker.broken)):
             # what all of them have is a number
             lot = changed(machine, lambda numbers, at=at: _column(numbers[at]))  # type: ignore[misc]
             lots.append(Lot(lot, places[read][at].tolist()))
@@ -190,13 +177,31 @@ class _Maker(Maker):
         return record
 
 
-def _numbers(form: Form, number: Number, texts: Sequence[str]) -> Array:
-    """Return the numbers of texts as a form reads them; nan where it reads none."""
-    plain = number.numbers(texts)
-    if plain is not None:
-        return np.array(plain)
-    known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
-    return np.array([one if isinstance(one := known[text], float) else np.nan for text in texts])
+def _values(
+    columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int
+) -> tuple[dict[tuple[int, str], Any], Flags]:
+    """Return what stands in the place of numbers, by the id of its mapping and its key, and which rows have all.
+
+    columns: texts (count,) by dotted key. What is like the cylinder of a key has its numbers, too. Raises UsageError
+    for a key under which no number stands.
+    """
+    slots: list[tuple[Given, str, Number, Array]] = []
+    read = np.ones(count, dtype=bool)
+    for key, texts in columns.items():
+        owner, name, _ = _owner(path_of(key), every)
+        form = owner.form.keys[name].form
+        if form.number is None:
+            raise UsageError(f"{key}: no number")
+        plain = form.number.numbers(texts)
+        if plain is None:  # one by one, nan for what is none
+            known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
+            plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
+        numbers = np.array(plain)
+        read &= ~np.isnan(numbers)
+        for one in every:
+            if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name):
+                slots.append((one, name, form.number, numbers))
+    return {(id(one), name): form.of_numbers(numbers[read]) for one, name, form, numbers in slots}, read
 
 
 def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
