@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from kurbel.declared.forms import Choice
+from kurbel.declared.forms.values import Choice
 from kurbel.declared.record import Record, Rule, alternative, field
 
 
