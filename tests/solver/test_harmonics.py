@@ -13,7 +13,6 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.methods import PRECISE
 from kurbel.accuracy.textbook import TextbookMachine
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -56,7 +55,7 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
-        book = TextbookMachine(machine, PRECISE)
+        book = TextbookMachine(machine)
         edges = sorted(
             {*np.degrees(np.asarray(book.edges, dtype=float)), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)}
         )
