@@ -41,7 +41,7 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.forces import CylinderForces, share_of_driving
 from kurbel.solver.friction import mean_friction_over_rod_angle, redtenbacher_logarithm, redtenbacher_loss
 
 OWN = "kurbel"
@@ -480,7 +480,7 @@ def _of_friction(machine: Machine, cylinder: Cylinder) -> Iterator[Difference]:
     mean = mean_friction_over_rod_angle(math.asin(lam), f)
     yield Difference("F_m", "Redtenbacher's logarithm, D 5", abs(redtenbacher_logarithm(lam, f) / mean - 1))
     yield Difference("F_m", "Redtenbacher's ½ λ f, D 6", abs(redtenbacher_loss(lam, f) / mean - 1))
-    if loss := CylinderForces(machine, cylinder).loss_crosshead:
+    if loss := share_of_driving(CylinderForces(machine, cylinder), "crosshead"):
         yield Difference("e_K", "½ λ f for the work lost, D 7", abs(redtenbacher_loss(lam, f) / loss - 1))
 
 

@@ -13,7 +13,7 @@ from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import by_cylinder, guide_notes
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.indicated import CYCLE_ROWS
+from kurbel.solver.indicated import OF_CYCLES
 from kurbel.solver.trace import TracePressure
 
 _TITLE = "Forces in the crank train"
@@ -78,9 +78,8 @@ def cycles_report(case: Case, system: str) -> Report:
 def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if cycles:
-        quantities = (row.quantity for row in CYCLE_ROWS)
-        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in quantities}
-        columns = zip(*(row.of(cycles).tolist() for row in CYCLE_ROWS))
+        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
+        columns = zip(*(one.tolist() for one in cycles))
         rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
         yield place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)
 

@@ -96,9 +96,10 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
         yield LeftOut("friction loss as a share", "no piston drives")
     if not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None:
         yield LeftOut("load on the piston rod", "no mass of the crosshead given")
-    if forces.reversals_in_noise:
+    _, in_noise = forces.changes_of_force
+    if in_noise:
         why = "are within the noise of the trace and no force reversal"
-        yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
+        yield LeftOut(f"{in_noise} changes of the sign of P", why)
 
 
 # the whole machine

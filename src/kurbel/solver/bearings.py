@@ -249,7 +249,7 @@ class RodPin(Bearing):
 
     def _work(self) -> Any:
         forces = self._own.forces
-        work = forces.pin_work_of(self._pin)
+        work = forces.friction_works.get(self._pin)
         return None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
 
 

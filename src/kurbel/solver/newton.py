@@ -50,7 +50,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
 
 def _gravity(drive: Drive) -> complex:
     """Return the weight of 1 kg in N; 0 where weights are left out."""
-    along, across = drive.weight_of(1.0) or (0.0, 0.0)
+    along, across = drive.weight_of(1.0)
     return complex(-along, -across)
 
 
@@ -136,7 +136,7 @@ def _rod(drive: Drive, state: State) -> list[Array]:
         _cross(arm, -K) + _cross(arm * weighed_at, weight + 0 * K) - _cross(arm * share, pull) + inertia * motion.rod
     )
     if state.rubbing is not None:
-        moment = moment + state.rubbing.couple
+        moment = moment + state.rubbing.at_crank + state.rubbing.at_crosshead
     lower = mass * (1 - share)  # of the two masses at its ends that of the crosshead pin
     between = F + lower * (gravity - motion.crosshead)
     along = arm.conjugate() / L
