@@ -173,7 +173,7 @@ class CylinderForces(SampledCylinder, Results):
     phi_reversal = value(
         "φ_P=0",
         "angle",
-        "Druckwechsel: crank angles at which the piston force turns over",
+        "Force reversal: crank angles at which the piston force changes sign",
         lambda forces: forces.changes_of_force[0],
         listed=True,
     )
