@@ -171,7 +171,7 @@ def test_integrals_follow_the_straight_lines() -> None:
     forces = solved(trace(0.1))
     gas = forces.drive.gas[0]
     assert gas.head is not None
-    weights, pressures = gas.head.straight_weights, gas.head.pressures  # type: ignore[attr-defined]
+    weights, pressures = gas.head.straight_weights(), gas.head.pressures  # type: ignore[attr-defined]
     straight = float(weights @ pressures) * gas.piston.head_area * 0.4
     turnover = float(forces.pieces.integral(np.abs(forces.samples.M))[0])
     mean = (forces.energy_residual or 0.0) * turnover + (forces.work or 0.0)

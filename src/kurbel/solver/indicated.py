@@ -109,7 +109,7 @@ class Indicated(Results):
         for one in self._traces:
             at = np.mod(one.trace.angles + one.shift, one.setting.cycle)
             own = (one.each @ one.weights, one.each.max(axis=1), at[np.argmax(one.each, axis=1)])
-            whole = np.broadcast_arrays(*own, one.rises(one.each).max(axis=1), np.empty(max(counts)))
+            whole = np.broadcast_arrays(*own, one.rises(one.each)[0].max(axis=1), np.empty(max(counts)))
             ends.append(Cycles(*whole[:4]))
         traced = math.fsum(share * one.area for one, share in zip(self._traces, shares))
         others = self.gas.work / self.gas.swept_volume - traced  # of an end that has a card, say
