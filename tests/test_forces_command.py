@@ -12,7 +12,6 @@ import pytest
 from click.testing import CliRunner, Result
 
 from good_machines import DEMO
-from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.quantities import every_quantity
 from kurbel.quantity import by_id
@@ -54,11 +53,6 @@ def test_demo_machine_of_the_contract() -> None:
     assert key_value(part, "b_max")["at_deg"] == 0
     assert {"what": "friction", "why": "no friction given"} in part["left_out"]
     assert part["warnings"] == []
-
-
-def test_key_values_do_not_depend_on_the_step() -> None:
-    first, second = (cylinder(answer("forces", WATERWORKS, "--step", step)) for step in ("10", "0.7"))
-    assert first["key_values"] == second["key_values"]
 
 
 @pytest.mark.parametrize("path", shipped("waterworks", "shaper", "crank-rocker", "diesel-four-stroke"))
@@ -145,14 +139,6 @@ def test_check_tells_that_the_crosshead_locks_itself() -> None:
     assert "the crosshead locks itself near φ = " in result.stdout
     assert "kurbel forces ends with status 3" in result.stdout
     assert result.stdout.count("kept") == 2
-
-
-def test_check_says_nothing_of_a_driving_crosshead() -> None:
-    """With this friction it would lock, were it driven."""
-    result = run(
-        "check", "-", text=LOCKING.replace("expansion: 0 bar, compression: 5", "expansion: 5 bar, compression: 0")
-    )
-    assert "locks" not in result.stdout
 
 
 def test_an_absent_column_is_told_with_those_that_are_there() -> None:
@@ -246,11 +232,3 @@ def test_a_limit_of_something_absent_is_a_fault() -> None:
     result = run("check", "-", text=DEMO + "limits: {loss_crosshead: 0.01}\n")
     assert result.exit_code == 2
     assert "limits.loss_crosshead" in result.stderr
-
-
-def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
-    plain = tmp_path / "plain.yaml"
-    plain.write_text(DEMO, encoding="utf-8")
-    loaded = modules_after(["forces", str(plain), "-f", "csv"])
-    assert {"numpy", "kurbel.mechanisms.slider_crank", "kurbel.solver.gas"} <= loaded
-    assert "rich" not in loaded

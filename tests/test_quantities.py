@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -138,14 +137,6 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
     members |= {"coordinate": None, "slope": None, "curvature": None}
     with pytest.raises(UsageError, match=rf"mechanism Half does not define {missing}$"):
         type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})
-
-
-def test_a_mechanism_may_build_on_another() -> None:
-    @dataclass(frozen=True, eq=False)
-    class Wide(ScotchYoke):
-        extra: float = 0.0
-
-    assert Wide(0.1).stroke == 0.2
 
 
 def test_weight_on_the_guide_of_an_inclined_yoke() -> None:

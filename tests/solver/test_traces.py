@@ -27,7 +27,6 @@ from kurbel.report.warnings import brake_warnings, trace_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.traces.correct import Trace
-from machines import one_cylinder
 from representative import few
 
 BAR = 1e5
@@ -142,10 +141,6 @@ def test_sensitivity_is_the_change_for_a_tenth_of_a_degree() -> None:
     change = ((solved(moved).work or 0.0) - here) / here
     assert later == here
     assert solved(trace(0.5)).work_sensitivity == pytest.approx(change, rel=2e-3)
-
-
-def test_no_sensitivity_without_a_trace() -> None:
-    assert one_cylinder(CRANK, 60).work_sensitivity is None
 
 
 def test_every_kink_counts_for_the_extremes() -> None:
