@@ -325,11 +325,13 @@ def values_for(
     of: Callable[[Any, str], Any] | None = None,
     group: Callable[[str], str] = lambda part: "",
     after: str = "",
+    **words: Any,
 ) -> ForEach:
     """Return a key value or column of each of several parts, as `value` of one; of: takes object and part.
 
     parts: the index of the symbol of each, and what it is called in a sentence; they take the place of `*` in id,
-    symbol, sentence and `after`. group: returns the group of the quantity of a part.
+    symbol, sentence and `after`. group: returns the group of the quantity of a part; words: those of
+    `Quantity`, the same for all.
     """
 
     def answer(one: Any, part: str) -> Any:
@@ -337,7 +339,8 @@ def values_for(
 
     def row(part: str, index: str, called: str) -> Row:
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
-        quantity = Quantity(*texts, commands=ITS_OWN, after=after.replace("*", part), group=group(part))
+        own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
+        quantity = Quantity(*texts, **(own | words))
         return Row(quantity, partial(answer, part=part))
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))

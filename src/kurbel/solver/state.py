@@ -28,7 +28,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Row, column, value
+from kurbel.quantity import Row, column, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import column_rows
 from kurbel.solver.gas import Pressure
@@ -51,29 +51,33 @@ class Rubbing(NamedTuple):
     journals: Any
 
 
-def _own_end(state: State, head: bool) -> Pressure | None:
+_ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
+"""End of the cylinder's own piston -> index of its symbols, and what it is called."""
+
+
+def _own_end(state: State, end: str) -> Pressure | None:
     """Return the pressure at an end of the cylinder's own piston; None where it has no indicator."""
     gas = state.drive.own_gas
-    return None if gas is None else gas.head if head else gas.crank
+    return None if gas is None else gas.head if end == "head" else gas.crank
 
 
-def _own_pressure(state: State, head: bool) -> Any:
-    gas, end = state.drive.own_gas, _own_end(state, head)
-    return state.pressure(end) + spread(gas.base, state.drive.index) if gas and end else None
+def _own_pressure(state: State, end: str) -> Any:
+    gas, chamber = state.drive.own_gas, _own_end(state, end)
+    return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
 
 
-def _own_volume(state: State, head: bool) -> Any:
+def _own_volume(state: State, end: str) -> Any:
     gas, way = state.drive.own_gas, state.way
-    if gas is None or _own_end(state, head) is None:
+    if gas is None or _own_end(state, end) is None:
         return None
-    if head:
+    if end == "head":
         return gas.piston.head_area * way + gas.clearance_volumes[0]
     return gas.piston.crank_area * (state.mechanism.stroke - way) + gas.clearance_volumes[1]
 
 
-def _own_rise(state: State, head: bool) -> Any:
-    end = _own_end(state, head)
-    return end.rise(state.phi) if isinstance(end, TracePressure) else None
+def _own_rise(state: State, end: str) -> Any:
+    chamber = _own_end(state, end)
+    return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
 
 
 class State(MotionColumns):
@@ -115,32 +119,27 @@ class State(MotionColumns):
 
     # the chambers
 
-    p_head = value(
-        "p_H",
+    own_pressures = values_for(
+        _ENDS,
+        "p_*",
+        "p_*",
         "pressure",
-        "Gauge pressure in the head-end chamber, just after a jump",
-        lambda state: _own_pressure(state, True),
-        gauge=True,
-    )
-    p_crank = value(
-        "p_C",
-        "pressure",
-        "Gauge pressure in the crank-end chamber, just after a jump",
-        lambda state: _own_pressure(state, False),
+        "Gauge pressure in the * chamber, just after a jump",
+        of=_own_pressure,
         gauge=True,
     )
     V = value(
         "V",
         "volume",
         "Volume of the head-end chamber, with its clearance where that is given",
-        lambda state: _own_volume(state, True),
+        lambda state: _own_volume(state, "head"),
         on_request=("forces",),
     )
     V_crank = value(
         "V_C",
         "volume",
         "Volume of the crank-end chamber, with its clearance where that is given",
-        lambda state: _own_volume(state, False),
+        lambda state: _own_volume(state, "crank"),
         on_request=("forces",),
     )
     dV = value(
@@ -148,22 +147,17 @@ class State(MotionColumns):
         "volume_rise",
         "Change of the volume of the head-end chamber over the angle",
         lambda state: (
-            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, True) else None
+            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
         ),
         on_request=("forces",),
     )
-    dp_head = value(
-        "dp_H/dφ",
+    own_rises = values_for(
+        _ENDS,
+        "dp_*",
+        "dp_*/dφ",
         "pressure_rise",
-        "Rise of the head-end pressure, over 1 deg",
-        lambda state: _own_rise(state, True),
-        on_request=("forces",),
-    )
-    dp_crank = value(
-        "dp_C/dφ",
-        "pressure_rise",
-        "Rise of the crank-end pressure, over 1 deg",
-        lambda state: _own_rise(state, False),
+        "Rise of the * pressure, over 1 deg",
+        of=_own_rise,
         on_request=("forces",),
     )
     P_gas = value(
