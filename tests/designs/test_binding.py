@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from good_machines import ALL
-from kurbel.declared.forms import RecordForm
+from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text

@@ -15,13 +15,10 @@ from kurbel.machine_file import load, loads
 from kurbel.machine_file.source import SIZE_LIMIT, decode
 
 NUMBERS = {"1e3": 1000.0, "1E1": 10.0, "12e-1": 1.2, "1.0e3": 1000.0, "1.0e+1": 10.0, "5.": 5.0, "infinite": math.inf}
-NO_NUMBERS = {
-    **dict.fromkeys(("NO", "Off", "yes", "true", "on"), "got '{}'"),  # truth values of YAML 1.1
-    **dict.fromkeys(("1:30", "1:30.5", "12:30:45", "0:45"), "a ratio is written as one number"),  # base sixty
-    **dict.fromkeys(("010", "0777", "0x1F", "0b11", "1_000", "1__0", "1_2_3", "0o17"), "expected a number, got '{}'"),
-    **dict.fromkeys(("2024-01-02", "2024-13-45"), "expected a number, got '{}'"),  # dates
-    **dict.fromkeys(("~", "", "null"), "a value is missing"),
-    **dict.fromkeys((".inf", ".nan", "-.inf", "1e400", "nan", "inf", "9" * 5000), "rod_ratio: "),
+NO_NUMBERS = {  # beside those of the bad files
+    **dict.fromkeys(("NO", "yes", "on", "0777", "0b11", "0o17", "1__0", "2024-13-45"), "expected a number"),
+    **dict.fromkeys(("1:30.5", "12:30:45"), "a ratio is written as one number"),
+    **dict.fromkeys(("-.inf", "1e400", "nan", "inf", "9" * 5000), "rod_ratio: "),
 }
 
 
@@ -39,7 +36,7 @@ def refused(text: str) -> str:
 
 @pytest.mark.parametrize("text", NO_NUMBERS)
 def test_what_yaml_1_1_takes_for_something_else_is_refused(text: str) -> None:
-    assert NO_NUMBERS[text].format(text) in refused(f"crank: 1 m\nrod_ratio: {text}")
+    assert NO_NUMBERS[text] in refused(f"crank: 1 m\nrod_ratio: {text}")
 
 
 @pytest.mark.parametrize(
@@ -47,18 +44,11 @@ def test_what_yaml_1_1_takes_for_something_else_is_refused(text: str) -> None:
     [
         ("on: 1\ncrank: 1 m\nrod_ratio: 5", "on: unknown key"),
         ("crank: 1e200 m\nrod_ratio: 1e200", "too large"),
-        ("effort: {unit: N m, points: [[0, 1,5], [180, 2,3]]}", "write decimal points"),
-        ("effort: {unit: N m, points: [[0 1.3], [180, 2]]}", "write [0, 1.3]"),
-        ("crank: 1 m\nrod_ratio: 5\nbore:450 mm\n", "write 'bore: 450 mm'"),
-        ("crank: 1 m\ncrank: 2 m\nrod_ratio: 5", "<text>:2:1: crank: given twice; leave one of them out"),
-        ("1: a\n'1': b", "given twice"),
         ("? {a: [1, 2]}\n: 5\ncrank: 1 m\nrod_ratio: 5", "a key must be a plain text"),
-        ("masses:\n\tpiston: 1 kg", "indent with spaces"),
         # columns count characters, lines end where those of YAML do
         ("{name: äöüß, crank: 4, rod_ratio: 5}", "<text>:1:21: crank:"),
         ("name: a\x85crank: 1 m\u2028rod_ratio: x", "<text>:3:12: rod_ratio:"),
         ("name: a\x0cb\ncrank: 1", "<text>:1:8: the character U+000C"),
-        ("crank: " + "[" * 200_000, "nested deeper than 32"),
         ("\n".join(" " * i + "a:" for i in range(2000)), "nested deeper than 32"),
         ("name: \ud800\ncrank: 1 m", "no UTF-8"),
         ('{"name": "\\ud800", crank: 1 m, rod_ratio: 5}', "<text>:1:"),

@@ -3,8 +3,6 @@
 import os
 import sys
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from io import StringIO
 from shutil import get_terminal_size
 from typing import Any, NoReturn
@@ -54,14 +52,6 @@ class _Kurbel(click.Group):
             return super().resolve_command(ctx, args)
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, tuple(COMMANDS))}", ctx)
 
-    def make_context(self, *args: Any, **extra: Any) -> click.Context:
-        with _silent_interrupt():
-            return super().make_context(*args, **extra)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        with _silent_interrupt():
-            return super().invoke(ctx)
-
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         # no message fails because standard error is closed or an encoding lacks one of its characters
         sys.stderr = sys.stderr or StringIO()
@@ -97,23 +87,12 @@ class _Kurbel(click.Group):
                 f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
                 f"Please report it; {_DEBUG}=1 shows where it happened."
             )
+            # what Python before 3.12 makes of an interrupt that comes while attributes of a class are named
+            if isinstance(error.__cause__, KeyboardInterrupt):
+                status, message = INTERRUPTED, ""
         if message:
             to_stderr(message)
         sys.exit(status if isinstance(status, int) else DONE)
-
-
-@contextmanager
-def _silent_interrupt() -> Iterator[None]:
-    """End with an interrupt before click answers it with an empty line, which may fail."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise click.Abort from None
-    except RuntimeError as error:
-        # what Python before 3.12 makes of one that comes while attributes of a class are named
-        if isinstance(error.__cause__, KeyboardInterrupt):
-            raise click.Abort from None
-        raise
 
 
 def message_of(error: KurbelError) -> str:

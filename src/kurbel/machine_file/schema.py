@@ -9,9 +9,9 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from kurbel.declared.forms import EXPECTATIONS, LIMITS, Inline, Keyed, Listing, Number, OneOf, RecordForm, Variant
-from kurbel.declared.forms.figures import Figure, Figures
-from kurbel.declared.forms.values import Form, Schema, Text
+from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, Figure, Figures
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.values import Form, Number, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN
 from kurbel.declared.units import KINDS, MOST_ITEMS, range_of, unit_names

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurbel.declared.forms import Inline, Keyed, Listing, RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, required
 from kurbel.declared.reading import shown

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -380,38 +380,40 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array,
     strongest = np.take_along_axis(towards, size.argmax(axis=0)[None], axis=0)
     direction = np.degrees(np.angle(towards * np.conj(strongest))) + np.degrees(np.angle(strongest))
     low, high = pieces.ranges(direction)
-    return unreached(pieces.machine, low + contact - HALF_CONTACT, high + contact + HALF_CONTACT, pieces.count)
+    starts, widths = low + contact - HALF_CONTACT, high - low + 2 * HALF_CONTACT
+    # every machine has pieces here, but one that nothing presses
+    arcs = np.split(np.stack((starts, widths), axis=1), np.searchsorted(pieces.machine, np.arange(1, pieces.count)))
+    free = np.array([unreached(one.tolist()) for one in arcs])
+    return free[:, 0], free[:, 1]
 
 
-def unreached(machine: Indices, start: Array, end: Array, count: int) -> tuple[Array, Array]:
-    """Return in degrees what of a circle arcs (n,) leave free, and the middle of its widest stretch, (count,).
+def unreached(arcs: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Return in degrees what of a circle arcs leave free, and the middle of its widest stretch.
 
-    machine: whose each arc is, ascending. Of stretches equally wide it is the first from 0° on; nan where there is
-    none, and for both where there is no arc.
+    arcs: where each starts, and how wide it is. Of stretches equally wide it is the first from 0° on; nan where there
+    is none, and for both where there is no arc.
     """
-    each = np.bincount(machine, minlength=count)
-    place = np.arange(len(machine)) - (np.cumsum(each) - each)[machine]
-    begins, ends = np.full((count, each.max(initial=1)), math.inf), np.full((count, each.max(initial=1)), -math.inf)
-    begins[machine, place] = np.mod(start, 360.0)
-    ends[machine, place] = begins[machine, place] + (end - start)
-    order = np.argsort(begins, axis=1)
-    begins, ends = (np.take_along_axis(one, order, axis=1) for one in (begins, ends))
-    begins, ends = (np.concatenate([one + turn for turn in (-360.0, 0.0, 360.0)], axis=1) for one in (begins, ends))
-    begins = np.where(np.isfinite(begins), begins, 0.0)  # beyond the last arc, which no longer count
-    gaps = begins[:, 1:] - np.maximum.accumulate(ends, axis=1)[:, :-1]
-    gaps[(begins[:, 1:] <= 0) | (begins[:, 1:] > 360.0) | (gaps < 0)] = 0.0
-    widest = np.argmax((gaps > 0) & (gaps > gaps.max(axis=1, keepdims=True) - _EQUAL), axis=1)
-    row = np.arange(count)
-    middle = begins[row, 1 + widest] - gaps[row, widest] / 2
-    middle = _axial(middle - 360.0 * np.rint(middle / 360.0), _EQUAL)
-    arc = np.where(each > 0, gaps.sum(axis=1), math.nan)
-    return arc, np.where(arc > 0, middle, math.nan)
+    if not arcs:
+        return math.nan, math.nan
+    ordered = sorted((360.0 - (-start) % 360.0, width) for start, width in arcs)
+    reached, gaps = max(start + width for start, width in ordered) - 360.0, []
+    for start, width in ordered:
+        gaps.append((max(start - reached, 0.0), start))
+        reached = max(reached, start + width)
+    widest, end = max(gaps)
+    if widest == 0:
+        return 0.0, math.nan
+    widest, end = next(one for one in gaps if one[0] > widest - _EQUAL)
+    return sum(gap for gap, _ in gaps), float(_axial(np.asarray(math.remainder(end - widest / 2, 360.0)), _EQUAL))
 
 
 def _axial(directions: Array, rounding: float) -> Array:
-    """Return directions (n,) in degrees, those along their axis but for this rounding as 0 or 180."""
+    """Return directions in degrees, those along their axis but for this rounding as 0 or 180."""
     along = np.rint(directions / 180.0) * 180.0
     return np.where(np.abs(directions - along) <= rounding, np.abs(along), directions)
+
+
+# all of them
 
 
 class ShaftBearings:

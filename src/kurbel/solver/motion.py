@@ -15,7 +15,7 @@ from kurbel.machine.batch import taken
 from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
-from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.quantity import value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
@@ -184,27 +184,18 @@ class Motion(Results):
             found["v"] = one.crank * self.omega
         if not one.slides:
             return found
-        found["stroke"], found["phi_b_zero"] = one.stroke, self._turning_points()
+        pieces, (_, curvature, *_) = self._turn
+        found["stroke"], found["phi_b_zero"] = one.stroke, pieces.zeros(curvature).listed(self._count)
         if self.omega is None:
             return found
 
         found["c_m"] = mean = 2 * one.stroke * self.speed
         found["c_work_m"], found["c_return_m"] = mean * (180.0 / one.phi_work), mean * (180.0 / one.phi_return)
-        speeds, rises = one.velocity_extremes(), one.acceleration_extremes()
-        found["c_max"], found["c_min"] = fastest, slowest = self._times_omega(_ends(speeds) or self._searched[0], 1)
+        found["c_max"], found["c_min"] = fastest, slowest = self._times_omega(self._searched[0], 1)
         if one.quick_return:
             found["c_work_max"], found["c_return_max"] = fastest, Extreme(-slowest.value, slowest.degrees)
-        found["b_max"], found["b_min"] = self._times_omega(_ends(rises) or self._searched[1], 2)
+        found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
         return found
-
-    def _turning_points(self) -> tuple[Any, ...]:
-        """Return the crank angles in degrees at which the velocity is extreme; of many machines one tuple each."""
-        closed = self.mechanism.velocity_extremes()
-        if closed:
-            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
-            return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
-        pieces, (_, curvature, *_) = self._turn
-        return pieces.zeros(curvature).listed(self._count)
 
     # the extremes over a turn
 
@@ -259,10 +250,6 @@ def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
     turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)
-
-
-def _ends(found: tuple[Extreme, ...]) -> Extremes | None:
-    return Extremes(largest(*found), smallest(*found)) if found else None
 
 
 def _within_turn(degrees: Any) -> Any:

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from kurbel.arrays import Indivisible
-from kurbel.declared.forms.values import TEXT, Choice, Form, Number, Truth
+from kurbel.declared.forms.values import TEXT, Choice, Form, Number
 from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
@@ -29,7 +29,7 @@ from kurbel.declared.reading import (
     shown,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Fault, Path, RuleError, refused
+from kurbel.errors import Path, RuleError, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -43,6 +43,7 @@ class RecordForm(Form):
         self.record, self.inline_too, self.keys = record, inline_too, record.KEYS
         parts = ((name, key.form) for name, key in self.keys.items())
         super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
+        self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
 
     def every_key(self) -> Iterator[tuple[str, Key]]:
         """Yield all keys that such a mapping can have, with those of inline records after the key that brings them."""
@@ -133,39 +134,37 @@ class RecordForm(Form):
 
     def _moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that do not stand in this mapping but below one of its keys, each with where to move it."""
-        moved: dict[str, str] = {}
-        for name, key in self.keys.items():
-            form = key.form
-            if isinstance(form, Inline) and form.unless in mapping:
-                each = isinstance(mapping[form.unless], dict)
-                there = f"'{form.unless}.each'" if each else f"the items of '{form.unless}'"
-                moved |= dict.fromkeys(form.names(mapping), f"belongs {form.item}; move it into {there}")
-            elif isinstance(form, RecordForm) and form.inline_too:
-                moved |= dict.fromkeys(form.names({}), f"move it below '{name}'")
+        moved = {
+            inner: f"move it below '{name}'"
+            for name, form in self.parts
+            if isinstance(form, RecordForm) and form.inline_too
+            for inner in form.names({})
+        }
+        if self.listed and self.listed.unless in mapping:
+            unless = self.listed.unless
+            there = f"'{unless}.each'" if isinstance(mapping[unless], dict) else f"the items of '{unless}'"
+            moved |= dict.fromkeys(self.listed.names(mapping), f"belongs {self.listed.item}; move it into {there}")
         return moved
 
     def _as_here(self, words: str, mapping: Tree) -> str:
         """Return words for places as they are called from this mapping: those of a cylinder in an item of the list."""
-        forms = (key.form for key in self.keys.values())
-        for form in (one for one in forms if isinstance(one, Inline) and one.unless in mapping):
-            item, own = f"{form.unless}.{'each' if isinstance(mapping[form.unless], dict) else 0}", form.names(mapping)
+        if self.listed and self.listed.unless in mapping:
+            own, listed = self.listed.names(mapping), mapping[self.listed.unless]
+            item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
             for name in re.findall(r"under '(\w+)", words):
                 words = words.replace(f"under '{name}", f"under '{item}.{name}") if name in own else words
         return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the faults of the record as those of its mapping, whatever list the record has made of it."""
-        listed = {key.form.unless for key in self.keys.values() if isinstance(key.form, Inline)}
-
-        def flat(fault: Fault) -> Fault:
-            name, *inner = fault.path or ("",)
-            if name not in listed or not inner or not isinstance(inner[0], int):
-                return fault
-            given = mapping.get(str(name))
-            head = () if given is None else (name, "each") if isinstance(given, dict) else fault.path[:2]
-            return fault._replace(path=(*head, *inner[1:]))
-
-        return RuleError(*map(flat, error.faults))
+        faults = list(error.faults)
+        for place, fault in enumerate(faults):
+            if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
+                name, item, *inner = fault.path
+                listed = mapping.get(self.listed.unless)
+                head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
+                faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
+        return RuleError(*faults)
 
     def born(self, values: Tree) -> Any:
         """Return the record of these values of its keys; raises RuleError."""
@@ -411,7 +410,7 @@ def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     if form is int:
         return Number(whole=True, **{"least": 1, **bounds})
     if form is bool:
-        return Truth()
+        return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:
         return TEXT
     return RecordForm(form) if isinstance(form, type) else form

@@ -215,33 +215,27 @@ class Number(Form):
 
 
 class Choice(Form):
-    """One of these words; also: other words that people try, each with the one that is meant."""
+    """One of these words; also: other words that people try, each with the one that is meant.
 
-    def __init__(self, words: tuple[str, ...], also: dict[str, str] | None = None) -> None:
-        self.words, self.also = words, also or {}
+    means: what the words become, if not themselves.
+    """
+
+    def __init__(
+        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, bool] | None = None
+    ) -> None:
+        self.words, self.also, self.means = words, also or {}, means or {}
         every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
-        super().__init__(" or ".join(every), words[0], written, {"enum": list(words)})
+        schema: Schema = {"type": "boolean"} if means else {"enum": list(words)}
+        super().__init__(" or ".join(every), words[0], written, schema)
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Take one of the words, of which one may be a blank or a tab."""
         if isinstance(value, str) and value in self.words:
-            return str(value)
+            return self.means.get(value, str(value))
         text = one_line(value, self.expected)
         meant = self.also.get(text.strip().lower())
         hint = f"; write '{meant}'" if meant else did_you_mean(text, self.words) or f"; write {self.expected}"
         return refused(f"unknown word '{shown(text)}'{hint}")
-
-
-class Truth(Choice):
-    """`true` or `false`; becomes a bool."""
-
-    def __init__(self) -> None:
-        super().__init__(("true", "false"))
-        self.schema = {"type": "boolean"}
-
-    def take(self, reading: Reading, value: Any, path: Path) -> bool:
-        """Take one of the two words."""
-        return bool(super().take(reading, value, path) == "true")
 
 
 class Text(Form):
