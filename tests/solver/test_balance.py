@@ -220,17 +220,6 @@ def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
     assert found.F_free_max.value == pytest.approx(found.F_free_best.value, rel=1e-13)
 
 
-def test_equal_throws_of_unequal_masses() -> None:
-    """A middle throw of twice the mass, opposite the outer ones: neither force nor moment of first order."""
-    one = (
-        "{name: %s, crank: 50 mm, rod: infinite, masses: {other: %s kg}, crank_position: %s deg, axial_position: %s mm}"
-    )
-    several = ", ".join(one % row for row in ((1, 1.3, 0, 0), (2, 2.6, 180, 80), (3, 1.3, 0, 160)))
-    found = balance_of(f"{{speed: 600 rpm, cylinders: [{several}]}}")
-    assert (found.F_free_max.value, found.M_free_max.value) == (0.0, 0.0)
-    assert (found.counterweight_best, found.counterweight_best_angle) == (0.0, None)
-
-
 # counterweights
 
 
@@ -313,15 +302,6 @@ def test_lanchester_shafts() -> None:
     assert not free.moment.waves.any()
 
 
-def test_counterweights_of_a_cylinder_count_from_its_own_throw() -> None:
-    """By mass and radius, opposite the throw where no angle says otherwise, at its place: as its share 1/2 does."""
-    weight = "[{mass: 27 kg, radius: 1 m}]"  # (120 + 300/2) kg at 300 mm is 81 kg m
-    own = [f"cylinders.{k}.counterweights={weight.replace('27', '81')}" for k in (0, 1)]
-    listed, shared = balance_of(TWO_CRANKS, *own), balance_of(TWO_CRANKS, "counterweights={share: 1/2}")
-    for one in ("force", "moment"):
-        assert_allclose(getattr(listed.free, one).waves, getattr(shared.free, one).waves, atol=1e-13)
-
-
 def test_a_locomotive() -> None:
     """Infinite rod: √2 (1 − c) m R ω² and (1 − c) m R ω² a/√2 of the books, and the blow as by a lever."""
     found = balance_of(
@@ -398,17 +378,6 @@ def test_the_smallest_circle() -> None:
     assert np.abs(circle.centre - [0, 1j]).max() < 1e-14
     assert_allclose(circle.square, [1, 0], atol=1e-15)
     assert_allclose((circle.shares * points).sum(axis=0), circle.centre, atol=1e-14)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
-    """Also where four or more points, mirror images, are on it: no point may be dropped that holds it."""
-    angles = np.random.default_rng(seed).uniform(0, 2 * math.pi, 4)
-    points = np.array([[complex(math.cos(a), sign * math.sin(a))] for a in angles for sign in (1, -1)])
-    circle = smallest_circle(points)
-    assert np.abs(points - circle.centre).max() ** 2 == pytest.approx(circle.square[0], rel=1e-12)
-    alone = smallest_circle(points[circle.shares[:, 0] > 1e-9])
-    assert alone.square[0] == pytest.approx(circle.square[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("turns", [1, 7, -3])

@@ -155,6 +155,8 @@ class Mechanism(Record):
     """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     works_outward: ClassVar[Any] = True
     """Whether the outstroke is the working stroke; otherwise the return stroke is."""
+    stroke: ClassVar[Any]
+    """Stroke in m; of what only swings, its swing in radians."""
     start: ClassVar[Any] = 0.0
     """The coordinate at the inner dead centre."""
     notes: ClassVar[Any] = ()
@@ -173,11 +175,6 @@ class Mechanism(Record):
         missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
-
-    @property
-    def stroke(self) -> float:
-        """Stroke in m; of what only swings, its swing in radians."""
-        raise NotImplementedError
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""

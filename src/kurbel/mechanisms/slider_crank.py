@@ -30,9 +30,12 @@ def stroke_instead(gives: Callable[[Mapping[str, Any]], dict[str, Any]]) -> Any:
 
 
 def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
-    """Return what the books have in place of a column, by their formula for R = 1."""
-    quantity = on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id)
-    return Offer(quantity, lambda one, angle: one.of_book(angle, formula), omega)
+    """Return what the books have in place of a column, by their formula for R = 1; they have none with an offset."""
+
+    def factor(one: Any, angle: CrankAngle) -> Any:
+        return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
+
+    return Offer(on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id), factor, omega)
 
 
 _DISPLACEMENT = "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"
@@ -135,7 +138,8 @@ class SliderCrank(Mechanism):
         return self.rod
 
     @cached_property
-    def _straight(self) -> bool:
+    def straight(self) -> bool:
+        """Whether the stroke line passes through the shaft axis, or the rod is infinite."""
         return every(self.offset == 0) or every(self.rod == math.inf)
 
     @cached_property
@@ -155,11 +159,11 @@ class SliderCrank(Mechanism):
     @cached_property
     def stroke(self) -> float:
         """s = √((L+R)² − e²) − √((L−R)² − e²) = 4LR/(their sum); 2R without offset."""
-        return 2 * self.crank if self._straight else self.crank * (4 / sum(self._reaches))
+        return 2 * self.crank if self.straight else self.crank * (4 / sum(self._reaches))
 
     def dead_centres(self) -> tuple[float, float]:
         """Return φ_i with sin φ_i = e/(L+R) and φ_o = 180° + arcsin(e/(L−R)), in degrees."""
-        if self._straight:
+        if self.straight:
             return 0.0, 180.0
         outer, inner = self._reaches
         return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
@@ -169,7 +173,7 @@ class SliderCrank(Mechanism):
         if angle.rod is not None:
             return angle.rod
         lam, gaps = self.lam, self._gaps
-        if self._straight:  # 1 − λ² sin²φ without its cancellation
+        if self.straight:  # 1 − λ² sin²φ without its cancellation
             return lam * angle.sin, sqrt(angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin))
         near = 1 + abs(angle.sin)
         far = angle.cos * angle.cos / near
@@ -216,7 +220,7 @@ class SliderCrank(Mechanism):
 
         With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
         """
-        if self._straight:  # (1 − cos φ) + (1 − cos ψ)/λ, as a sum of positive terms
+        if self.straight:  # (1 − cos φ) + (1 − cos ψ)/λ, as a sum of positive terms
             beyond = self.lam * (angle.sin * angle.sin) / (1 + self.rod_angle(angle)[1])
             return self.crank * (angle.versine + beyond)
         start = self._start
@@ -234,7 +238,7 @@ class SliderCrank(Mechanism):
 
     def remaining(self, angle: CrankAngle) -> Any:
         """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
-        if not self._straight:
+        if not self.straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
         return self.crank * (angle.vercosine * (1 - lead))
@@ -247,7 +251,7 @@ class SliderCrank(Mechanism):
     def slope(self, angle: CrankAngle) -> Any:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288; without offset R sin φ (cos ψ + λ cos φ)/cos ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
-        if self._straight:
+        if self.straight:
             return self.crank * (angle.sin * self._lead(angle, cos_psi) / cos_psi)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
@@ -258,15 +262,11 @@ class SliderCrank(Mechanism):
         """
         sin_psi, cos_psi = self.rod_angle(angle)
         cube = cos_psi * cos_psi * cos_psi
-        if self._straight:
+        if self.straight:
             bend = self.lam * self._gaps[0] * self._gaps[2] * (angle.sin * angle.sin) / cube
             return self.crank * (angle.cos * self._lead(angle, cos_psi) / cos_psi - bend)
         bend = self.lam * (angle.cos * angle.cos) / cube
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
-
-    def of_book(self, angle: CrankAngle, formula: Callable[[Any, Any, Any], Any]) -> Any | None:
-        """Return R times what a formula of the book has for sin φ, cos φ and λ, in m; None with an offset."""
-        return self.crank * formula(angle.sin, angle.cos, self.lam) if self._straight else None
 
     def radial(self, angle: CrankAngle) -> Any:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""

@@ -151,12 +151,11 @@ class Bearing(Results):
         """Return the load on the common pieces of journal and of shell, two parts each, (4, nodes, pieces)."""
 
     @abstractmethod
-    def _rate(self) -> tuple[Extreme, Any]:
-        """By how much its surfaces turn on one another, over that of the crank: the largest, and the mean over time."""
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+        """By how much its surfaces turn on one another over the crank, the largest and the mean; its friction's work.
 
-    @abstractmethod
-    def _work(self) -> Any:
-        """Return the work of its friction in J per cycle of the machine; None without a coefficient."""
+        The work is in J per cycle of the machine, None without a coefficient.
+        """
 
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
         return BearingColumns(phi, self._frames(phi, within))
@@ -192,17 +191,17 @@ class Bearing(Results):
             found[f"unloaded_arc{ending}"] = None if self.count is None and math.isnan(arc) else arc
             found[f"unloaded_middle{ending}"] = None if self.count is None and math.isnan(middle) else middle
 
-        diameter, length = self.size
+        (diameter, length), (fastest, rate, work) = self.size, self._rubbing()
         if diameter is not None and length is not None:
             found["pressure_max"] = Extreme(loads.largest.value / (diameter * length), loads.largest.degrees)
             found["pressure_mean"] = mean / (diameter * length)
         if diameter is not None and self.omega is not None:
-            surface_speed, (fastest, rate) = self.omega * diameter / 2, self._rate()
+            surface_speed = self.omega * diameter / 2
             found["rubbing_speed_max"] = Extreme(fastest.value * surface_speed, fastest.degrees)
             found["rubbing_speed_mean"] = rate * surface_speed
             if length is not None:
                 found["pressure_velocity"] = found["pressure_mean"] * found["rubbing_speed_mean"]
-        return {**found, "work_rubbing": self._work()}
+        return {**found, "work_rubbing": work}
 
 
 class RodPin(Bearing):
@@ -239,18 +238,16 @@ class RodPin(Bearing):
         journal, shell = frames[self.journal], frames[self.shell]
         return self._own.carried(self._common, journal.real, journal.imag, shell.real, shell.imag)
 
-    def _rate(self) -> tuple[Extreme, Any]:
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
-        state = self._own.forces.samples
+        forces = self._own.forces
+        state, work = forces.samples, forces.friction_works.get(self._pin)
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
         rate = self._own.carried(self._common, 1 + slope if self._pin == "crank_pin" else slope)
-        return self._common.extremes(rate).each(self._told)[0].peak, self._told(self._common.mean(np.abs(rate[0])))
-
-    def _work(self) -> Any:
-        forces = self._own.forces
-        work = forces.friction_works.get(self._pin)
-        return None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
+        fastest = self._common.extremes(rate).each(self._told)[0].peak
+        whole = None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
+        return fastest, self._told(self._common.mean(np.abs(rate[0]))), whole
 
 
 class MainBearing(Bearing):
@@ -304,17 +301,15 @@ class MainBearing(Bearing):
         engine = force * (angle.cos + 1j * angle.sin)
         return np.stack((force.real, force.imag, engine.real, engine.imag))
 
-    def _rate(self) -> tuple[Extreme, Any]:
-        return Extreme(1.0, self._told(np.zeros(self.count or 1))), 1.0
-
-    def _work(self) -> Any:
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+        fastest = Extreme(1.0, self._told(np.zeros(self.count or 1)))
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size[0] is None:
-            return None
+            return fastest, 1.0, None
         force = self._sampled(rubbed=False)
         pieces, load, _ = with_magnitude(self._common, np.stack((force.real, force.imag)))
-        return self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
+        return fastest, 1.0, self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
 def _pin_load(state: State) -> Vector:
