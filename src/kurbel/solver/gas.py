@@ -23,7 +23,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import within_cycle
-from kurbel.machine.batch import Chambers, count_of, taken
+from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
 from kurbel.machine.indicator import STROKES, Card, Rectangle
@@ -171,8 +171,11 @@ class CardPressure:
 
     def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
         self.setting, self._count = setting, count
-        each, which = (chamber.each, chamber.which) if isinstance(chamber, Chambers) else ((chamber,), 0)
-        numbers = (np.broadcast_to(one, count or 1).tolist() for one in (which, setting.lift, setting.base))
+        which, each = np.zeros(count or 1, int), [chamber]
+        if varies(chamber):
+            which = np.arange(count or 1)
+            each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
+        numbers = (np.broadcast_to(one, len(which)).tolist() for one in (which, setting.lift, setting.base))
         made: dict[tuple[int, float, float], int] = {}
         own = np.array([made.setdefault(key, len(made)) for key in zip(*numbers)])
         self._processes = [process_in(each[one], lift, setting.cycle, base) for one, lift, base in made]
@@ -180,7 +183,7 @@ class CardPressure:
         self._clearance = self._of_machines([one.clearance for one in self._processes])
 
         # lines at the same angles in all machines are kept once
-        alike = self._alike = len(made) == 1 and count_of(setting.mechanism) is None
+        alike = self._alike = len(made) == 1 and not varies(setting.mechanism)
         self._machine, rows = _over_the_angle(self._processes, own[:1] if alike else own, setting, alike)
         self._begins, self._ends, z, p, next_z, self._next_p, exponent = rows
         self._p, self._rows = p, np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2]))
