@@ -341,7 +341,7 @@ def values_for(
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
         own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
         quantity = Quantity(*texts, **(own | words))
-        return Row(quantity, partial(answer, part=part))
+        return Computed(partial(answer, part=part), quantity).rows[0]  # computed once, as any other
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))
 
