@@ -123,7 +123,7 @@ class Sweep:
             try:
                 binder = (CasesBinder if self.spec.cases else Binder)(self.spec.origin, keys, texts)
                 asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
-                return binder, asked, tuple(_limit_answers(binder.machine))
+                return binder, asked, tuple(limit_answers(binder.machine))
             except (MachineFileError, NoSolutionError) as error:
                 failed.append(error)
         raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
@@ -268,7 +268,7 @@ def _in_unit(number: Any, kind: str, unit: str) -> Any:
     return None if number is None else convert(number, kind, unit) + 0.0
 
 
-def _limit_answers(machine: Machine) -> Iterable[_Limit]:
+def limit_answers(machine: Machine) -> Iterable[_Limit]:
     """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
     case = Case(machine)
     for name, bound in machine.limits:
