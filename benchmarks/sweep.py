@@ -102,7 +102,7 @@ def main() -> None:
     begin = time.process_time()
     sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
     titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
-    size = sum(map(len, map(lines_of(titles, Look("csv")).of, rows_of(sweep, range(rows)))))
+    size = sum(map(len, map(lines_of(titles, Look("csv"))[1], rows_of(sweep, range(rows)))))
     told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{size / 1e6:.1f} MB written, {memory:.0f} MB of memory at most")

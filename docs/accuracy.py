@@ -14,7 +14,7 @@ from kurbel.machine_file import loads
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.render.formats import render
-from kurbel.render.output import write_file
+from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
 from kurbel.report.tables import Report
 
@@ -113,7 +113,7 @@ def main() -> None:
             render(extremes, look).strip(),
         )
     )
-    write_file(str(FOLDER / "accuracy.md"), text + "\n")
+    write_out((text, "\n"), str(FOLDER / "accuracy.md"))
 
 
 if __name__ == "__main__":

@@ -11,8 +11,10 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.forms import Keyed, Record
-from kurbel.declared.keys import Described, Form, Key, Keys, required
+from kurbel.declared.forms import Inline, Keyed, RecordForm
+from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.values import Form
+from kurbel.declared.keys import Key, Keys, Record, required
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
@@ -127,22 +129,22 @@ def _sizes() -> Iterator[str]:
 
 def _records() -> Iterator[str]:
     """Yield a table of keys for the machine and for every record that its keys lead to, each record once."""
-    seen: set[type[Described]] = set()
-    waiting = [("machine", Record(Machine))]
+    seen: set[type[Record]] = set()
+    waiting = [("machine", RecordForm(Machine))]
     while waiting:
         name, record = waiting.pop(0)
-        if record.load() not in seen:
-            seen.add(record.load())
+        if record.record not in seen:
+            seen.add(record.record)
             yield f"## {name}\n\n{_keys(record.keys)}"
-            waiting += [one for word, key in record.keys.items() for one in key.form.records(word)]
+            waiting += [one for word, key in record.keys.items() for one in records(key.form, word)]
 
 
 def _keys(keys: Keys) -> str:
     needed = required(keys)
     rows = (
-        (f"`{word}`", key.symbol, key.form.written(), _absent(key, word in needed), _example(word, key), key.text)
+        (f"`{word}`", key.symbol, key.form.written, _absent(key, word in needed), _example(word, key), key.text)
         for word, key in _with_cases(keys)
-        if not key.form.shared
+        if not isinstance(key.form, Inline)
     )
     return _table(("key", "symbol", "form", "absent", "example", "meaning"), rows)
 
@@ -157,7 +159,7 @@ def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
 
 def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     if isinstance(form, Keyed):
-        yield from form.single_keys()
+        yield from form.single.items()
     yield from (one for word, inner in form.parts() if not word for one in _cases(inner))
 
 

@@ -13,7 +13,7 @@ from rich.terminal_theme import MONOKAI
 from rich.text import Text
 
 from kurbel.render import Look
-from kurbel.render.output import coloured
+from kurbel.render.output import STYLES
 from kurbel.render.page import page
 from kurbel.report.zusammenstellung import zusammenstellung
 
@@ -26,7 +26,7 @@ def main() -> None:
     report = zusammenstellung((5.0, 4.5, 4.0), ("b", "c"), tuple(range(0, 181, 10)), "book", False)
     console.print(Text("$ kurbel table", "bold"))
     for line in page(report, Look(width=WIDTH)):
-        console.print(Text.assemble(*coloured(line)), soft_wrap=True)
+        console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in line)), soft_wrap=True)
     svg = console.export_svg(title="kurbel table", theme=MONOKAI, unique_id="kurbel")
     sys.stdout.buffer.write(svg.encode())
 

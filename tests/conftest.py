@@ -46,22 +46,22 @@ def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     Not where a file is written, which may be refused, nor for machines with traces, whose files may change.
     """
-    from kurbel.cli.options import Asked
+    from kurbel.cli.request import Request
     from kurbel.machine_file import source
     from kurbel.machine_file.reader import read_machine
     from kurbel.solver.case import Case
     from representative import case_from
 
-    alone = Asked.case
+    alone = Request.case
 
-    def shared(asked: Asked) -> Case:
-        if asked.output.file_name:
-            return alone(asked)
+    def shared(asked: Request, cycle: int | None = None) -> Case:
+        if asked.output.file_name or cycle is not None:
+            return alone(asked, cycle)
         origin = source.read(asked.file).set_over(asked.overrides)
         case = case_from(origin)
         return Case(read_machine(origin)) if case.machine.trace_files else case
 
-    monkeypatch.setattr(Asked, "case", shared)
+    monkeypatch.setattr(Request, "case", shared)
 
 
 @pytest.fixture

@@ -354,11 +354,14 @@ def for_each(
     return made
 
 
-class Tabled(Computed[V]):
+class Tabled(Computed[Any]):
     """A quantity that one expression gives, in a line of the table at the head of its class; see `value`."""
 
-    def __init__(self, of: Callable[[Any], V], texts: tuple[str, str, str], unless: Condition | None, **words: Any):
-        super().__init__(of, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
+    def __init__(
+        self, of: Callable[[Any], Any] | None, texts: tuple[str, str, str], unless: Condition | None, words: Any
+    ):
+        function = of or (lambda one: one.answers.get(self.name))
+        super().__init__(function, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
         self.__doc__ = texts[2]
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -370,16 +373,38 @@ def value(
     symbol: str,
     kind: str,
     text: str,
-    of: Callable[[Any], V],
+    of: Callable[[Any], Any] | None = None,
     *,
     unless: Condition | None = None,
     **words: Any,
-) -> Tabled[V]:
+) -> Tabled:
     """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
 
-    of: takes the object and returns the value in SI. words: those of `Quantity`.
+    of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,
+    by id, or there is none. words: those of `Quantity`.
     """
-    return Tabled(of, (symbol, kind, text), unless, **words)
+    return Tabled(of, (symbol, kind, text), unless, words)
+
+
+def values_for(
+    parts: Parts,
+    id: str,
+    symbol: str,
+    kind: str,
+    text: str,
+    *,
+    of: Callable[[Any, str], Any] | None = None,
+    group: Callable[[str], str] = lambda part: "",
+    after: str = "",
+) -> ForEach[Any]:
+    """Return a key value or column of each of several parts, as `value` of one; of: takes object and part."""
+
+    def answer(one: Any, part: str) -> Any:
+        return one.answers.get(id.replace("*", part))
+
+    function = of or answer
+    function.__doc__ = text
+    return for_each(parts, id, symbol, kind, group=group, after=after)(function)
 
 
 def _sentence(function: Callable[..., Any]) -> str:

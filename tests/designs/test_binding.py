@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from good_machines import ALL
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import RecordForm
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
@@ -296,12 +296,12 @@ def kinds_of_numbers() -> set[tuple[str, str]]:
         if id(form) in seen:
             return
         seen.add(id(form))
-        if isinstance(form, Record):
-            name = form.load().__name__
-            found.update((name, key) for key, one in form.keys.items() if one.form.is_number)
+        if isinstance(form, RecordForm):
+            name = form.record.__name__
+            found.update((name, key) for key, one in form.keys.items() if one.form.numeric)
         for _, inner in form.parts():
             visit(inner)
-        for inner in form.inline():
+        for inner in form.inline:
             visit(inner)
 
     visit(ROOT)
@@ -319,7 +319,7 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
                 continue
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
             binder = Binder(file, (key,), (text,))
-            owners = {(slot.given.form.load().__name__, slot.name) for slot in binder._slots.values()}
+            owners = {(slot.given.form.record.__name__, slot.name) for slot in binder._slots.values()}
             if owners <= met or not all(slot.numeric for slot in binder._slots.values()):
                 continue
             met |= owners

@@ -10,7 +10,8 @@ import jsonschema
 import numpy as np
 import pytest
 
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import RecordForm
+from kurbel.declared.forms.structures import records
 from kurbel.declared.keys import Key
 from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine.parts import ConnectingRod
@@ -22,16 +23,16 @@ from representative import law_of_each
 from schemas import whole_schema
 
 
-def all_records() -> Iterator[Record]:
+def all_records() -> Iterator[RecordForm]:
     """Every record that the keys of a machine lead to."""
-    found = {ROOT.load(): ROOT}
+    found = {ROOT.record: ROOT}
     waiting = [ROOT]
     while waiting:
         record = waiting.pop()
         for name, key in record.keys.items():
-            for _, inner in key.form.records(name):
-                if inner.load() not in found:
-                    found[inner.load()] = inner
+            for _, inner in records(key.form, name):
+                if inner.record not in found:
+                    found[inner.record] = inner
                     waiting.append(inner)
     return iter(found.values())
 
@@ -40,29 +41,29 @@ def declared(field: str) -> list[Any]:
     return [(record, name, key) for record in all_records() for name, key in record.keys.items() if getattr(key, field)]
 
 
-def allowed_by_schema(record: Record, *names: str) -> bool:
+def allowed_by_schema(record: RecordForm, *names: str) -> bool:
     """Whether the rules between keys let these stand together, whatever their values."""
     return rules_of(record).is_valid(dict.fromkeys(names, 1))
 
 
 @cache
-def rules_of(record: Record) -> jsonschema.Draft7Validator:
+def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
     rules: list[dict[str, Any]] = []
-    record.describe_all({}, rules, whole_schema()["definitions"])
+    record.describe({}, rules, whole_schema()["definitions"])
     return jsonschema.Draft7Validator({"allOf": rules})
 
 
 @law_of_each(declared("instead"))
-def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: Record, name: str, key: Key) -> None:
+def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: RecordForm, name: str, key: Key) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' say the same thing"):
-        record.load().from_keys(**{name: 1.5, key.instead: 1.5})
+        record.record.from_keys(**{name: 1.5, key.instead: 1.5})
     assert not allowed_by_schema(record, name, key.instead)
 
 
 @law_of_each(declared("needs"))
-def test_a_key_needs_the_one_beside_it(record: Record, name: str, key: Key) -> None:
+def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) -> None:
     with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
-        record.load().from_keys(**{name: 1.5})
+        record.record.from_keys(**{name: 1.5})
     assert not allowed_by_schema(record, name)
 
 

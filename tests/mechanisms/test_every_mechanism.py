@@ -12,7 +12,6 @@ from precise import by_radian, exact_angle
 from statics import FREE_BODIES
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Physical
 from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.parts import Moment, RamForce
@@ -209,12 +208,12 @@ def test_what_it_offers_fits_what_it_says(machine):
 
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_every_word_names_its_class(name):
-    mechanism = MECHANISMS[name].load()
+    mechanism = MECHANISMS[name].record
     assert mechanism.name == name
 
 
 def test_every_mechanism_is_under_the_laws():
-    registered = {record.load() for record in MECHANISMS.values()}
+    registered = {record.record for record in MECHANISMS.values()}
     assert {type(machine) for machine in MACHINES.values()} == registered
     assert set(FREE_BODIES) == registered
 
@@ -268,7 +267,7 @@ def test_lengths_must_be_positive_and_finite(machine):
 def resized(machine, scale):
     """Return the mechanism with all its lengths, and nothing else, times the scale."""
     fields = {field.name: getattr(machine, field.name) for field in dataclasses.fields(machine)}
-    lengths = {key for key, one in machine.KEYS.items() if isinstance(one.form, Physical) and one.form.kind == "length"}
+    lengths = {key for key, one in machine.KEYS.items() if one.form.kind == "length"}
     return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 

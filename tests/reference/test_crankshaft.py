@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kurbel.solver.shaft import FreeBody, Vector
-from kurbel.solver.stress import bach_factor, round_bending, round_torsion
+from kurbel.solver.stress import round_bending, round_torsion
 from machines import constant_pressure
 from shafts import place_at, shaft, strength
 
@@ -98,10 +98,6 @@ class TestOelUndGasmaschinen:
         bach = 0.35 * sigma + 0.65 * math.sqrt(sigma**2 + 4 * (alpha * torsion) ** 2)
         assert combined == pytest.approx(bach, rel=1e-13)
         assert narrow == pytest.approx(torsion * t / w, rel=1e-13)
-
-    def test_alpha(self) -> None:
-        assert bach_factor(60e6, 40e6) == pytest.approx(60 / (1.3 * 40), rel=1e-15)
-        assert bach_factor(60e6, None) == 1
 
     def test_pin_at_largest_torque(self) -> None:
         """M_b = √((A_T a)² + (A_R a)²), M_d = A_T r, combined with α₀ = 1."""

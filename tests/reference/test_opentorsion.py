@@ -17,9 +17,9 @@ import pytest
 
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
+from kurbel.machine.measured import Measured
 from kurbel.machine.parts import Masses, Piston
 from kurbel.machine_file import load
-from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces

@@ -14,8 +14,8 @@ from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Otto
 from kurbel.machine.indicator import Card, Constant, Indicator
+from kurbel.machine.measured import Measured
 from kurbel.machine.parts import Friction, Masses, Piston
-from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.angles import stepped
 from kurbel.report.crank import forces_report

@@ -20,8 +20,8 @@ from scipy.optimize import minimize_scalar
 from indicated import RATIO, Engine, absolute, columns_file, cycles, fraction, indicated
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError, UsageError
+from kurbel.machine.measured import Motored, dead_centre
 from kurbel.machine_file import load
-from kurbel.machine_file.trace import Motored, dead_centre
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.traces.correct import parabola_peak

@@ -14,6 +14,7 @@ from kurbel.errors import KurbelError, RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
+from kurbel.solver.shaft import FreeBody, Vector
 from kurbel.solver.stress import places
 from machines import constant_pressure
 from shafts import body, place_at, shaft, strength
@@ -30,9 +31,8 @@ def test_bhandari_4_14() -> None:
     """
     lengths = {"web_distance": 0.05, "web_thickness": 0.03, "web_width": 0.06, "pin_length": 0.05}
     crank = shaft(**OVERHUNG | lengths | {"a": 0.175, "journal_diameter": 0.0299923914964, "journal_length": None})
-    found = body(0.0, 1000.0)
-    found.shaft, found.crank = crank, 0.5
-    at = place_at(found, "journal_A", "in bearing")
+    pin, nothing = Vector(np.zeros(1), np.array([1000.0])), Vector(0.0, 0.0)
+    at = place_at(FreeBody(crank, 0.5, pin, nothing), "journal_A", "in bearing")
     assert math.hypot(at.normal[0] / 2, at.torsion[0]) == pytest.approx(100e6, rel=1e-11)
 
 
@@ -45,8 +45,7 @@ def test_khurmi_32_5() -> None:
     lengths = {"web_distance": 0.12, "web_thickness": 0.07, "pin_length": 0.11, "a": 0.239, "b": 0.709}
     own = shaft(**OVERHUNG | lengths | {"journal_length": None, "flywheel_position": -0.235})
     load = 2.1e6 * math.pi / 4 * 0.25**2
-    found = body(load, 0.0, (0.0, -30e3))
-    found.shaft = own
+    found = FreeBody(own, 0.3, Vector(np.array([load]), np.zeros(1)), Vector(np.zeros(1), np.array([-30e3])))
     assert load == pytest.approx(103e3, rel=1e-3)
     assert found.A.D[0] == pytest.approx(155.4e3, rel=1e-3)
     assert (found.A.T[0], found.B.T[0]) == pytest.approx((-15e3, -15e3), rel=1e-14)

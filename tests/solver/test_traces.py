@@ -18,9 +18,9 @@ from indicated import columns_file
 from kurbel.errors import MachineFileError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
+from kurbel.machine.measured import Measured
 from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file import load, loads
-from kurbel.machine_file.trace import Measured
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.check import checked
 from kurbel.report.warnings import brake_warnings, trace_warnings

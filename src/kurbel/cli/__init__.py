@@ -1,9 +1,8 @@
 """The command line: a thin command for every row of `COMMANDS`; it imports what it computes with when it is called."""
 
-from kurbel.cli.check import check
-from kurbel.cli.group import Context, exit_statuses, kurbel
+from kurbel.cli.group import exit_statuses, kurbel
 from kurbel.cli.machine import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
-from kurbel.cli.pages import accuracy, plot, report
+from kurbel.cli.pages import accuracy, check, plot, report
 from kurbel.cli.reference import example, friction, keys, schema, table, units
 from kurbel.cli.sweep import sweep
 from kurbel.report.commands import COMMANDS
@@ -15,6 +14,6 @@ for _command in (
     *(friction, check, example, keys, units, schema),
 ):
     assert _command.name
-    _command.context_class, _command.epilog = Context, exit_statuses(_command.name)
+    _command.epilog = exit_statuses(_command.name)
     _command.short_help = COMMANDS[_command.name].summary
     kurbel.add_command(_command)

@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from io import StringIO
 from shutil import get_terminal_size
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import click
 
 from kurbel import __version__
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.near_words import did_you_mean
+from kurbel.render import Look
+from kurbel.render.output import silence
+from kurbel.render.text import width
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
-
-if TYPE_CHECKING:
-    from kurbel.render import Look
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -43,19 +43,8 @@ def exit_statuses(command: str = "") -> str:
     return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in told)
 
 
-class Context(click.Context):
-    """The context of a command, which asks for the width of the terminal only where help or usage is written."""
-
-    def make_formatter(self) -> click.HelpFormatter:
-        # click itself fills no less than 50 columns
-        self.terminal_width = max(30, min(get_terminal_size().columns, 80))
-        return super().make_formatter()
-
-
 class _Kurbel(click.Group):
     """The group, which ends every run with a message instead of a traceback."""
-
-    context_class = Context
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -75,32 +64,43 @@ class _Kurbel(click.Group):
             return super().invoke(ctx)
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
-        _prepare_streams()
+        # no message fails because standard error is closed or an encoding lacks one of its characters
+        sys.stderr = sys.stderr or StringIO()
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors="replace")
         warnings.simplefilter("error", RuntimeWarning)  # what numpy warns of is no result
+        status, message = DONE, ""
         try:
             status = super().main(*args, **(extra | {"standalone_mode": False}))
         except click.ClickException as error:
-            status = _failed(_shown(error), error.exit_code)
+            shown = StringIO()
+            error.show(shown)
+            status, message = error.exit_code, shown.getvalue()
         except click.Abort:
             status = INTERRUPTED
         except SystemExit:  # click's answer to a reader of its help that leaves early
-            status = DONE
+            pass
         except KurbelError as error:
-            status = _failed(message_of(error), error.exit_status)
+            status, message = error.exit_status, message_of(error)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
             beyond = f"these numbers lead beyond what can be computed with ({error})"
-            status = _failed(f"Error: {beyond}; check the sizes of what the file gives", KurbelError.exit_status)
+            status, message = WRONG, f"Error: {beyond}; check the sizes of what the file gives"
         except OSError as error:
-            status = _output_failed(error)
+            silence(sys.stdout)
+            named = f"{error.filename}: " if error.filename else ""
+            status, message = WRONG, f"Error: {named}{error.strerror or error}"
         except Exception as error:
             if os.environ.get(_DEBUG):
                 raise
-            status = _failed(
+            status = INTERNAL
+            message = (
                 f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
-                f"Please report it; {_DEBUG}=1 shows where it happened.",
-                INTERNAL,
+                f"Please report it; {_DEBUG}=1 shows where it happened."
             )
-        sys.exit(status if isinstance(status, int) else 0)
+        if message:
+            to_stderr(message)
+        sys.exit(status if isinstance(status, int) else DONE)
 
 
 @contextmanager
@@ -117,39 +117,15 @@ def _silent_interrupt() -> Iterator[None]:
         raise
 
 
-def _prepare_streams() -> None:
-    """Let no message fail because standard error is closed or an encoding lacks one of its characters."""
-    sys.stderr = sys.stderr or StringIO()
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")
-
-
-def _shown(error: click.ClickException) -> str:
-    text = StringIO()
-    error.show(text)
-    return text.getvalue()
-
-
 def message_of(error: KurbelError) -> str:
     """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    from kurbel.render.text import width
-
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text, width)
 
 
-def _stderr_look() -> "Look":
-    from kurbel.render import Look
-
+def _stderr_look() -> Look:
     return Look(encoding=getattr(sys.stderr, "encoding", None) or "utf-8")
-
-
-def _failed(message: str, status: int) -> int:
-    """Write what went wrong and return the status, which stays the same where standard error is full or closed."""
-    to_stderr(message)
-    return status
 
 
 def to_stderr(message: str) -> None:
@@ -157,17 +133,7 @@ def to_stderr(message: str) -> None:
     try:
         click.echo("\n".join(_stderr_look().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
-        from kurbel.render.output import silence
-
         silence(sys.stderr)
-
-
-def _output_failed(error: OSError) -> int:
-    from kurbel.render.output import silence
-
-    silence(sys.stdout)
-    named = f"{error.filename}: " if error.filename else ""
-    return _failed(f"Error: {named}{error.strerror or error}", WRONG)
 
 
 @click.group(

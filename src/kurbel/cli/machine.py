@@ -1,9 +1,10 @@
 """The commands on one machine that print tables: motion, forces, flywheel, stress, bearings, balance and the rest."""
 
+from typing import TYPE_CHECKING
+
 import click
 
 from kurbel.cli.options import (
-    Asked,
     Spreads,
     machine_places,
     machine_table,
@@ -14,11 +15,14 @@ from kurbel.cli.options import (
     where_option,
 )
 
+if TYPE_CHECKING:
+    from kurbel.cli.request import Request
+
 
 @click.command()
 @machine_table
 @row_options
-def motion(asked: Asked) -> None:
+def motion(request: "Request") -> None:
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
 
     What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
@@ -26,8 +30,8 @@ def motion(asked: Asked) -> None:
     """
     from kurbel.report.crank import motion_report
 
-    case = asked.case()
-    asked.write(motion_report(case, asked.frame("motion", 360.0, len(case.cylinders))))
+    case = request.case()
+    request.print(motion_report, case=case, parts=len(case.cylinders))
 
 
 @click.command()
@@ -38,7 +42,7 @@ def motion(asked: Asked) -> None:
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
+def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -47,32 +51,20 @@ def forces(asked: Asked, cycle: int | None, each_cycle: bool, spreads: Spreads) 
     """
     from kurbel.report.crank import cycles_report, forces_report
 
-    case = asked.case()
-    if cycle is not None:
-        from kurbel.machine import of_cycle
-
-        case = type(case)(of_cycle(case.machine, cycle))
-    if each_cycle:
-        _refuse_columns(asked, cycle)
-        asked.write(cycles_report(case, asked.units))
-        return
-    frame = asked.frame("forces", 360.0 * case.machine.revolutions, len(case.cylinders))
-    asked.write(forces_report(case, frame), case, spreads)
-
-
-def _refuse_columns(asked: Asked, cycle: int | None) -> None:
-    """Raise UsageError for what only a table over the angle has."""
-    ways = {"--columns": asked.columns, "--cycle": cycle, "--angles": asked.angles}
-    for way, said in (ways | {"--where": asked.where, "--over": asked.over}).items():
-        if said is not None:
-            raise click.UsageError(f"--each-cycle has no table over the angle; leave out {way}.")
+    case = request.case(cycle)
+    if not each_cycle:
+        request.print(forces_report, case=case, parts=len(case.cylinders), spreads=spreads)
+    elif given := request.given(**{"--cycle": cycle}):
+        raise click.UsageError(f"--each-cycle has no table over the angle; leave out {given[0]}.")
+    else:
+        request.write(cycles_report(case, request.units))
 
 
 @click.command()
 @machine_table
 @where_option
 @uncertainty_option
-def flywheel(asked: Asked, spreads: Spreads) -> None:
+def flywheel(request: "Request", spreads: Spreads) -> None:
     """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
@@ -81,16 +73,14 @@ def flywheel(asked: Asked, spreads: Spreads) -> None:
     """
     from kurbel.report.turning import flywheel_report
 
-    case = asked.case()
-    frame = asked.frame("flywheel", 360.0 * case.machine.revolutions)
-    asked.write(flywheel_report(case, frame), case, spreads)
+    request.print(flywheel_report, spreads=spreads)
 
 
 @click.command()
 @machine_table
 @uncertainty_option
 @click.option("--places", "places_only", is_flag=True, help="Only the stresses place by place; as csv one line each.")
-def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
+def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
     """Print the forces on the bearings of a crankshaft with one throw, and the stresses in pin, webs and journals.
 
     Stresses are listed one by one in the dead centre under the full piston force, in the position of the largest
@@ -100,14 +90,12 @@ def stress(asked: Asked, places_only: bool, spreads: Spreads) -> None:
     """
     from kurbel.report.loads import stress_report
 
-    case = asked.case()
-    frame = asked.frame("stress", 360.0 * case.machine.revolutions)
-    asked.write(stress_report(case, frame, places_only), case, spreads)
+    request.print(stress_report, places_only, spreads=spreads)
 
 
 @click.command()
 @machine_table
-def bearings(asked: Asked) -> None:
+def bearings(request: "Request") -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
     The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
@@ -117,15 +105,14 @@ def bearings(asked: Asked) -> None:
     """
     from kurbel.report.loads import bearings_report
 
-    case = asked.case()
-    asked.write(bearings_report(case, asked.frame("bearings", 360.0 * case.machine.revolutions)))
+    request.print(bearings_report)
 
 
 @click.command()
 @machine_table
 @click.option("--compare", is_flag=True, help="What the books' cos phi + R/L cos 2phi (R 291) gives, beside it.")
 @click.option("--orders", "orders_only", is_flag=True, help="Only the tables of orders and weights, and key values.")
-def balance(asked: Asked, orders_only: bool) -> None:
+def balance(request: "Request", orders_only: bool) -> None:
     """Print what the moving masses of FILE do to its frame, and which weights take that away.
 
     F_x is the free force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90 degrees
@@ -135,18 +122,16 @@ def balance(asked: Asked, orders_only: bool) -> None:
     """
     from kurbel.report.balance import balance_report
 
-    rows = {"--columns": asked.columns, "--angles": asked.angles}
-    if orders_only and (given := [option for option, said in rows.items() if said is not None]):
+    if orders_only and (given := request.given()):
         raise click.UsageError(f"--orders prints nothing over the crank angle; leave it or {' and '.join(given)} out.")
-    case = asked.case()
-    asked.write(balance_report(case, asked.frame("balance", case.balance.cycle), orders_only))
+    request.print(balance_report, orders_only)
 
 
 @click.command()
 @machine_places
 @orders_option
 @speeds_option
-def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None) -> None:
+def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None) -> None:
     """Print the orders of the torque of every cylinder, and of the turning effort of the whole machine.
 
     Orders count periods per turn of the shaft, so that a four-stroke cycle has halves. They are integrated piece by
@@ -155,7 +140,7 @@ def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[floa
     """
     from kurbel.report.turning import harmonics_report
 
-    asked.write(harmonics_report(asked.case(), asked.frame("harmonics", 360.0), orders, speeds))
+    request.print(harmonics_report, orders, speeds)
 
 
 @click.command()
@@ -167,7 +152,7 @@ def harmonics(asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[floa
 )
 @click.option("--mode", type=click.IntRange(1), default=1, help="The mode of Holzer's table; 1 if not given.")
 def torsion(
-    asked: Asked, orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None, modes: int, mode: int
+    request: "Request", orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None, modes: int, mode: int
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
@@ -178,6 +163,4 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
-    case = asked.case()
-    frame = asked.frame("torsion", 360.0 * case.machine.revolutions)
-    asked.write(torsion_report(case, frame, Wanted(orders, modes, mode, speeds)))
+    request.print(torsion_report, Wanted(orders, modes, mode, speeds))

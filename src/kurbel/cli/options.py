@@ -2,55 +2,40 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial, wraps
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import wraps
+from typing import Any, NamedTuple, TypeVar
 
 import click
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.unit_systems import told_in
-from kurbel.declared.units import kinds, parse_quantity, written_unit
+from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
+from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.report.tables import Report
-
-if TYPE_CHECKING:
-    from kurbel.machine import Machine
-    from kurbel.report.frame import Frame
-    from kurbel.solver.case import Case
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 Item = TypeVar("Item")
-Value = TypeVar("Value")
 _MOST_STEPS = 10_000
-
-
-def _told(read: Callable[[str], Value], text: str) -> Value:
-    """Return what is read; what the units refuse is told as click tells it."""
-    try:
-        return read(text)
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
 
 
 def number(text: str | float) -> float:
     """Return a finite number with a decimal point, also 10/3 or 75 %."""
-    if not isinstance(text, str):  # what stands for it where it is not given
-        return text
-    return _told(parse_ratio, text)
+    try:
+        return parse_ratio(text) if isinstance(text, str) else text  # what holds where it is not given
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
 
 
 def numbers(text: str) -> tuple[float, ...]:
     """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
     found = tuple(map(number, text.replace(":", ",").split(",")))
-    if ":" not in text:
-        return found
     # 3 · 0.1 is written 0.3
-    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5"))
+    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5")) if ":" in text else found
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -63,19 +48,15 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    from kurbel.quantities import every_quantity
-    from kurbel.quantity import ambiguity, called, joined
-
     named = words(text)
-    known = [column for column in every_quantity().all_columns if column.commands]
-
-    def only(name: str) -> str:
+    known = [column for column in _quantities().all_columns if column.commands]
+    ids = []
+    for name in joined(named, known):
         found = called(name, known)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
-        return found[0] if found else name  # the report knows what this machine has
-
-    return tuple(map(only, joined(named, known)))
+        ids.append(found[0] if found else name)  # the report knows what this machine has
+    return tuple(ids)
 
 
 def speeds(text: str) -> tuple[float, ...]:
@@ -85,10 +66,10 @@ def speeds(text: str) -> tuple[float, ...]:
     """
     each = text.replace(":", ",").split(",")
     unit = written_unit(each[-1])
-    found = tuple(
-        _told(lambda one: parse_quantity(one, "speed"), one if written_unit(one) else f"{one} {unit}".strip())
-        for one in each
-    )
+    try:
+        found = tuple(parse_quantity(one if written_unit(one) else f"{one} {unit}".strip(), "speed") for one in each)
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
     if ":" in text:
         found = _stepped(found, text, "300:1500:10 rpm")
     if not all(speed > 0 for speed in found):
@@ -108,7 +89,7 @@ def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, .
 
 def spread(text: str) -> tuple[str, str]:
     """Return a dotted key with its standard uncertainty as a text."""
-    from kurbel.declared.forms.values import spread_text
+    from kurbel.declared.forms.figures import spread_text
 
     key, _, size = text.partition("=")
     if not (key.strip() and spread_text(size)):
@@ -130,75 +111,62 @@ def shipped() -> dict[str, str]:
     return {name: os.path.join(folder, f"{name}.yaml") for name in names}
 
 
-def _beginning(words: Iterable[str], begun: str, before: str = "") -> list[str]:
-    return [before + word for word in words if word.startswith(begun)]
-
-
-def complete_key(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the keys of the machine file that begin like this."""
-    from kurbel.report.keys import every_place
-
-    return _beginning(every_place(), incomplete)
-
-
-def complete_kind(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the kinds of quantities that begin like this."""
-    return _beginning(kinds(), incomplete)
-
-
-def complete_override(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the keys for `KEY=VALUE`, each with its equals sign; of a value nothing."""
-    return [] if "=" in incomplete else [f"{key}=" for key in complete_key(ctx, param, incomplete)]
-
-
-def complete_columns(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the columns of the command that may follow those named already."""
+def _quantities() -> Lists:
     from kurbel.quantities import every_quantity
 
-    named, comma, begun = incomplete.rpartition(",")
-    known = [one for one in every_quantity().columns(ctx.info_name or "") if one not in named.split(",")]
-    return _beginning(known, begun, named + comma)
+    return every_quantity()
 
 
-def complete_example(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the shipped machines that begin like this."""
-    return _beginning(shipped(), incomplete)
+def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable[..., list[str]]:
+    """Return what completes an option by the words that begin like its text; they are looked up when TAB is pressed."""
+
+    def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+        try:
+            return [word for word in words(ctx, incomplete) if word.startswith(incomplete)]
+        except KurbelError:  # the machine file on the line cannot be read
+            return []
+
+    return complete
 
 
-def complete_cylinder(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the cylinders of the machine file on the line; none where it cannot be read."""
-    machine = _machine_of(ctx)
-    return _beginning((one.name for one in machine.cylinders), incomplete) if machine else []
+def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
+    from kurbel.report.keys import every_place
+
+    return every_place()
 
 
-def complete_case(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the load cases of the machine file on the line; none where it cannot be read."""
-    machine = _machine_of(ctx)
-    return _beginning((one.name for one in machine.cases), incomplete) if machine else []
+def _columns(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the columns of the command that may follow those named already."""
+    before, comma, _ = begun.rpartition(",")
+    known = _quantities().columns(ctx.info_name or "")
+    return [before + comma + one for one in known if one not in before.split(",")]
 
 
-def _machine_of(ctx: click.Context) -> "Machine | None":
+def _names(ctx: click.Context, of: str) -> list[str]:
+    """Return the names of cylinders, or else load cases, of the machine file on the line."""
     from kurbel.machine_file import load
 
-    file = next(iter(ctx.args), "")  # a line that ends in an option is not read to its end
-    try:
-        return load(file) if file and file != "-" else None
-    except KurbelError:
-        return None
+    file = next(iter(ctx.args), "-")  # a line that ends in an option is not read to its end
+    machine = load(file) if file != "-" else None
+    return [one.name for one in (machine.cylinders if of == "cylinders" else machine.cases)] if machine else []
 
 
-def complete_picture(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Return the pictures that begin like this."""
+def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     from kurbel.report.pictures import PICTURES
 
-    return _beginning((*(one.id for one in PICTURES), "all"), incomplete)
+    return (*(one.id for one in PICTURES), "all")
+
+
+complete_key = completing(_keys)
+complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
+complete_cylinder = completing(lambda ctx, _: _names(ctx, "cylinders"))
+complete_picture = completing(_pictures)
 
 
 # --- the options
 
 
-@dataclass(frozen=True, eq=False)
-class Output:
+class Output(NamedTuple):
     """Where a report goes and how it looks."""
 
     look: Look
@@ -227,7 +195,7 @@ case_option = click.option(
     "case_name",
     default="",
     metavar="NAME",
-    shell_complete=complete_case,
+    shell_complete=completing(lambda ctx, _: _names(ctx, "cases")),
     help="This load case of FILE; --set sets values over those of the case.",
 )
 set_option = click.option(
@@ -265,7 +233,7 @@ columns_option = click.option(
     type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
-    shell_complete=complete_columns,
+    shell_complete=completing(_columns),
 )
 _part_options = stacked(
     click.option(
@@ -388,99 +356,8 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return _look_options(with_output)
 
 
-def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
-    """Return the angles given, or 0, step, 2 step, … `end` in degrees; parts: cylinders or L/R that have them each."""
-    from kurbel.report.angles import check_rows, stepped
-
-    if angles is None:
-        return stepped(step, end, parts)
-    check_rows(len(angles), parts)
-    return angles
-
-
-def loaded(file: str, case_name: str, overrides: Sequence[str], *outputs: str | None) -> "Machine":
-    """Read the machine, with the values of a load case of its file, '' for none, and these values over them.
-
-    Raises UsageError where an output would overwrite its file, or a trace that it names.
-    """
-    from kurbel.machine_file import load
-    from kurbel.render.output import refuse_overwriting
-
-    machine = load(file, overrides, case_name)
-    for output in outputs:
-        refuse_overwriting(output, (file, *machine.trace_files))
-    return machine
-
-
 Spreads = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""
-
-
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """What is asked of a command that prints a table for a machine, by the names of the options.
-
-    units: of the figures; where, over: what has a value, or the stroke, over which the rows stand instead of the angle.
-    """
-
-    file: str
-    case_name: str
-    overrides: tuple[str, ...]
-    units: str
-    cylinder: str | None
-    key_values_only: bool
-    output: Output
-    step: float = 10.0
-    angles: tuple[float, ...] | None = None
-    columns: tuple[str, ...] | None = None
-    where: str | None = None
-    over: str | None = None
-    compare: bool = False
-
-    def case(self) -> "Case":
-        """Read the machine and return it with its results, none of which is computed yet."""
-        from kurbel.solver.case import Case
-
-        return Case(loaded(self.file, self.case_name, self.overrides, self.output.file_name))
-
-    def frame(self, command: str, end: float, parts: int = 1) -> "Frame":
-        """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
-        from kurbel.report.frame import Frame
-
-        if self.key_values_only and self.columns:
-            raise click.UsageError(
-                "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
-            )
-        angles = self._rows(command, end) or crank_angles(self.step, self.angles, end, parts)
-        prose = self.output.look.format != "csv" or self.key_values_only
-        return Frame(command, angles, self.columns, self.units, "z" if self.over else "", self.compare, prose)
-
-    def _rows(self, command: str, end: float) -> Any:
-        """Return what finds the crank angles of a subject, None for a table over the angle itself."""
-        ways = {"--where": self.where, "--over": self.over, "--angles": self.angles or None}
-        given = [way for way, said in ways.items() if said is not None]
-        if len(given) > 1:
-            raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
-        if not self.over and self.where is None:
-            return None
-        from kurbel.report.rows import over_stroke, rows_where
-
-        if self.where is None:
-            return over_stroke(self.step, end)
-        # where a force has a value there is a motion to tell, too
-        return rows_where(self.where, "forces" if command == "motion" else command, end)
-
-    def write(self, report: Report, case: "Case | None" = None, spreads: Spreads = ()) -> None:
-        """Write what is asked of the report; with these uncertainties of inputs, and those that its file gives."""
-        if self.cylinder is not None:
-            report = report.of_cylinder(self.cylinder)
-        report = report.key_values_alone() if self.key_values_only else report
-        if case and (spreads or case.machine.uncertainty):
-            from kurbel.designs.uncertainty import with_uncertainty
-
-            bar = partial(with_bar, label="drawn machines")
-            report = with_uncertainty(report, case, spreads, self.units, bar)
-        self.output.write(report)
 
 
 def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
@@ -492,20 +369,22 @@ def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
         yield from bar
 
 
-def _with_asked(command: Callable[..., None]) -> Callable[..., None]:
+def _with_request(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
-    def with_asked(units: str | None, output: Output, **options: Any) -> None:
-        system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-        own = {name: options.pop(name) for name in Asked.__annotations__ if name in options}
+    def with_request(units: str | None, output: Output, **options: Any) -> None:
+        from kurbel.cli.request import Request
+
+        own = {name: options.pop(name) for name in Request.__annotations__ if name in options}
         with told_in(units or "metric"):
-            command(asked=Asked(units=system, output=output, **own), **options)
+            system = units or ("si" if output.look.format in ("csv", "json") else "metric")
+            command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
 
-    return with_asked
+    return with_request
 
 
-machine_places = stacked(machine_file, _part_options, units_option, output_options, _with_asked)
-"""Gives a command FILE and the options of one that tells nothing over the crank angle; see `machine_table`."""
+machine_places = stacked(machine_file, _part_options, units_option, output_options, _with_request)
+"""Gives a command FILE and the options of one that has nothing over the crank angle; see `machine_table`."""
 machine_table = stacked(
-    machine_file, angle_options, columns_option, _part_options, units_option, output_options, _with_asked
+    machine_file, angle_options, columns_option, _part_options, units_option, output_options, _with_request
 )
-"""Gives a command FILE and all options of a table, which reach it as one `asked: Asked`."""
+"""Gives a command FILE and all options of a table, which reach it as one `Request`."""

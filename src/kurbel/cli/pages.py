@@ -1,10 +1,9 @@
-"""The commands that draw, write a whole page, or compare methods: plot, report, accuracy."""
+"""The commands that draw, write a whole page, check, or compare methods: plot, report, check, accuracy."""
 
 import os
 import sys
 import time
 from threading import Timer
-from typing import TYPE_CHECKING
 
 import click
 
@@ -12,19 +11,19 @@ from kurbel.cli.options import (
     Output,
     complete_cylinder,
     complete_picture,
-    loaded,
+    format_of,
     number,
     number_options,
     numbers,
+    output_option,
     output_options,
     set_options,
     units_option,
+    width_option,
 )
 from kurbel.render import Look
-
-if TYPE_CHECKING:
-    from kurbel.accuracy.trials import Difference
-    from kurbel.machine import Machine
+from kurbel.render.output import refuse_overwriting, write_out
+from kurbel.render.page import write_entries
 
 _PATIENCE = 1.0
 """Seconds after which a terminal is told what is being done."""
@@ -52,23 +51,21 @@ def report(
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
+    from kurbel.cli.request import case_of
     from kurbel.machine_file.given import given
-    from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.report_page import report_page
     from kurbel.report.whole import side_by_side, whole_report
-    from kurbel.solver.case import Case
 
     if len(files) > 2 or files.count("-") > 1:
         raise click.UsageError("a report is of one machine, or of two side by side.")
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
-    for file in files:
-        refuse_overwriting(file_name, (file,))
+    refuse_overwriting(file_name, files)
     with Progress("kurbel report") as progress:
         progress("reading and checking")
-        cases = [Case(loaded(file, case_name, overrides, file_name)) for file in files]
-        keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+        cases = [case_of(file, case_name, overrides, file_name) for file in files]
         system = units or "metric"
+        keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
         if len(cases) == 1:
             document = whole_report(cases[0], keys[0], system, step, progress)
         else:
@@ -89,21 +86,17 @@ class Progress:
     """Called with what is done next; a terminal is told so from the second on, also in its midst; a pipe is not."""
 
     def __init__(self, command: str) -> None:
-        self._command = command
-        self._doing = ""
-        self._late = False
-        self._timer: Timer | None = None
+        self._command, self._doing, self._late = command, "", False
+        self._timer = Timer(_PATIENCE, self._tell)
+        self._timer.daemon = True
 
     def __enter__(self) -> "Progress":
         if sys.stderr.isatty():
-            self._timer = Timer(_PATIENCE, self._tell)
-            self._timer.daemon = True
             self._timer.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._timer:
-            self._timer.cancel()
+        self._timer.cancel()
 
     def __call__(self, doing: str) -> None:
         self._doing = doing
@@ -150,11 +143,10 @@ def plot(
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need typst. FILE may be - for standard input.
     """
+    from kurbel.cli.request import case_of
     from kurbel.render.drawing import check_file, draw_file, draw_stdout
-    from kurbel.render.page import write_entries
     from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
-    from kurbel.solver.case import Case
 
     if listed and file_name is not None:
         raise click.UsageError("--list draws nothing; leave --output out.")
@@ -165,7 +157,7 @@ def plot(
     if file_name is not None:
         check_file(file_name)
     options = PictureOptions(units or "metric", cylinder, angles)
-    case = None if file is None else Case(loaded(file, case_name, overrides, file_name))
+    case = None if file is None else case_of(file, case_name, overrides, file_name)
     if case is None or listed:
         kinds = PICTURES if case is None else pictures_of(case, options)
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
@@ -176,6 +168,40 @@ def plot(
         draw_stdout(drawn, look)
     else:
         draw_file(list(drawn), look, file_name)
+
+
+@click.command()
+@click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
+@set_options
+@click.option(
+    "--format",
+    "-f",
+    "format",
+    type=click.Choice(["table", "json"]),
+    help="json: every finding with its place. By the suffix of --output, or table, if not given.",
+)
+@output_option
+@width_option
+def check(
+    files: tuple[str, ...],
+    case_name: str,
+    overrides: tuple[str, ...],
+    format: str | None,
+    file_name: str | None,
+    width: int | None,
+) -> int:
+    """Read the machine in each FILE and say what will be computed, what is left out and why.
+
+    Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
+    compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
+    message and severity. Of several files all are checked; the exit status is the gravest one.
+    """
+    from kurbel.cli.checking import check_files
+
+    written = format_of(format, file_name)
+    if written not in ("table", "json"):
+        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
+    return check_files(files, case_name, overrides, written, file_name, width)
 
 
 @click.command()
@@ -203,39 +229,26 @@ def accuracy(
     """
     if (case_name or overrides) and file is None:
         raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
+    from kurbel.machine_file import loads
+    from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
+
     if extremes:
-        return _extremes(file, picture, output)
+        if file is not None or picture is not None:
+            raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
+        report, passed = extremes_report(loads)
+        output.write(report)
+        return int(not passed)
+
+    from kurbel.cli.request import case_of
+    from kurbel.designs.uncertainty import data_uncertainty
     from kurbel.render.drawing import check_file, draw_file
 
     if picture is not None:
         check_file(picture, "--plot")
-    from kurbel.machine_file import loads
-    from kurbel.report.accuracy import accuracy_report
-
-    machine = None if file is None else loaded(file, case_name, overrides, output.file_name, picture)
-    report = accuracy_report(machine, quick, loads, _uncertain(machine))
+    machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
+    uncertain = data_uncertainty(machine) if machine and machine.uncertainty else ()
+    report = accuracy_report(machine, quick, loads, uncertain)
     output.write(report)
     if picture is not None:
-        from kurbel.report.accuracy import accuracy_picture
-
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0
-
-
-def _uncertain(machine: "Machine | None") -> "tuple[Difference, ...]":
-    if not (machine and machine.uncertainty):
-        return ()
-    from kurbel.designs.uncertainty import data_uncertainty
-
-    return data_uncertainty(machine)
-
-
-def _extremes(file: str | None, picture: str | None, output: Output) -> int:
-    if file is not None or picture is not None:
-        raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
-    from kurbel.machine_file import loads
-    from kurbel.report.accuracy import extremes_report
-
-    report, passed = extremes_report(loads)
-    output.write(report)
-    return int(not passed)

@@ -8,10 +8,8 @@ import click
 from kurbel.cli.options import (
     Output,
     angle_options,
-    complete_example,
     complete_key,
-    complete_kind,
-    crank_angles,
+    completing,
     number,
     output_options,
     shipped,
@@ -21,6 +19,9 @@ from kurbel.cli.options import (
 from kurbel.declared.units import kinds, listed_units
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.render.output import write_out
+from kurbel.render.page import write_entries
+from kurbel.report.angles import crank_angles
 
 
 def _ratio(text: str) -> float:
@@ -110,7 +111,7 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
 
 
 @click.command()
-@click.argument("name", required=False, shell_complete=complete_example)
+@click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
 @click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
 def example(name: str | None, file_name: str | None) -> None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
@@ -119,9 +120,6 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    from kurbel.render.output import write_out
-    from kurbel.render.page import write_entries
-
     files = shipped()
     if name is None:
         first_lines = {each: _read(path).partition("\n")[0].lstrip("# ") for each, path in files.items()}
@@ -148,7 +146,6 @@ def keys(key: str | None) -> None:
       kurbel keys
       kurbel keys masses.connecting_rod.share
     """
-    from kurbel.render.page import write_entries
     from kurbel.report.keys import every_place, places_at
 
     if key is None:
@@ -158,14 +155,12 @@ def keys(key: str | None) -> None:
 
 
 @click.command()
-@click.argument("kind", required=False, shell_complete=complete_kind)
+@click.argument("kind", required=False, shell_complete=completing(lambda ctx, _: kinds()))
 def units(kind: str | None) -> None:
     """List the units that a machine file may use, a line for each kind of quantity; or only those of KIND.
 
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
-    from kurbel.render.page import write_entries
-
     named = {kind.replace("_", " "): ", ".join(listed_units(kind)) for kind in kinds()}
     if kind is None:
         write_entries(list(named.items()))
@@ -189,7 +184,6 @@ def schema(answers: bool, file_name: str | None) -> None:
     """
     from kurbel.machine_file.schema import json_schema
     from kurbel.render.data import answer_schema
-    from kurbel.render.output import write_out
 
     # escapes instead of Greek: valid in whatever encoding a shell redirects to
     text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"

@@ -1,7 +1,7 @@
 """`kurbel sweep`: key values over a grid, a list or a sample of machines."""
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import closing
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,9 +21,7 @@ from kurbel.cli.options import (
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.designs.chosen import Condition
-    from kurbel.designs.sweep import Row, Spec, Sweep
-    from kurbel.render.sweep_rows import SweepOutput
+    from kurbel.designs.sweep import Row, Spec
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
 _LINES = ("csv", "json")
@@ -177,31 +175,40 @@ class _Asked(NamedTuple):
 
     def run(self) -> None:
         """Compute and write the rows."""
-        from kurbel.designs.chosen import read_aim, read_condition, summary, unbettered
+        from kurbel.designs.chosen import read_aim, read_condition, summary, summary_heads, unbettered
         from kurbel.designs.plan import shard
         from kurbel.designs.sweep import Sweep
         from kurbel.designs.workers import likely_jobs, rows_of
+        from kurbel.render.sweep_rows import Kept, Titles, kept_rows, write_rows
 
         found = Sweep(self._spec())
         rows = shard(self.shard, found.rows) if self.shard else range(found.rows)
         conditions = [read_condition(one, found.heads, found.texts) for one in self.conditions]
         aims = [read_aim(one, found.heads, "--pareto") for one in self.pareto or ()]
         order = read_aim(self.sort, found.heads, "--sort") if self.sort else None
-        out, rows = self._out(found, rows, conditions)
+        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts)
+        if self.summary:
+            titles = Titles(summary_heads(found.heads), row="column")
+        elif self._written == "parquet":
+            titles = titles._replace(types=found.types())
+        headed, kept = rows.start == 0, Kept()
+        if self.resume:
+            kept, rows = kept_rows(self.file_name or "", found, titles, self._look, rows, conditions)
+            headed = headed and not any(kept)
         jobs = self.jobs or (1 if self.shard else likely_jobs(len(rows)))
         with closing(rows_of(found, rows, jobs, self.dask or "", to_stderr)) as computed:
-            told: Iterable[Row] = computed
+            wanted: Iterable[Row] = computed
             if self.file_name or not sys.stdout.isatty():  # else the rows themselves go to the terminal
-                told = with_bar(told, "designs", length=len(rows), update_min_steps=100)
-            kept: Iterable[Any] = (row for row in told if all(one.holds(row) for one in conditions))
-            kept = unbettered(kept, aims) if aims else kept
-            kept = sorted(kept, key=order.of)[: self.top] if order else kept
-            try:
-                out.write(summary(kept, found.heads) if self.summary else kept)
-            except BaseException:
-                if left := out.left():
-                    to_stderr(left + "; run again with --resume to continue" * self._resumable)
-                raise
+                wanted = with_bar(wanted, "designs", length=len(rows), update_min_steps=100)
+            chosen: Iterable[Any] = (row for row in wanted if all(one.holds(row) for one in conditions))
+            chosen = unbettered(chosen, aims) if aims else chosen
+            chosen = sorted(chosen, key=order.of)[: self.top] if order else chosen
+            chosen = summary(chosen, found.heads) if self.summary else chosen
+
+            def early(left: str) -> None:
+                to_stderr(left + "; run again with --resume to continue" * self._resumable)
+
+            write_rows(chosen, titles, self._look, self.file_name, early, headed, kept)
 
     def _spec(self) -> "Spec":
         from kurbel.designs.plan import MOST_ROWS
@@ -215,19 +222,3 @@ class _Asked(NamedTuple):
         origin = source.read(self.file)._replace(case=self.case_name).set_over(self.overrides)
         most = None if self.yes else MOST_ROWS
         return Spec(origin, *plan, self.columns or (), self.with_angles, system, most=most, cases=self.cases)
-
-    def _out(self, found: "Sweep", rows: range, conditions: "Sequence[Condition]") -> "tuple[SweepOutput, range]":
-        """Return where the rows go, and those that are not there yet."""
-        from kurbel.designs.chosen import summary_heads
-        from kurbel.render.sweep_rows import KeptRows, SweepOutput, Titles
-
-        types = found.types() if self._written == "parquet" else ()
-        titles = Titles(tuple((one.id, one.unit) for one in found.heads), found.texts, types=types)
-        if self.summary:
-            titles = Titles(summary_heads(found.heads), row="column")
-        if not self.resume:
-            return SweepOutput(titles, self._look, self.file_name, headed=rows.start == 0), rows
-        assert self.file_name is not None
-        kept = KeptRows(self.file_name, titles, self._look, rows)
-        headed = rows.start == 0 and not any(kept.kept)
-        return SweepOutput(titles, self._look, self.file_name, headed, kept.kept), kept.rest(found, conditions)

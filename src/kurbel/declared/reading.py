@@ -6,7 +6,8 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from enum import Enum
+from typing import Any, Final
 
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.quantity import Quantity
@@ -16,7 +17,6 @@ FAULT_LIMIT = 100
 """A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
 LONGEST_VALUE = 200
 """Characters of a value; what is longer is no number, and would flood the message."""
-_GLUED = r"\b[A-Za-z_]\w*:\S"
 
 
 class Plain(str):
@@ -25,14 +25,12 @@ class Plain(str):
     __slots__ = ()
 
 
-class _Refused:
-    """What stands in place of a value that has been reported already; readers pass over it in silence."""
-
-    def __repr__(self) -> str:
-        return "REFUSED"
+class _Reported(Enum):
+    REFUSED = "REFUSED"
 
 
-REFUSED = _Refused()
+REFUSED: Final = _Reported.REFUSED
+"""What stands in place of a value that has been reported already; readers pass over it in silence."""
 
 
 def has_refused(values: Iterable[Any]) -> bool:
@@ -85,8 +83,15 @@ class Reading:
         Near are the mappings above it and those right below, or any below where none is near: a key of that name
         elsewhere means something else.
         """
-        named = list(dict.fromkeys(words for words, name in self._places() if name == key))
-        found = [words for words in named if _near(words, path)] or [words for words in named if _below(words, path)]
+        here = [step for step in path if isinstance(step, str)]
+        if here[:1] == ["cylinders"]:  # the places are those within a cylinder
+            here = here[2 if here[1:2] == ["each"] else 1 :]
+        near, below = [], []
+        for words in dict.fromkeys(words for words, name in self._places() if name == key):
+            there = words.split("'")[1].split(".") if words.startswith("under '") else []
+            near += [words] if here[: len(there)] == there or there[:-1] == here else []
+            below += [words] if there[: len(here)] == here else []
+        found = near or below
         return "it belongs " + " or ".join(found[:3]) if found else ""
 
     def note(self, fault: Fault) -> Any:
@@ -94,7 +99,7 @@ class Reading:
 
         A fault that was taken over is told once, where it stands.
         """
-        if self.alike and self._told(fault):
+        if self.alike and self._is_known(fault):
             return REFUSED
         full = len(self.faults) + 1 >= FAULT_LIMIT
         if full:
@@ -104,13 +109,14 @@ class Reading:
             raise StopReading
         return REFUSED
 
-    def _told(self, fault: Fault) -> bool:
+    def _is_known(self, fault: Fault) -> bool:
+        """Return whether a fault is one of values that were taken over, and noted where they stand."""
         others = (
             fault._replace(path=other + fault.path[len(path) :])
             for path, other in self.alike.items()
             if fault.path[: len(path)] == path
         )
-        return any(other in self.faults or self._told(other) for other in others)
+        return any(other in self.faults or self._is_known(other) for other in others)
 
     def fault(self, path: Path, message: str, at_key: bool = False) -> Any:
         """Keep a fault at a path of the tree and return REFUSED."""
@@ -121,28 +127,6 @@ class Reading:
         for fault in error.faults:
             self.note(fault.below(path))
         return REFUSED
-
-
-def _near(words: str, path: Path) -> bool:
-    """Return whether words for a mapping, such as "under 'friction.rings'", are for one near the mapping at a path."""
-    there, here = _steps(words), _within_cylinder(path)
-    return here[: len(there)] == there or there[:-1] == here
-
-
-def _below(words: str, path: Path) -> bool:
-    """Return whether words for a mapping are for one somewhere below the mapping at a path."""
-    here = _within_cylinder(path)
-    return _steps(words)[: len(here)] == here
-
-
-def _steps(words: str) -> list[str]:
-    return words.split("'")[1].split(".") if words.startswith("under '") else []
-
-
-def _within_cylinder(path: Path) -> list[str]:
-    """Return the keys on the way to a mapping, from its cylinder on where it is in one."""
-    here = [step for step in path if isinstance(step, str)]
-    return here[2:] if here[:2] == ["cylinders", "each"] else here[here[:1] == ["cylinders"] :]
 
 
 def shown(text: str, most: int = 60) -> str:
@@ -167,5 +151,5 @@ def is_nothing(value: Any) -> bool:
 
 def glued_hint(value: Any) -> str:
     """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
-    found = re.search(_GLUED, value) if isinstance(value, str) else None
+    found = re.search(r"\b[A-Za-z_]\w*:\S", value) if isinstance(value, str) else None
     return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""

@@ -12,12 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.forms import Choice, Count, Listing, Number, Physical, Text, Truth
-from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.keys import Described as Record
-from kurbel.declared.keys import Form, Key, Rule
+from kurbel.declared.forms.structures import form_of
+from kurbel.declared.keys import Key, Record, Rule
 
-__all__ = ["Record", "Rule", "alternative", "entry", "field", "first_of"]
+__all__ = ["Record", "Rule", "alternative", "field", "first_of"]
 
 
 def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
@@ -28,7 +26,7 @@ def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
         before = before | rule.broken
 
 
-def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., key: str = "", **more: Any) -> Any:
+def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more: Any) -> Any:
     """Declare an attribute of a record that is an entry of the machine file.
 
     form: see `form_of`; text: what it means, in one sentence; symbol: of the textbooks; default: its value where the
@@ -43,28 +41,13 @@ def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., key: st
     Traceback (most recent call last):
     kurbel.errors.RuleError: height: -0.1 is too small; it must be more than 0
     """
-    declared = entry(form, text, symbol, attribute=key, **more)
-    if default is not ...:
-        return dataclasses.field(default=default, metadata={"key": declared})
-    if declared.required:
+    declared = alternative(form, text, symbol, **more)
+    if default is ... and declared.required:
         return dataclasses.field(metadata={"key": declared})
-    return dataclasses.field(default=None, metadata={"key": declared})
+    return dataclasses.field(default=None if default is ... else default, metadata={"key": declared})
 
 
 def alternative(
-    form: Any,
-    text: str,
-    symbol: str = "",
-    *,
-    gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
-    key: str = "",
-    **more: Any,
-) -> Any:
-    """Declare an entry that is no attribute: `gives` returns those that follow from it, from all values by key."""
-    return entry(form, text, symbol, gives=gives, attribute=key, **more)
-
-
-def entry(
     form: Any,
     text: str,
     symbol: str = "",
@@ -75,33 +58,13 @@ def entry(
     needs: str = "",
     example: str = "",
     also: tuple[str, ...] = (),
-    attribute: str = "",
+    key: str = "",
     gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
     **bounds: Any,
-) -> Key:
-    """Return the declaration of an entry; see `Key` and `form_of`.
+) -> Any:
+    """Declare an entry that is no attribute: `gives` returns those that follow from it, from all values by key.
 
-    attribute: the key that it has in the file, '' for the name of the attribute, until the class of the record is made.
+    key: its name in the file, '' for that of the attribute, until the class of the record is made; more: see `Key`;
+    bounds: see `form_of`.
     """
-    formed = form_of(form, bounds)
-    return Key(formed, text, symbol, required, absent, instead, needs, example, also, attribute, gives)
-
-
-def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
-    """Return what may stand under a key: a kind of quantity with its bounds, a type, words, a record, a list of one.
-
-    bounds: `above`, `least`, `below`, `most` in SI, and `words` that stand for numbers.
-    """
-    if isinstance(form, str):
-        return Number(**bounds) if form == "ratio" else Physical(form, **bounds)
-    if isinstance(form, tuple):
-        return Choice(form)
-    if isinstance(form, list):
-        return Listing(form_of(form[0], bounds))
-    if form is int:
-        return Count(**bounds)
-    if form is bool:
-        return Truth()
-    if form is str:
-        return Text()
-    return RecordForm(form) if isinstance(form, type) else form
+    return Key(form_of(form, bounds), text, symbol, required, absent, instead, needs, example, also, key, gives)

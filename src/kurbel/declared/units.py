@@ -6,12 +6,12 @@ and no quotient of values from a file leaves their range. They hold for the file
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple
 
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
-from kurbel.errors import Fault, Path, UnitError
+from kurbel.errors import UnitError
 
 Factor = tuple[float, float]
 """A unit as multiplier and divisor of its base, so that 450 mm becomes 450 / 1000, correctly rounded."""
@@ -74,27 +74,6 @@ MOST_ITEMS = 100
 """Items of one list, such as cylinders."""
 
 
-def out_of_size(value: Any, kind: str) -> str:
-    """Return in what way a value in the base of its kind, or any of many, is beyond what a machine file may hold.
-
-    >>> out_of_size(1e-200, "length")
-    'is too small; a length in a machine file is 0 or at least 1e-09 m'
-    """
-    import numpy as np
-
-    smallest, largest, unit, *_ = KINDS[kind]
-    if not np.all(abs(value) <= largest):
-        return f"is too large; {_held(kind)} at most {largest:g} {unit}".rstrip()
-    if np.any((value != 0) & (abs(value) < smallest)):
-        return f"is too small; {_held(kind)} 0 or at least {smallest:g} {unit}".rstrip()
-    return ""
-
-
-def _held(kind: str) -> str:
-    name = "bare number" if kind == "ratio" else kind.replace("_", " ")
-    return f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
-
-
 def range_of(kind: str) -> str:
     """Return the sizes that a value of this kind may have.
 
@@ -105,16 +84,6 @@ def range_of(kind: str) -> str:
     return f"{f'0 or {smallest:g}' if smallest else '0'} to {largest:g} {unit}".rstrip()
 
 
-def size_faults(points: list[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
-    """Return a fault for the first point whose value in this unit of its kind is too large; [] where there is none."""
-    up, down = unit
-    largest = KINDS[kind].largest
-    for index, (_, value) in enumerate(points):
-        if not abs(value * up / down) <= largest:
-            return [Fault((*path, index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
-    return []
-
-
 GRAVITY = 9.80665
 """m/s²; makes kgf and at exact."""
 _INCH = 0.0254
@@ -122,151 +91,90 @@ _POUND = 0.45359237
 _LBF = _POUND * GRAVITY
 _MMHG = 133.322387415
 
-_LENGTH: dict[str, Factor] = {
-    "m": (1, 1),
-    "mm": (1, 1e3),
-    "cm": (1, 1e2),
-    "dm": (1, 10),
-    "um": (1, 1e6),
-    "km": (1e3, 1),
-    "in": (254, 1e4),
-    "ft": (3048, 1e4),
+_FACTORS: dict[str, Factor] = {
+    # length in m, volume in m³
+    **{"m": (1, 1), "mm": (1, 1e3), "cm": (1, 1e2), "dm": (1, 10), "um": (1, 1e6), "km": (1e3, 1)},
+    **{"in": (254, 1e4), "ft": (3048, 1e4), "l": (1, 1e3)},
+    # mass in kg
+    **{"kg": (1, 1), "g": (1, 1e3), "mg": (1, 1e6), "t": (1e3, 1), "tonne": (1e3, 1), "lb": (_POUND, 1)},
+    **{"long_ton": (2240 * _POUND, 1), "short_ton": (2e3 * _POUND, 1)},
+    # time in s, frequency in Hz
+    **{"s": (1, 1), "min": (60, 1), "h": (3600, 1), "Hz": (1, 1), "kHz": (1e3, 1)},
+    # angle in rad, revolutions
+    **{"rad": (1, 1), "deg": (1, 1), "°": (1, 1)},
+    **{"rpm": (1, 60), "rps": (1, 1), "U": (1, 1), "rev": (1, 1), "r": (1, 1), "1": (1, 1)},
+    # force in N
+    **{"N": (1, 1), "kN": (1e3, 1), "MN": (1e6, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
+    **{"lbf": (_LBF, 1), "long_tonf": (2240 * _LBF, 1), "short_tonf": (2e3 * _LBF, 1)},
+    # pressure in Pa
+    **{"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1), "hPa": (1e2, 1), "mbar": (1e2, 1)},
+    **{"bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH), "Torr": (101325, 760)},
+    **{"mmHg": (_MMHG, 1), "inHg": (25.4 * _MMHG, 1), "mWS": (GRAVITY * 1e3, 1)},
+    # torque in N m, energy in J, power in W
+    **{"Nm": (1, 1), "kNm": (1e3, 1), "J": (1, 1), "kJ": (1e3, 1), "MJ": (1e6, 1)},
+    **{"W": (1, 1), "kW": (1e3, 1), "MW": (1e6, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
 }
-_AREA = {f"{name}2": (up * up, down * down) for name, (up, down) in _LENGTH.items()}
-_MASS: dict[str, Factor] = {"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "lb": (_POUND, 1)}
-_FORCE: dict[str, Factor] = {
-    "N": (1, 1),
-    "kN": (1e3, 1),
-    "MN": (1e6, 1),
-    "kgf": (GRAVITY, 1),
-    "kp": (GRAVITY, 1),
-    "tf": (1e3 * GRAVITY, 1),
-    "lbf": (_LBF, 1),
+"""Single units, of which those of every kind are made; `deg` and `rad` count as `_ELSEWHERE` says."""
+
+_DEGREES: dict[str, Factor] = {"rad": (180, math.pi)}
+_POUND_OF_FORCE: dict[str, Factor] = {"lb": (_LBF, 1)}
+_ELSEWHERE: dict[str, dict[str, Factor]] = {
+    **dict.fromkeys(("angle", "volume_rise"), _DEGREES),
+    # only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else
+    **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
+    "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},
+    "speed": {"rad": (1, 2 * math.pi)},
+    "gd2": {"kgf": (1, 1), "kp": (1, 1), "tf": (1e3, 1), "N": (1, GRAVITY)},
 }
-_TIME: dict[str, Factor] = {"s": (1, 1), "min": (60, 1), "h": (3600, 1)}
+"""Kind -> single units that mean something else in it. GD2 = 4J counts in kg m2: 1 kgf is the weight of 1 kg."""
+
+_LENGTHS = ("m", "mm", "cm", "dm", "um", "km", "in", "ft")
+_AREAS = tuple(f"{one}2" for one in _LENGTHS)
+_MASSES = ("kg", "g", "t", "lb")
+_FORCES = ("N", "kN", "MN", "kgf", "kp", "tf", "lbf")
+_PRESSURES = ("Pa", "kPa", "MPa", "GPa", "hPa", "mbar", "bar", "at", "atm", "psi", "Torr", "mmHg", "inHg", "mWS")
+_EVERYDAY = ("lb/in2", "lb/ft2")
 
 
-def _product(first: dict[str, Factor], second: dict[str, Factor], joint: str) -> dict[str, Factor]:
-    """Return every unit of `first` times (joint " ") or over (joint "/") every unit of `second`."""
-    over = joint == "/"
-    return {
-        f"{a}{joint}{b}": (au * (bd if over else bu), ad * (bu if over else bd))
-        for a, (au, ad) in first.items()
-        for b, (bu, bd) in second.items()
-    }
+def _each(first: Iterable[str], joint: str, second: Iterable[str]) -> tuple[str, ...]:
+    """Return every unit of one list joined to every unit of another, which is used up once for each."""
+    return tuple(f"{a}{joint}{b}" for a in first for b in tuple(second))
 
 
-_PRESSURE: dict[str, Factor] = {
-    "Pa": (1, 1),
-    "kPa": (1e3, 1),
-    "MPa": (1e6, 1),
-    "GPa": (1e9, 1),
-    "hPa": (1e2, 1),
-    "mbar": (1e2, 1),
-    "bar": (1e5, 1),
-    "at": (98066.5, 1),
-    "atm": (101325, 1),
-    "psi": (_LBF, _INCH * _INCH),
-    "Torr": (101325, 760),
-    "mmHg": (_MMHG, 1),
-    "inHg": (25.4 * _MMHG, 1),
-    "mWS": (GRAVITY * 1e3, 1),
-}
-_TORQUE: dict[str, Factor] = {"Nm": (1, 1), "kNm": (1e3, 1)}
-_POUNDS_OF_FORCE = {"lb/in2": (_LBF, _INCH * _INCH), "lb/ft2": (_LBF * 1e8, 3048 * 3048)}
-"""Only a force gives a pressure or a torque: there the pound of everyday English can mean nothing else."""
-_POUND_FEET = {
-    f"{a} {b}": (_LBF * up, down)
-    for c, up, down in (("ft", 3048, 1e4), ("in", 254, 1e4))
-    for a, b in (("lb", c), (c, "lb"), (c, "lbf"))
-}
-
-_PER_ANGLE: dict[str, Factor] = {"deg": (1, 1), "rad": (180, math.pi)}
-
-_BUILDERS: dict[str, Callable[[], dict[str, Factor]]] = {
-    "length": lambda: _LENGTH,
-    "area": lambda: _AREA,
-    "mass": lambda: {**_MASS, "tonne": (1e3, 1), "long ton": (2240 * _POUND, 1), "short ton": (2e3 * _POUND, 1)},
-    "force": lambda: {**_FORCE, "long tonf": (2240 * _LBF, 1), "short tonf": (2e3 * _LBF, 1)},
-    "pressure": lambda: {**_PRESSURE, **_product(_FORCE, _AREA, "/"), **_POUNDS_OF_FORCE},
-    "stress": lambda: {"N/mm2": (1e6, 1), **_product(_FORCE, _AREA, "/"), **_PRESSURE, **_POUNDS_OF_FORCE},
-    "time": lambda: _TIME,
-    "angle": lambda: {"deg": (1, 1), "°": (1, 1), "rad": (180, math.pi)},
-    "speed": lambda: {
-        "1/s": (1, 1),
-        **dict.fromkeys(("rpm", "1/min", "U/min", "rev/min", "r/min", "min-1"), (1, 60)),
-        **dict.fromkeys(("rps", "s-1", "Hz"), (1, 1)),
-        "rad/s": (1, 2 * math.pi),
-    },
-    "frequency": lambda: {"Hz": (1, 1), "1/s": (1, 1), "kHz": (1e3, 1), "1/min": (1, 60)},
-    "angular_velocity": lambda: {"rad/s": (1, 1)},
-    "angular_acceleration": lambda: {"rad/s2": (1, 1)},
-    "velocity": lambda: _product(_LENGTH, _TIME, "/"),
-    "acceleration": lambda: _product(_LENGTH, {"s2": (1, 1)}, "/"),
-    "torque": lambda: {**_product(_FORCE, _LENGTH, " "), **_TORQUE, **_POUND_FEET},
-    "energy": lambda: {"J": (1, 1), "kJ": (1e3, 1), "MJ": (1e6, 1), **_product(_FORCE, _LENGTH, " "), "Nm": (1, 1)},
-    "power": lambda: {
-        "W": (1, 1),
-        "kW": (1e3, 1),
-        "MW": (1e6, 1),
-        "PS": (75 * GRAVITY, 1),
-        "hp": (550 * _LBF * 3048, 1e4),
-        "kgf m/s": (GRAVITY, 1),
-    },
-    "inertia": lambda: {
-        **_product(_MASS, _AREA, " "),
-        **{f"lbf {name} s2": (_LBF * up, down) for name, (up, down) in _LENGTH.items() if name in ("in", "ft")},
-    },
-    "unbalance": lambda: _product({**_MASS, "mg": (1, 1e6)}, _LENGTH, " "),
-    "gd2": lambda: {
-        **_product({"kg": (1, 1), "t": (1e3, 1)}, {"m2": (1, 1), "cm2": (1, 1e4)}, " "),
-        "kgf m2": (1, 1),
-        "kp m2": (1, 1),
-        "tf m2": (1e3, 1),
-        "N m2": (1, GRAVITY),
-        "lb ft2": (_POUND * 3048 * 3048, 1e8),
-    },
-    "stiffness": lambda: _product(
-        {**_product(_FORCE, {"m": (1, 1), "mm": (1, 1e3), "ft": (3048, 1e4)}, " "), **_TORQUE}, {"rad": (1, 1)}, "/"
+_UNITS: dict[str, tuple[str, ...]] = {
+    "length": _LENGTHS,
+    "area": _AREAS,
+    "mass": (*_MASSES, "tonne", "long ton", "short ton"),
+    "force": (*_FORCES, "long tonf", "short tonf"),
+    "pressure": (*_PRESSURES, *_each(_FORCES, "/", _AREAS), *_EVERYDAY),
+    "stress": ("N/mm2", *_each(_FORCES, "/", _AREAS), *_PRESSURES, *_EVERYDAY),
+    "time": ("s", "min", "h"),
+    "angle": ("deg", "°", "rad"),
+    "speed": ("1/s", "rpm", "1/min", "U/min", "rev/min", "r/min", "min-1", "rps", "s-1", "Hz", "rad/s"),
+    "frequency": ("Hz", "1/s", "kHz", "1/min"),
+    "angular_velocity": ("rad/s",),
+    "angular_acceleration": ("rad/s2",),
+    "velocity": _each(_LENGTHS, "/", ("s", "min", "h")),
+    "acceleration": _each(_LENGTHS, "/", ("s2",)),
+    "torque": (*_each(_FORCES, " ", _LENGTHS), "Nm", "kNm", "lb ft", "ft lb", "ft lbf", "lb in", "in lb", "in lbf"),
+    "energy": ("J", "kJ", "MJ", *_each(_FORCES, " ", _LENGTHS), "Nm"),
+    "power": ("W", "kW", "MW", "PS", "hp", "kgf m/s"),
+    "inertia": (*_each(_MASSES, " ", _AREAS), "lbf in s2", "lbf ft s2"),
+    "unbalance": _each((*_MASSES, "mg"), " ", _LENGTHS),
+    "gd2": (*_each(("kg", "t"), " ", ("m2", "cm2")), "kgf m2", "kp m2", "tf m2", "N m2", "lb ft2"),
+    "stiffness": (*_each(_FORCES, " ", ("m/rad", "mm/rad", "ft/rad")), "Nm/rad", "kNm/rad"),
+    "damping": (
+        *_each(_FORCES, " ", ("m s/rad",)),
+        *("Nm s/rad", "kNm s/rad", "N m s", "Nm s", "kN m s", "lbf ft s/rad"),
     ),
-    "damping": lambda: (
-        _product({**_product(_FORCE, {"m": (1, 1)}, " "), **_TORQUE}, {"s/rad": (1, 1)}, " ")
-        | {"N m s/rad": (1, 1), "Nm s/rad": (1, 1), "kN m s/rad": (1e3, 1)}
-        | {"N m s": (1, 1), "Nm s": (1, 1), "kN m s": (1e3, 1), "lbf ft s/rad": (_LBF * 3048, 1e4)}
-    ),
-    "density": lambda: {
-        "kg/m3": (1, 1),
-        "kg/dm3": (1e3, 1),
-        "g/cm3": (1e3, 1),
-        "t/m3": (1e3, 1),
-        "lb/ft3": (_POUND * 1e12, 3048**3),
-        "lb/in3": (_POUND * 1e12, 254**3),
-    },
-    "spring": lambda: (
-        _product(
-            {"mm": (1, 1e3), "cm": (1, 1e2), "m": (1, 1), "in": (254, 1e4)}, {**_PRESSURE, **_POUNDS_OF_FORCE}, "/"
-        )
-        | {f"{name}/kgf/cm2": (1, down * 98066.5) for name, down in (("mm", 1e3), ("cm", 1e2))}
-    ),
-    "volume": lambda: {
-        "m3": (1, 1),
-        "dm3": (1, 1e3),
-        "l": (1, 1e3),
-        "cm3": (1, 1e6),
-        "mm3": (1, 1e9),
-        "in3": (254**3, 1e12),
-    },
-    "volume_rise": lambda: _product({"m3": (1, 1), "cm3": (1, 1e6), "in3": (254**3, 1e12)}, _PER_ANGLE, "/"),
-    "pressure_rise": lambda: _product({**_PRESSURE, **_POUNDS_OF_FORCE}, _PER_ANGLE, "/"),
-    "pressure_velocity": lambda: {
-        "W/m2": (1, 1),
-        "N/mm2 m/s": (1e6, 1),
-        "kgf m/s/cm2": (GRAVITY * 1e4, 1),
-        "psi ft/s": (_LBF * 3048, _INCH * _INCH * 1e4),
-    },
+    "density": ("kg/m3", "kg/dm3", "g/cm3", "t/m3", "lb/ft3", "lb/in3"),
+    "spring": (*_each(("mm", "cm", "m", "in"), "/", (*_PRESSURES, *_EVERYDAY)), "mm/kgf/cm2", "cm/kgf/cm2"),
+    "volume": ("m3", "dm3", "l", "cm3", "mm3", "in3"),
+    "volume_rise": _each(("m3", "cm3", "in3"), "/", ("deg", "rad")),
+    "pressure_rise": _each((*_PRESSURES, *_EVERYDAY), "/", ("deg", "rad")),
+    "pressure_velocity": ("W/m2", "N/mm2 m/s", "kgf m/s/cm2", "psi ft/s"),
 }
-"""Kind -> its units. `gd2` counts in kg m2 of GD2 = 4J: a weight of 1 kgf is that of 1 kg."""
-
+"""Kind -> its units."""
 
 ZEROED_UNITS = {
     **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
@@ -277,7 +185,24 @@ ZEROED_UNITS = {
 
 @cache
 def _units_of(kind: str) -> dict[str, Factor]:
-    return _BUILDERS[kind]()
+    return {unit: _factor(unit, kind) for unit in _UNITS[kind]}
+
+
+def _factor(unit: str, kind: str) -> Factor:
+    """Return multiplier and divisor of a product of single units, such as `kgf m/s/cm2`."""
+    if kind == "spring":  # height over pressure, which may be a quotient itself
+        height, _, pressure = unit.partition("/")
+        (up, down), (more, less) = _factor(height, "length"), _factor(pressure, "pressure")
+        return up * less, down * more
+    up = down = 1.0
+    for stroke, text in re.findall(r"(/?)([^ /]+)", re.sub("(long|short) ", r"\1_", unit)):
+        base, power = re.findall(r"^(.*?\D|1)(-?\d)?$", text)[0]
+        more, less = _ELSEWHERE.get(kind, {}).get(base) or _FACTORS[base]
+        times = int(power or 1)
+        if (times < 0) != bool(stroke):
+            more, less = less, more
+        up, down = up * more ** abs(times), down * less ** abs(times)
+    return up, down
 
 
 def _normal(unit: str) -> str:
@@ -295,24 +220,36 @@ def unit_factor(unit: str, kind: str) -> Factor:
 
     Raises UnitError with the known units and, where the unit is one of another kind, that kind.
     """
-    known = _units_of(kind)
-    factor = known.get(_normal(unit))
-    if factor is not None:
-        return factor
-    hint = unit_hint(_normal(unit), kind)
-    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {_known_text(kind)}){hint}")
+    known, name = _units_of(kind), _normal(unit)
+    if name in known:
+        return known[name]
+    names = ", ".join([*known][:8]) + (", …" if len(known) > 8 else "")
+    raise UnitError(f"unknown {kind_name(kind)} unit '{unit.strip()}' (known: {names}){unit_hint(name, kind)}")
 
 
 def kind_name(kind: str) -> str:
     """Return what a kind is called in messages."""
-    return {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}.get(
-        kind, kind.replace("_", " ")
-    )
+    special = {"gd2": "GD²", "speed": "speed of rotation", "unbalance": "mass-times-radius"}
+    return special.get(kind, kind.replace("_", " "))
 
 
-def _known_text(kind: str) -> str:
-    names = list(_units_of(kind))
-    return ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+_INCHES = r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)"
+"""A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
+_QUOTIENT = rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)"
+
+
+def _split(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a value in plain signs, None where it begins with no number."""
+    if "/" in text and (found := re.match(_INCHES, text)):
+        sign, whole, above, below = found.groups()
+        value = float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
+    elif "/" in text and (found := re.match(_QUOTIENT, text)):
+        value = parse_ratio(found.group())
+    elif found := NUMBER.match(text):
+        value = float(found.group())
+    else:
+        return None
+    return value, text[found.end() :].strip()
 
 
 def parse_quantity(text: str, kind: str) -> float:
@@ -326,20 +263,34 @@ def parse_quantity(text: str, kind: str) -> float:
     if kind == "ratio":
         return parse_ratio(text)
     stripped = plain(text)
-    number = _number_of(stripped)
-    if not number:
+    found = _split(stripped)
+    if not found:
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
-    unit = stripped[number.end() :].strip()
+    value, unit = found
     if not unit:
-        fitting = f"{stripped} {_fitting_unit(_value(number), kind)}"
-        raise UnitError(f"{stripped} has no unit; write it with one, such as '{fitting}'")
-    if unit[0] in "0123456789.,_:":
-        _refuse_more_figures(stripped, unit, kind)
+        likely = (one for one, least in _FITTING.get(kind, ()) if abs(value) >= least)
+        fitting = next(likely, unit_example(kind))
+        raise UnitError(f"{stripped} has no unit; write it with one, such as '{stripped} {fitting}'")
+    if re.match(r",[0-9]+(?![0-9.,])", unit):
+        raise UnitError(f"'{stripped}' has a decimal comma; write {stripped.replace(',', '.', 1)}")
+    if between := "commas" if re.match(",[0-9]", unit) else "spaces" if re.match("[0-9]{3}(?![0-9])", unit) else "":
+        raise UnitError(f"'{stripped}' has {between} between thousands; leave them out")
+    if unit[0] in "0123456789._:" and not unit.startswith("1/"):
+        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{stripped}'")
     up, down = unit_factor(unit, kind)
-    value = _value(number) * up / down
-    if not math.isfinite(value):
+    if not math.isfinite(value * up / down):
         raise UnitError(f"{stripped} is too large to compute with")
-    return value
+    return value * up / down
+
+
+_FITTING = {
+    "length": (("mm", 10), ("m", 0)),
+    "pressure": (("Pa", 1e4), ("kPa", 500), ("bar", 0)),
+    "stress": (("Pa", 1e5), ("N/mm2", 0)),
+    "power": (("W", 1e3), ("kW", 0)),
+    "speed": (("rpm", 10), ("1/s", 0)),
+}
+"""Kind -> units with the bare numbers from which on they are likely, the largest first."""
 
 
 def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
@@ -361,65 +312,14 @@ def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
     return values if all(map(math.isfinite, values)) else None
 
 
-def _refuse_more_figures(text: str, rest: str, kind: str) -> None:
-    """Raise UnitError where figures go on in the rest of a text, behind its number; but for 1/s, which is a unit."""
-    if re.match(r",[0-9]+(?![0-9.,])", rest):
-        raise UnitError(f"'{text}' has a decimal comma; write {text.replace(',', '.', 1)}")
-    if re.match(r",[0-9]", rest):
-        raise UnitError(f"'{text}' has commas between thousands; leave them out")
-    if re.match(r"[0-9]{3}(?![0-9])", rest):
-        raise UnitError(f"'{text}' has spaces between thousands; leave them out")
-    if rest[0] != "," and not rest.startswith("1/"):
-        raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{text}'")
-
-
 def written_unit(text: str) -> str:
     """Return the unit that a value is written with, as it stands there; '%' of a percentage, '' of a bare number.
 
     >>> written_unit("5.4 at"), written_unit("2 1/4 in"), written_unit("2 %"), written_unit("1/200")
     ('at', 'in', '%', '')
     """
-    stripped = plain(text)
-    number = _number_of(stripped)
-    unit = stripped[number.end() :].strip() if number else ""
+    _, unit = _split(plain(text)) or (0.0, "")
     return "" if re.match(r"/\s*[0-9.]", unit) else unit
-
-
-# compiled only where there is a stroke
-_INCHES = r"([-+]?)(?:([0-9]{1,4})[ -])?([0-9]{1,4})/([1-9][0-9]{0,3})(?=\s*[A-Za-z]|$)"
-"""A number as drawings in inches have it: 2 1/4, 2-1/4, 3/8."""
-_QUOTIENT = rf"{NUMBER.pattern}\s*/\s*{NUMBER.pattern}(?=\s*[A-Za-z°]|$)"
-
-
-def _number_of(text: str) -> re.Match[str] | None:
-    parted = (re.match(_INCHES, text) or re.match(_QUOTIENT, text)) if "/" in text else None
-    return parted or NUMBER.match(text)
-
-
-def _value(number: re.Match[str]) -> float:
-    """Return the float of a match of `_number_of`."""
-    if number.re.pattern != _INCHES:
-        return parse_ratio(number.group()) if number.re.pattern == _QUOTIENT else float(number.group())
-    sign, whole, above, below = number.groups()
-    return float(f"{sign}1") * (int(whole or 0) * int(below) + int(above)) / int(below)
-
-
-def _fitting_unit(value: float, kind: str) -> str:
-    """Return the unit that a bare number of this size was probably meant in."""
-    for fitting, least in _FITTING.get(kind, ()):
-        if abs(value) >= least:
-            return fitting
-    return unit_example(kind)
-
-
-_FITTING = {
-    "length": (("mm", 10), ("m", 0)),
-    "pressure": (("Pa", 1e4), ("kPa", 500), ("bar", 0)),
-    "stress": (("Pa", 1e5), ("N/mm2", 0)),
-    "power": (("W", 1e3), ("kW", 0)),
-    "speed": (("rpm", 10), ("1/s", 0)),
-}
-"""Kind -> units with the bare numbers from which on they are likely, the largest first."""
 
 
 def example(kind: str) -> str:
@@ -434,7 +334,7 @@ def unit_example(kind: str) -> str:
 
 def kinds() -> tuple[str, ...]:
     """Return the kinds of quantities that have units."""
-    return tuple(_BUILDERS)
+    return tuple(_UNITS)
 
 
 def unit_names(kind: str) -> tuple[str, ...]:
@@ -442,15 +342,11 @@ def unit_names(kind: str) -> tuple[str, ...]:
     return (*_units_of(kind), *(ZEROED_UNITS if kind == "pressure" else ()))
 
 
-_RARE = r"\b(um|km|dm)[23]?\b"
-_WRITTEN = ("kg/dm3", "km/h", "km/s", "um/s")
-
-
 def listed_units(kind: str) -> tuple[str, ...]:
     """Return the units of a kind that people write: products with micrometres, kilometres, decimetres are read, too."""
-    rare = (name for name in unit_names(kind) if re.search(_RARE, name) and re.search("[ /]", name))
-    left_out = set(rare) - set(_WRITTEN)
-    return tuple(name for name in unit_names(kind) if name not in left_out)
+    written = ("kg/dm3", "km/h", "km/s", "um/s")
+    rare = re.compile(r"(?=.*[ /]).*\b(um|km|dm)[23]?\b")
+    return tuple(name for name in unit_names(kind) if name in written or not rare.match(name))
 
 
 _SPOKEN = (
@@ -464,7 +360,6 @@ _SPOKEN = (
 
 def unit_hint(name: str, kind: str) -> str:
     """Return what to write instead of a unit, of which the white space is that of ours; '' where nothing is known."""
-    known = unit_names(kind)
     if kind == "length" and re.fullmatch(r"(ft|['′’])[ -]*[0-9].*", name):
         return "; write feet and inches in one unit, such as '90 in' for 7 ft 6 in"
     if kind == "spring":
@@ -476,18 +371,14 @@ def unit_hint(name: str, kind: str) -> str:
     if name in ("ton", "tons", "tonf"):
         f = name.removeprefix("ton").removeprefix("s")
         return f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) or 'short ton{f}' (2000 lb{f}): write which"
+    known = unit_names(kind)
     weight = re.sub(r"\bkg\b", "kgf", name)
     if weight != name and weight in known:
         return f"; kg is a mass, write '{weight}'"
-    ours = _ours(name)
+    ours = name
+    for spoken, written in _SPOKEN:
+        ours = re.sub(spoken, written, ours, flags=re.IGNORECASE)
     if alike := [unit for unit in known if unit.lower() == ours.lower()]:
         return f"; did you mean '{alike[0]}'?"
     of = [kind_name(other) for other in kinds() if {name, ours} & {*unit_names(other)}]
     return f"; {name} is a unit of {of[0]}" if of else ""
-
-
-def _ours(name: str) -> str:
-    """Return a unit as it is written here, where people write it otherwise."""
-    for spoken, ours in _SPOKEN:
-        name = re.sub(spoken, ours, name, flags=re.IGNORECASE)
-    return name

@@ -12,7 +12,8 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.keys import TOO_EXTREME, Described, Form, Rule
+from kurbel.declared.forms.values import Form
+from kurbel.declared.keys import TOO_EXTREME, Record, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Fault, Path, RuleError, Step, UsageError, path_text
@@ -57,7 +58,7 @@ class _Slot(NamedTuple):
     def numeric(self) -> bool:
         """Whether one varied key is all that stands here, and what it becomes is a number."""
         alone = len(self.varied) == 1 and not self.varied[0][1]
-        return alone and self.form.is_number and not isinstance(self.given.made, Indivisible)
+        return alone and self.form.numeric and not isinstance(self.given.made, Indivisible)
 
     def read(self, texts: Sequence[str], whole: Reading) -> Any:
         """Return what texts of its varied keys become, or Unbound, unraised; whole: how the file was read."""
@@ -230,9 +231,9 @@ class _Maker(Maker):
             return super()._record(other)
         inside = len(self._rules)
         values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
-        record = given.form.load().of_keys(**values)
-        stages: list[Iterable[Rule]] = [given.form.load().rules_of_keys(values)]
-        if isinstance(record, Described):
+        record = given.form.record.of_keys(**values)
+        stages: list[Iterable[Rule]] = [given.form.record.rules_of_keys(values)]
+        if isinstance(record, Record):
             stages += [record.rules(), [Rule((), too_extreme(record, values), TOO_EXTREME)]]
         for rules in stages:
             # what a part or a stage breaks is not told of the whole or the next

@@ -15,18 +15,17 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms import (
-    Alike,
+    EXPECTATIONS,
+    FIRING_ORDER,
+    LIMITS,
+    SETTINGS,
+    UNCERTAINTIES,
     Choice,
-    Expectations,
-    FiringOrder,
     Inline,
-    Limits,
     Listing,
     OneOf,
-    Settings,
-    Uncertainties,
+    RecordForm,
 )
-from kurbel.declared.forms import Record as RecordForm
 from kurbel.declared.forms.figures import MACHINE, Expected, scoped
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
@@ -34,6 +33,7 @@ from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
+from kurbel.machine.known_effort import Known
 from kurbel.machine.origin import Origin
 from kurbel.machine.parts import Piston
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
@@ -64,7 +64,7 @@ class LoadCase(Record):
 
     name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
     values: tuple[tuple[str, Any], ...] = field(
-        Settings(),
+        SETTINGS,
         "Values instead of those of the file, by dotted key",
         required=True,
         example="{speed: 40 rpm}",
@@ -127,18 +127,16 @@ class Machine(Record):
         gives=lambda given: {"brake_power": 2 * math.pi * given["speed"] * given["brake_torque"]},
         key="brake_torque",
     )
-    _cylinder = alternative(
-        Inline(RecordForm(Cylinder), unless="cylinders"), "The keys of the only cylinder", key="cylinder"
-    )
+    _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder", key="cylinder")
     _cylinders = alternative(
-        OneOf(Alike(RecordForm(Cylinder, inline_too=True), "cylinder"), RecordForm(EqualCylinders)),
+        OneOf(Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"), RecordForm(EqualCylinders)),
         "Several cylinders, listed, or equal ones at once; their keys then do not stand at the top",
         absent="one cylinder, flat",
         gives=lambda given: {"cylinders": given["cylinders"]},
         key="cylinders",
     )
     _firing_order = alternative(
-        FiringOrder(),
+        FIRING_ORDER,
         "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
         absent="positions as given",
         key="firing_order",
@@ -151,7 +149,7 @@ class Machine(Record):
         gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
     )
     effort: Effort | Harmonics | None = field(
-        RecordForm("kurbel.machine_file.effort:Known"),
+        RecordForm(Known),
         "A turning-moment diagram known from elsewhere, instead of cylinders",
         absent="from the cylinders",
     )
@@ -181,20 +179,20 @@ class Machine(Record):
         also=("shaft_line", "torsion"),
     )
     limits: tuple[tuple[str, float], ...] = field(
-        Limits(),
+        LIMITS,
         "Bounds for key values, checked by `kurbel check`: of each cylinder that has one, else of the machine; "
         "`machine.T_max` of the whole machine, `NAME.T_max` of one cylinder",
         default=(),
         absent="none",
     )
     expect: tuple[tuple[str, Expected], ...] = field(
-        Expectations(),
+        EXPECTATIONS,
         "Figures that key values are to meet, compared by `kurbel check`, with the names of `limits`",
         default=(),
         absent="none",
     )
     uncertainty: tuple[tuple[str, str], ...] = field(
-        Uncertainties(),
+        UNCERTAINTIES,
         "Standard uncertainties of values of this file, by dotted key: forces, flywheel and stress tell what they "
         "make of the key values",
         default=(),

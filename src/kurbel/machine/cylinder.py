@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Inline, Listing, OneOf, Variant
-from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.forms import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
@@ -70,7 +69,7 @@ class Cylinder(Record):
     _like = alternative(
         str, "Name of a cylinder above, which this one equals but for what stands here", absent="none", key="like"
     )
-    _piston = alternative(Inline(RecordForm(Piston)), "The cylinder's own piston", key="piston")
+    _piston = alternative(Inline(Piston), "The cylinder's own piston", key="piston")
     _tandem = alternative(
         [RecordForm(Piston, inline_too=True)],
         "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",

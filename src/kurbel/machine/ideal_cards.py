@@ -16,9 +16,9 @@ from kurbel.declared.forms import Number
 from kurbel.declared.reading import REFUSED, has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 
-CLEARANCE = Number("the stroke", least=1e-6, most=1e5)
+CLEARANCE = Number(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number("the stroke", least=1e-6, most=1e5, zero=True)
+CLEARANCE_OR_NONE = Number(share_of="the stroke", least=1e-6, most=1e5, zero=True)
 """The same where nothing need be compressed into it: then it may be left out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4

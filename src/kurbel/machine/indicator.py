@@ -4,16 +4,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from kurbel.declared.forms import Choice, Keyed, OneOf, Physical, Points, UnitName
-from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Points, RecordForm, unit_name
 from kurbel.declared.forms.figures import Bound
-from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import REFUSED, shown
+from kurbel.declared.forms.values import size_faults
+from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.unit_systems import show
-from kurbel.declared.units import Factor, Point, size_faults, written_unit
-from kurbel.errors import Fault, refuse, refused
+from kurbel.declared.units import Factor, Point, written_unit
+from kurbel.errors import Fault, refuse
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
+from kurbel.machine.measured import Measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,36 +47,6 @@ class Rectangle:
             yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
 
 
-class Rectangular(Physical):
-    """A pressure that becomes the `level` or the `mean` of a rectangular card."""
-
-    def __init__(self, field: str) -> None:
-        super().__init__("pressure")
-        self.field = field
-
-    def parse(self, text: str, folder: str) -> Rectangle:  # type: ignore[override]
-        """Return the card of the pressure that stands here; raises RuleError."""
-        if self.field == "level" and not NUMBER.match(plain(text)):
-            refused(f"expected {self.expected()}, or a card below it, got '{shown(text)}'")
-        return Rectangle(**{self.field: super().parse(text, folder)})
-
-    def of_numbers(self, numbers: Any) -> Rectangle:
-        """Return the card of many machines, of their pressures (machines,)."""
-        return Rectangle(**{self.field: numbers})
-
-
-class _OnPaper(Physical):
-    """A length that keeps the unit in which it is written, so that many are read one by one."""
-
-    @property
-    def is_number(self) -> bool:
-        return False
-
-    def parse(self, text: str, folder: str) -> Bound:
-        """Return the length in m, with its unit."""
-        return Bound(super().parse(text, folder), written_unit(text))
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Drawn(Record):
     """The paper of a card: its length, and the scale of the spring in m/Pa.
@@ -85,7 +55,8 @@ class Drawn(Record):
     """
 
     length: float = field(
-        _OnPaper("length", above=0),
+        # keeps the unit in which it is written, so that the lengths of many cards are read one by one
+        Number("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
         "Length of the card on the paper",
         "l",
         required=True,
@@ -159,7 +130,7 @@ class Card(Record):
     """
 
     _unit = alternative(
-        UnitName("pressure"),
+        unit_name("pressure"),
         "Unit of the pressures; or give `drawn`",
         required=True,
         example="bar",
@@ -340,9 +311,9 @@ class Constant(Record):
 
 _CHAMBER = Keyed(
     cases={
-        "mean_pressure": Rectangular("mean"),
+        "mean_pressure": Number("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
         "constant": RecordForm(Constant),
-        "trace": RecordForm("kurbel.machine_file.trace:Measured"),
+        "trace": RecordForm(Measured),
         "steam": RecordForm(Steam),
         "compressor": RecordForm(Compressor),
         "otto": RecordForm(Otto),
@@ -351,7 +322,9 @@ _CHAMBER = Keyed(
     otherwise=RecordForm(Card),
     texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
 )
-_ONE_PRESSURE = Rectangular("level")
+_ONE_PRESSURE = Number(
+    "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.declared.forms import Listing, OneOf, Physical
-from kurbel.declared.forms import Record as RecordForm
-from kurbel.declared.keys import Form
+from kurbel.declared.forms import Listing, Number, OneOf, RecordForm
+from kurbel.declared.forms.values import Form
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
@@ -69,7 +68,7 @@ class ConnectingRod(Record):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-_ONE_OR_MORE: Form = OneOf(Physical("mass", least=0), Listing(Physical("mass", least=0)))
+_ONE_OR_MORE: Form = OneOf(Number("mass", least=0), Listing(Number("mass", least=0)))
 _PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
 
 
@@ -115,7 +114,7 @@ class Masses(Record):
     _crosshead = _part("Crosshead", "crosshead")
     _other = _part("Whatever else goes to and fro", "other")
     _connecting_rod = alternative(
-        OneOf(Physical("mass", least=0), RecordForm(ConnectingRod)),
+        OneOf(Number("mass", least=0), RecordForm(ConnectingRod)),
         "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise, product
 from typing import Any
 
-from kurbel.declared.forms import FiringOrder
-from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.forms import FIRING_ORDER, RecordForm
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import MOST_ITEMS
@@ -24,7 +23,7 @@ class EqualCylinders(Record):
 
     _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4", key="count")
     firing_order: tuple[int, ...] | None = field(
-        FiringOrder(),
+        FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
         absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
     )

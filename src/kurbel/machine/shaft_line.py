@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Union
 
-from kurbel.declared.forms import Listing, OneOf, Text
+from kurbel.declared.forms import TEXT, Listing, OneOf
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, refuse
@@ -36,7 +36,7 @@ class ShaftPart(Record):
         above=0,
     )
     cylinder: tuple[str, ...] | None = field(
-        OneOf(Text(), Listing(Text())),
+        OneOf(TEXT, Listing(TEXT)),
         "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
         "of their reduced inertia over the turn",
         gives=lambda given: {"cylinder": (one,) if isinstance(one := given["cylinder"], str) else one},

@@ -5,10 +5,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kurbel.declared.forms import Points, UnitName
+from kurbel.declared.forms import Points, unit_name
+from kurbel.declared.forms.values import size_faults
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
-from kurbel.declared.units import Factor, Point, size_faults
+from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse
 from kurbel.machine.cylinder import CYCLES
 
@@ -249,7 +250,7 @@ class Load(Record):
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(UnitName("torque"), "Unit of the torques", needs="points", key="unit")
+    _unit = alternative(unit_name("torque"), "Unit of the torques", needs="points", key="unit")
     _points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump",

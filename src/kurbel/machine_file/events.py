@@ -1,16 +1,17 @@
 """From YAML text to dictionaries, lists and texts, event by event, with a guard at every event; and back to places.
 
-No recursion and no nodes: libyaml's own loader crashes on deep nesting and is slow on long lists. What a machine file
-has no use for (anchors, aliases, tags, further documents) is refused when its event comes by, before anything is built
-from it. Numbers stay text: what a scalar means is decided by the key that it stands under.
+No nodes of YAML's own: libyaml's loader crashes on deep nesting and is slow on long lists. What a machine file has no
+use for (anchors, aliases, tags, further documents) is refused when its event comes by, before anything is built of it.
+Numbers stay text: what a scalar means is decided by the key that it stands under.
 """
 
 import re
+from collections.abc import Iterator, Set
 from typing import Any
 
 import yaml
 
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, shown
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, Path, Step
 from kurbel.machine.origin import lines_of
@@ -26,176 +27,7 @@ def parse(text: str, reading: Reading) -> Any:
     The tree has REFUSED in place of what was noted; it is REFUSED as a whole when the text could not be read to its
     end.
     """
-    builder = Builder(reading)
-    if not run(text, builder):
-        return REFUSED
-    root = builder.root
-    # outer ones first: what lies inside a refused value may have been overwritten by a key given twice
-    for path in sorted((fault.path for fault in reading.faults), key=len):
-        root = _refused_at(root, path)
-    return root
-
-
-def run(text: str, builder: "Builder") -> bool:
-    """Send all events of a text to the builder and return whether the text could be read to its end."""
-    loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    handlers = {
-        yaml.ScalarEvent: builder.scalar,
-        yaml.MappingStartEvent: lambda event: builder.begin({}, event),
-        yaml.SequenceStartEvent: lambda event: builder.begin([], event),
-        yaml.MappingEndEvent: builder.end,
-        yaml.SequenceEndEvent: builder.end,
-        yaml.AliasEvent: builder.alias,
-        yaml.DocumentStartEvent: builder.document,
-    }
-    try:
-        for event in yaml.parse(text, Loader=loader):
-            handler = handlers.get(type(event))
-            if handler is not None:
-                handler(event)
-    except StopReading:
-        return False
-    except yaml.MarkedYAMLError as error:
-        builder.reading.faults.append(explain(error, text))
-        return False
-    return True
-
-
-def _refused_at(root: Any, path: Path) -> Any:
-    """Return the tree with REFUSED at a path."""
-    if not path or root is REFUSED:
-        return REFUSED
-    node = root
-    for step in path[:-1]:
-        node = node[step]
-        if node is REFUSED:
-            return root
-    node[path[-1]] = REFUSED
-    return root
-
-
-class _OddKey(str):
-    """Stands for a key that is no text."""
-
-    __slots__ = ()
-
-
-_ODD_KEY = _OddKey("?")
-
-
-class Builder:
-    """Builds the tree from the events and notes what is wrong.
-
-    A mapping or list is put into its parent when it begins, so that the way down from the root is known at every event.
-    """
-
-    def __init__(self, reading: Reading) -> None:
-        self.root: Any = Plain("")
-        self.reading = reading
-        self._open: list[dict[str, Any] | list[Any]] = []
-        self._steps: list[Step] = []  # under which each of them stands; that of the root counts for nothing
-        self._key: str | None = None  # of the innermost mapping, while its value is due
-        self._documents = 0
-        self._scalars = 0
-
-    def scalar(self, event: Any) -> None:
-        """Take a scalar: a key or a value."""
-        self._scalars += 1
-        if self._scalars > _MOST_SCALARS:
-            what = f"more than {_MOST_SCALARS} values; put measurements into a file and name it under 'trace'"
-            self._report(event, (), what)
-            raise StopReading
-        if event.tag is not None or event.anchor is not None:
-            self._guard(event)
-        self._place(event.value if event.style else Plain(event.value), event)
-
-    def alias(self, event: Any) -> None:
-        """Refuse an alias."""
-        self._report(event, self._here(), f"'*{shown(event.anchor)}' is not supported; write the value itself{_LIKE}")
-        if self._key is None and self._open and isinstance(self._open[-1], dict):
-            self._key = _ODD_KEY
-        else:
-            self._place(REFUSED, event)
-
-    def end(self, event: Any) -> None:
-        """End the innermost mapping or list."""
-        self._open.pop()
-        if isinstance(self._steps.pop(), _OddKey):
-            self._key = _ODD_KEY
-
-    def document(self, event: Any) -> None:
-        """Begin a document, the only one."""
-        self._documents += 1
-        if self._documents > 1:
-            self._report(event, (), "a second document begins here; a file describes one machine, leave out '---'")
-            raise StopReading
-
-    def begin(self, container: dict[str, Any] | list[Any], event: Any) -> None:
-        """Begin a mapping or list."""
-        if event.tag is not None or event.anchor is not None:
-            self._guard(event)
-        if len(self._open) >= DEPTH_LIMIT:
-            self._report(event, (), f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that")
-            raise StopReading
-        step: Step = ""
-        if self._open:
-            step = self._step()
-            if step is _ODD_KEY:
-                self._report(event, self._here(), "a key must be a plain text, not a list or a mapping")
-                self._key = _ODD_KEY
-        self._place(container, event)
-        self._open.append(container)
-        self._steps.append(step)
-
-    def _place(self, value: Any, event: Any) -> None:
-        """Put a value into the innermost mapping or list, or take it as the next key."""
-        if not self._open:
-            self.root = value
-            return
-        top = self._open[-1]
-        if isinstance(top, list):
-            top.append(value)
-        elif self._key is not None:
-            top[self._key] = value
-            self._key = None
-        else:
-            self._name(top, str(value), event)
-
-    def _name(self, top: dict[str, Any], key: str, event: Any) -> None:
-        if key in top:
-            self._report(event, (*self._steps[1:], key), "given twice; leave one of them out")
-        elif not key:
-            self._report(event, self._here(), "a key is missing before the colon")
-        self._key = key
-
-    def _step(self) -> Step:
-        """Return the step from the innermost mapping or list to the node of this event."""
-        top = self._open[-1]
-        if isinstance(top, list):
-            return len(top)
-        return _ODD_KEY if self._key is None else self._key
-
-    def _here(self) -> Path:
-        """Return the path of the node of this event; for a key, that of its mapping."""
-        if not self._open:
-            return ()
-        step = self._step()
-        return tuple(self._steps[1:]) if step is _ODD_KEY else (*self._steps[1:], step)
-
-    def _guard(self, event: Any) -> None:
-        if event.tag is not None:
-            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            self._report(event, self._here(), f"the tag '{shown(tag)}' is not supported; leave it out")
-        else:
-            what = f"'&{shown(event.anchor)}' is not supported; write the value wherever it is needed{_LIKE}"
-            self._report(event, self._here(), what)
-
-    def _report(self, event: Any, path: Path, message: str) -> None:
-        mark = event.start_mark
-        self.reading.note(Fault(path, message).at(mark.line, mark.column))
-
-
-_Place = tuple[int, int]
+    return Parser(text, reading).document()
 
 
 def located(text: str, faults: list[Fault]) -> list[Fault]:
@@ -204,42 +36,141 @@ def located(text: str, faults: list[Fault]) -> list[Fault]:
     Where the key is not meant, a text or number is pointed at itself, a mapping or list by its key. Of a path that does
     not exist, the part that does is pointed at.
     """
-    locator = _Locator({fault.path[:length] for fault in faults for length in range(len(fault.path) + 1)})
-    run(text, locator)
-    return [fault.at(*locator.place_of(fault)) for fault in faults]
+    parser = Parser(text, Reading(), {fault.path[:length] for fault in faults for length in range(len(fault.path) + 1)})
+    parser.document()
+
+    def place_of(fault: Fault) -> tuple[int, int]:
+        exact = None if fault.at_key else parser.values.get(fault.path)
+        parts = (fault.path[:length] for length in range(len(fault.path), -1, -1))
+        return exact or next((parser.keys[part] for part in parts if part in parser.keys), (0, 0))
+
+    return [fault.at(*place_of(fault)) for fault in faults]
 
 
-class _Locator(Builder):
-    """Builds the tree once more and notes where the nodes on the way to the wanted paths begin."""
+class Parser:
+    """Builds the tree of a text and notes what is wrong, and where the wanted paths are.
 
-    def __init__(self, wanted: set[Path]) -> None:
-        super().__init__(Reading())
-        self._wanted = wanted
-        self._keys: dict[Path, _Place] = {}
-        self._values: dict[Path, _Place] = {}
+    keys: places of keys, and of what has no key or no text of its own; values: those of texts; both counted from 0.
+    """
 
-    def place_of(self, fault: Fault) -> _Place:
-        """Return the place, from 0, of the longest part of a path that the text has."""
-        for length in range(len(fault.path), 0, -1):
-            part = fault.path[:length]
-            exact = part == fault.path and not fault.at_key
-            place = (self._values.get(part) if exact else None) or self._keys.get(part)
-            if place:
-                return place
-        return self._keys.get((), (0, 0))
+    def __init__(self, text: str, reading: Reading, wanted: Set[Path] = frozenset()) -> None:
+        self.text, self.reading, self.wanted = text, reading, set(wanted)
+        self.keys: dict[Path, tuple[int, int]] = {}
+        self.values: dict[Path, tuple[int, int]] = {}
+        self._path: list[Step] = []
+        self._scalars = 0
+        self._events: Iterator[Any] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
-    def _place(self, value: Any, event: Any) -> None:
-        is_key = bool(self._open) and self._key is None and isinstance(self._open[-1], dict)
-        path = (*self._steps[1:], str(value)) if is_key else self._here()
-        if path in self._wanted:
+    def document(self) -> Any:
+        """Return the tree of the only document."""
+        tree: Any = None
+        try:
+            for event in self._events:
+                if isinstance(event, yaml.DocumentStartEvent):
+                    if tree is not None:
+                        self._stop(
+                            event, "a second document begins here; a file describes one machine, leave out '---'"
+                        )
+                    tree = self._node(next(self._events))
+        except StopReading:
+            return REFUSED
+        except yaml.MarkedYAMLError as error:
+            self.reading.faults.append(explain(error, self.text))
+            return REFUSED
+        return Plain("") if tree is None else tree
+
+    def _node(self, event: Any) -> Any:
+        """Return what an event begins, where the path leads to; REFUSED if anything but its content is wrong."""
+        if isinstance(event, yaml.ScalarEvent):
+            self._scalars += 1
+            if self._scalars > _MOST_SCALARS:
+                what = f"more than {_MOST_SCALARS} values; put measurements into a file and name it under 'trace'"
+                self._stop(event, what)
+        if self.wanted:
+            self._locate(event)
+        wrong = self._guard(event)
+        if isinstance(event, yaml.AliasEvent):
+            return REFUSED
+        if isinstance(event, yaml.ScalarEvent):
+            return REFUSED if wrong else event.value if event.style else Plain(event.value)
+        if len(self._path) >= DEPTH_LIMIT:
+            self._stop(event, f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that")
+        if isinstance(event, yaml.MappingStartEvent):
+            mapping = self._mapping()
+            return REFUSED if wrong else mapping
+        items: list[Any] = []
+        while not isinstance(inner := next(self._events), yaml.SequenceEndEvent):
+            self._path.append(len(items))
+            items.append(self._node(inner))
+            self._path.pop()
+        return REFUSED if wrong else items
+
+    def _mapping(self) -> Any:
+        """Return the mapping that has begun; REFUSED if one of its keys is no text."""
+        found: Tree = {}
+        whole = True
+        while not isinstance(event := next(self._events), yaml.MappingEndEvent):
+            if isinstance(event, yaml.ScalarEvent):
+                name = str(event.value)
+                self._scalars += 1
+                wrong = self._guard(event)
+                if not name:
+                    wrong = self._report(event, "a key is missing before the colon")
+                place: Path = (*self._path, name)
+                if place in self.wanted:
+                    self.keys.setdefault(place, _place_of(event))
+            else:
+                name = "?"
+                wrong = isinstance(event, yaml.AliasEvent) or self._report(
+                    event, "a key must be a plain text, not a list or a mapping"
+                )
+                self._path.append(name)
+                self._node(event)
+                self._path.pop()
+            self._path.append(name)
+            twice = name in found and name != "?" and self._report(event, "given twice; leave one of them out")
+            value = self._node(next(self._events))
+            self._path.pop()
+            found[name] = REFUSED if twice else value
+            whole = whole and not wrong
+        return found if whole else REFUSED
+
+    def _guard(self, event: Any) -> bool:
+        """Note a tag, an anchor or an alias, and return whether there is one."""
+        if isinstance(event, yaml.AliasEvent):
+            return self._report(event, f"'*{shown(str(event.anchor))}' is not supported; write the value itself{_LIKE}")
+        if event.tag is not None:
+            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
+            return self._report(event, f"the tag '{shown(tag)}' is not supported; leave it out")
+        if event.anchor is not None:
+            what = f"'&{shown(event.anchor)}' is not supported; write the value wherever it is needed{_LIKE}"
+            return self._report(event, what)
+        return False
+
+    def _locate(self, event: Any) -> None:
+        """Keep the place of a node that is wanted, and stop after the last of them."""
+        path = tuple(self._path)
+        if path in self.wanted:
             # an empty value is pointed at by its key, as is a mapping or a list; items of a list have no key
-            noted = self._values if not is_key and isinstance(value, str) and value else self._keys
-            noted.setdefault(path, (event.start_mark.line, event.start_mark.column))
-            if not is_key:
-                self._wanted.discard(path)
-        if not self._wanted:
+            text = isinstance(event, yaml.ScalarEvent) and event.value
+            places = self.values if text else self.keys
+            places.setdefault(path, _place_of(event))
+            self.wanted.discard(path)
+        if not self.wanted:
             raise StopReading
-        super()._place(value, event)
+
+    def _report(self, event: Any, message: str) -> bool:
+        self.reading.note(Fault(tuple(self._path), message).at(*_place_of(event)))
+        return True
+
+    def _stop(self, event: Any, message: str) -> None:
+        self._path.clear()
+        self._report(event, message)
+        raise StopReading
+
+
+def _place_of(event: Any) -> tuple[int, int]:
+    return event.start_mark.line, event.start_mark.column
 
 
 _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
@@ -266,7 +197,9 @@ def explain(error: Any, text: str) -> Fault:
     elif ("mapping values" in problem or "':'" in problem) and (glued := _glued(lines, begin.line, line)):
         return glued
     elif at_begin := "could not find expected ':'" in problem:
-        message = _without_colon(lines[begin.line])
+        key, _, value = lines[begin.line].strip().partition(" ")
+        written = f"{shown(key)}: {shown(value.strip())}" if value else "key: value"
+        message = f"a colon is missing in this line; write '{written}'"
     else:
         message = _words(context, problem, lines[line], column)
     return Fault((), message).at(*((begin.line, begin.column) if at_begin else (line, column)))
@@ -281,12 +214,6 @@ def _glued(lines: list[str], first: int, last: int) -> Fault | None:
             message = f"a space is missing after the colon; write '{shown(key)}: {shown(value.strip())}'"
             return Fault((), message).at(number, found.start(2))
     return None
-
-
-def _without_colon(line: str) -> str:
-    key, _, value = line.strip().partition(" ")
-    written = f"{shown(key)}: {shown(value.strip())}" if value else "key: value"
-    return f"a colon is missing in this line; write '{written}'"
 
 
 def _words(context: str, problem: str, line: str, column: int) -> str:

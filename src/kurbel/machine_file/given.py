@@ -7,7 +7,7 @@ from kurbel.declared.reading import Reading, Tree
 from kurbel.errors import Path, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.reader import set_over
+from kurbel.machine_file.overrides import set_over
 
 _MOST = 12
 _LONGEST = 160

@@ -1,11 +1,12 @@
 """Values set from outside over those of a machine file: `KEY=VALUE`, the key dotted, the value as in the file."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, NoReturn
 
 from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
+from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
 from kurbel.near_words import did_you_mean
@@ -40,9 +41,13 @@ def read_override(text: str, option: str = "--set") -> Override:
         _refused(given, f"write KEY=VALUE, such as {option} cylinders.0.bore='450 mm'")
     if any(str(step).endswith(":") for step in path):
         _refused(given, "write KEY=VALUE, without the colon")
+    try:  # an argument has the bytes that its locale does not read as surrogates
+        content = value.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:  # those that stand for no byte are reported by the decoder
+        content = value.encode("utf-8", "surrogatepass")
     reading = Reading()
     try:
-        tree = parse(decode(option, _bytes(value)).text, reading)
+        tree = parse(decode(option, content).text, reading)
     except MachineFileError as error:
         reading.faults += error.faults
     if reading.faults:
@@ -50,25 +55,8 @@ def read_override(text: str, option: str = "--set") -> Override:
     return Override(given, path, tree)
 
 
-def overrides_of_case(tree: Tree, name: str) -> Iterator[Override]:
-    """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
-    cases: Any = tree.get("cases")
-    listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
-    named = {str(one.get("name")): index for index, one in enumerate(listed)}
-    if name not in named:
-        there = f"there are {', '.join(map(shown, named))}" if named else "the file has no 'cases'"
-        raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
-    values = listed[named[name]].get("set")
-    for key, value in values.items() if isinstance(values, dict) else ():
-        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
-
-
-def _bytes(argument: str) -> bytes:
-    """Return the bytes of an argument, which has those as surrogates that its locale does not read."""
-    try:
-        return argument.encode("utf-8", "surrogateescape")
-    except UnicodeEncodeError:  # surrogates that stand for no byte are told by the decoder
-        return argument.encode("utf-8", "surrogatepass")
+def _refused(given: str, why: str) -> NoReturn:
+    raise UsageError(f"{given}: {why}")
 
 
 def path_of(key: str) -> Path:
@@ -84,34 +72,57 @@ def path_of(key: str) -> Path:
     return tuple(int(step) if re.fullmatch(_NUMBER, step) else step for step in steps)
 
 
-def _refused(given: str, why: str) -> NoReturn:
-    raise UsageError(f"{given}: {why}")
+def dotted(path: Path) -> str:
+    """Return a path as a key on the command line is written."""
+    return ".".join(map(str, path))
 
 
-def overridden(tree: Tree, overrides: Iterable[Override]) -> None:
-    """Put the values into the tree; what leads there and is not given, is made. Raises UsageError."""
+def set_over(tree: Any, origin: Origin) -> list[Override]:
+    """Put into the tree of a file what is set over it, and return that; raises UsageError.
+
+    First the values of its load case, then its overrides, then what a sweep varies.
+    """
+    if not isinstance(tree, dict):
+        return []
+    overrides = [
+        *(_of_case(tree, origin.case) if origin.case else ()),
+        *map(read_override, origin.overrides),
+        *(read_override(one, "--vary") for one in origin.varied),
+    ]
     for one in overrides:
         node: Any = tree
-        for place, step in enumerate(one.path):
-            if node is REFUSED:  # told already
-                break
-            node = _set(node, one, place, step)
+        for place in range(len(one.path)):
+            if node is not REFUSED:
+                node = _step(node, one, place)
+    return overrides
 
 
-def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
-    """Go one step down, or set the value at the last one, and return what stands there."""
-    last = place == len(one.path) - 1
+def _of_case(tree: Tree, name: str) -> Iterator[Override]:
+    """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
+    cases: Any = tree.get("cases")
+    listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
+    named = {str(one.get("name")): index for index, one in enumerate(listed)}
+    if name not in named:
+        there = f"there are {', '.join(map(shown, named))}" if named else "the file has no 'cases'"
+        raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
+    values = listed[named[name]].get("set")
+    for key, value in values.items() if isinstance(values, dict) else ():
+        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
+
+
+def _step(node: Any, one: Override, place: int) -> Any:
+    """Go one step down, or set the value at the last one, and return what is there; what leads to it is made."""
+    step, last = one.path[place], place == len(one.path) - 1
+    above = dotted(one.path[:place])
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            where, instead = dotted(one.path[:place]), (*one.path[:place], _near(step, node), *one.path[place + 1 :])
-            items = f"its items are 0 to {len(node) - 1}: write {dotted(instead)}=…"
-            _refused(one.given, f"'{where}' is a list; {items}")
+            instead = dotted((*one.path[:place], _near(step, node), *one.path[place + 1 :]))
+            _refused(one.given, f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…")
         if last:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        where = dotted(one.path[:place])
-        _refused(one.given, f"nothing stands below '{where}', which is {kind_of(node)}")
+        _refused(one.given, f"nothing stands below '{above}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):
@@ -119,11 +130,6 @@ def _set(node: Any, one: Override, place: int, step: str | int) -> Any:
             _refused(one.given, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
         node[str(step)] = {}
     return node[str(step)]
-
-
-def dotted(path: Path) -> str:
-    """Return a path as a key on the command line is written."""
-    return ".".join(map(str, path))
 
 
 def _near(step: str | int, items: Sequence[Any]) -> int:
@@ -154,24 +160,15 @@ def by_numbers(tree: Tree, key: str) -> str:
     return dotted(tuple(found))
 
 
-def named(faults: Iterable[Fault], overrides: Sequence[Override]) -> list[Fault]:
-    """Return faults with the override that they are of; of others it is said that there are some."""
-    beside = f" (with {', '.join(one.given for one in overrides)})"
-    return [
-        next(
-            (_said_of(fault, one) for one in overrides if _is_of(fault, one)),
-            fault._replace(message=fault.message + beside),
-        )
-        for fault in faults
-    ]
-
-
-def _said_of(fault: Fault, one: Override) -> Fault:
-    """Return a fault of an override where that is given."""
-    if one.place:
-        return fault._replace(path=(*one.place, *fault.path[len(one.path) :]))
-    return fault._replace(override=one.given)
-
-
-def _is_of(fault: Fault, one: Override) -> bool:
-    return tuple(map(str, fault.path[: len(one.path)])) == tuple(map(str, one.path))
+def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
+    """Return a fault with the override that it is of; of another it is said that there are some."""
+    for one in overrides:
+        length = len(one.path)
+        if [*map(str, fault.path[:length])] == [*map(str, one.path)]:
+            return (
+                fault._replace(path=(*one.place, *fault.path[length:]))
+                if one.place
+                else fault._replace(override=one.given)
+            )
+    beside = f" (with {', '.join(one.given for one in overrides)})" if overrides else ""
+    return fault._replace(message=fault.message + beside)

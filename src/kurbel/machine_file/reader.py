@@ -4,24 +4,21 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from kurbel.declared.forms import Record
-from kurbel.declared.forms.structures import Maker
+from kurbel.declared.forms.structures import Maker, RecordForm, places
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
-from kurbel.errors import Fault, UsageError
+from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
-from kurbel.machine_file.events import parse
+from kurbel.machine_file.events import located, parse
+from kurbel.machine_file.overrides import named, set_over
 from kurbel.machine_file.zeroed_units import without_zeros
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 
-if TYPE_CHECKING:
-    from kurbel.machine_file.overrides import Override
-
-ROOT = Record(Machine)
+ROOT = RecordForm(Machine)
 """The form of a whole machine file."""
 
 
@@ -61,14 +58,14 @@ def machine_of(given: Any) -> Machine:
     raise UsageError(f"a machine is expected, or the path or text of a machine file, not {shown(repr(given))}")
 
 
-def reading_of(origin: Origin) -> Reading:
-    """Return a pass over a file that has not begun."""
-    return Reading(origin.folder, lambda: ROOT.places("", "at the top of the file"), key_values)
-
-
 def key_values() -> Mapping[str, Quantity]:
     """Return the key values on which a machine file may put limits, by id."""
     return by_id(*every_quantity().all_key_values)
+
+
+def reading_of(origin: Origin) -> Reading:
+    """Return a pass over a file that has not begun."""
+    return Reading(origin.folder, lambda: places(ROOT), key_values)
 
 
 def read_machine(origin: Origin) -> Machine:
@@ -83,49 +80,20 @@ def read_values(origin: Origin, reading: Reading) -> Given:
     tree = parse(origin.text, reading)
     known = len(reading.faults)  # YAML has told their places
     overrides = set_over(tree, origin)
-    given = REFUSED if tree is REFUSED else _given(reading, tree, origin.stem)
-    if reading.faults:
-        raise origin.error(*reading.faults[:known], *_located(origin.text, reading.faults[known:], overrides))
-    assert isinstance(given, Given)
-    return given
-
-
-def set_over(tree: Any, origin: Origin) -> "list[Override]":
-    """Put the overrides of a file into its tree, and return them."""
-    if not (origin.case or origin.overrides or origin.varied) or not isinstance(tree, dict):
-        return []
-    from kurbel.machine_file.overrides import overridden, overrides_of_case, read_override
-
-    read = [
-        *(overrides_of_case(tree, origin.case) if origin.case else ()),
-        *map(read_override, origin.overrides),
-        *(read_override(one, "--vary") for one in origin.varied),
-    ]
-    overridden(tree, read)
-    return read
-
-
-def _given(reading: Reading, tree: Any, stem: str) -> Any:
+    given = REFUSED
     try:
         if isinstance(tree, dict):
-            given = ROOT.read(reading, {"name": stem, **without_zeros(tree, reading)}, ())
+            given = ROOT.read(reading, {"name": origin.stem, **without_zeros(tree, reading)}, ())
             Maker(reading).made(given)
-            return given
-        if isinstance(tree, Plain) and not tree:
-            return reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
-        return reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")
+        elif isinstance(tree, Plain) and not tree:
+            reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
+        elif tree is not REFUSED:
+            reading.fault((), f"expected lines such as 'crank: 400 mm', got {kind_of(tree)}{glued_hint(tree)}")
     except StopReading:
-        return REFUSED
-
-
-def _located(text: str, faults: list[Fault], overrides: "list[Override]") -> list[Fault]:
-    """Return the faults with their places in the text, or with the override that they are of."""
-    if not faults:
-        return []
-    from kurbel.machine_file.events import located
-
-    if overrides:
-        from kurbel.machine_file.overrides import named
-
-        faults = named(faults, overrides)
-    return [*(one for one in faults if one.override), *located(text, [one for one in faults if not one.override])]
+        pass
+    if reading.faults:
+        found = [named(fault, overrides) for fault in reading.faults[known:]]
+        in_file = located(origin.text, [one for one in found if not one.override])
+        raise origin.error(*reading.faults[:known], *(one for one in found if one.override), *in_file)
+    assert isinstance(given, Given)
+    return given

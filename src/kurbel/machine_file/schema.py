@@ -4,8 +4,8 @@ A schema cannot know rules between numbers, such as a rod longer than its crank;
 bounds of bare numbers, and which keys exclude each other.
 """
 
-from kurbel.declared.forms import Expectations, Limits
-from kurbel.declared.keys import Schema
+from kurbel.declared.forms import EXPECTATIONS, LIMITS
+from kurbel.declared.forms.values import Schema
 from kurbel.machine_file.reader import ROOT, key_values
 
 
@@ -13,7 +13,7 @@ def json_schema() -> Schema:
     """Return the JSON Schema of a whole machine file."""
     definitions: Schema = {}
     root = ROOT.object_schema(definitions)
-    for name, form in (("limits", Limits()), ("expect", Expectations())):
+    for name, form in (("limits", LIMITS), ("expect", EXPECTATIONS)):
         root["properties"][name] |= form.schema_of(key_values(), definitions)
     return {
         "$schema": "http://json-schema.org/draft-07/schema#",

@@ -15,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Described, Rule
+from kurbel.declared.keys import Record, Rule
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
@@ -147,7 +147,7 @@ class Sketch:
     across: Point | None = None
 
 
-class Mechanism(Described):
+class Mechanism(Record):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
     1. `name`, the word in the machine file, fields that are its keys there, and its geometric rules;
@@ -321,7 +321,7 @@ class Mechanism(Described):
         return ()
 
 
-def finite(record: Described, *names: str) -> Iterator[Rule]:
+def finite(record: Record, *names: str) -> Iterator[Rule]:
     """Yield the rule that these lengths are finite; what is not given is None."""
     for name in names:
         value = vars(record)[name]

@@ -1,6 +1,6 @@
 """The mechanisms that a machine file may name."""
 
-from kurbel.declared.forms import Record
+from kurbel.declared.forms import RecordForm
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
@@ -10,5 +10,5 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 
 KINDS: tuple[type[Mechanism], ...] = (SliderCrank, ScotchYoke, SlottedLever, FourBar, ParallelCrank, YokeFrame)
-MECHANISMS = {one.name: Record(one) for one in KINDS}
+MECHANISMS = {one.name: RecordForm(one) for one in KINDS}
 """Word in the machine file -> what reads its keys."""

@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.render import Look
 from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, looks_of
-from kurbel.render.text import BLANK, Line, Piece, folded, line, right, width
+from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, width
 from kurbel.report.picture import Curve, Panel, Picture
 
 # lengths in columns; a row is as high as two columns are wide
@@ -102,7 +102,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
         return
     at = {int(place // 2): text for place, text in ticks}
     for number, row in enumerate(canvas.lines()):
-        yield (*line(right(at.get(number, ""), side - 1) + " ", "unit"), *row)
+        yield (*line(padded(at.get(number, ""), side - 1, True) + " ", "unit"), *row)
     yield from _below(frame, side, canvas.columns)
 
 
@@ -141,4 +141,4 @@ def _below(frame: PanelFrame, side: int, columns: int) -> Iterator[Line]:
         under[round(left) : round(left) + len(text)] = text
     yield line(" " * side + "".join(rule), "rule")
     yield line(" " * side + "".join(under).rstrip(), "unit")
-    yield line(right(axis_text(frame.panel.x, frame.look), side + columns), "unit")
+    yield line(padded(axis_text(frame.panel.x, frame.look), side + columns, True), "unit")

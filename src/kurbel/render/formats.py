@@ -20,19 +20,12 @@ _WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {
     "html": html,
     "latex": lambda report, look: document(report, look, Latex()),
 }
-"""Format, of FORMATS -> the function that makes its text of a report."""
-_ALWAYS_UTF_8 = ("html", "latex")
-"""Formats that are read as UTF-8, whatever the terminal has."""
+"""Format, of FORMATS -> the function that makes its text of a report, piece by piece: a long table is never held."""
 
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
     """Return the report as text that ends with a newline; the same report gives the same text every time."""
-    return "".join(pieces(report, look))
-
-
-def pieces(report: Report, look: Look) -> Iterable[str]:
-    """Return the text of the report piece by piece, each made when it is read: a long table is never held."""
-    return _WRITERS[look.format](report, look)
+    return "".join(_WRITERS[look.format](report, look))
 
 
 def write_report(report: Report, look: Look, file_name: str | None = None) -> None:
@@ -41,12 +34,12 @@ def write_report(report: Report, look: Look, file_name: str | None = None) -> No
     A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
     text, of a width only if one is given. Raises UsageError where it cannot be written.
     """
-    if file_name is not None and file_name != "-":
+    if file_name not in (None, "-"):
         look = replace(look, encoding="utf-8")
     else:
         look = stdout_look(look)
-        if look.format in _ALWAYS_UTF_8:
+        if look.format in ("html", "latex"):  # are read as UTF-8, whatever the terminal has
             look = replace(look, encoding="utf-8")
         if look.format == "table" and write_coloured(page(report, look), look):
             return
-    write_out(pieces(report, look), file_name, look.encoding)
+    write_out(_WRITERS[look.format](report, look), file_name, look.encoding)

@@ -223,9 +223,10 @@ def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> I
 
 def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
     """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
-    found = [(name, sheet.heads, columns, True) for sheet in sheets(report, look) for name, columns in sheet.bands]
+    found = [(name, heads, columns, True) for heads, bands in sheets(report, look) for name, columns in bands]
     for one in report.printed_tables:
-        found.append((look.text(one.title), *place_table(one, look), False))
+        table = place_table(one, look)
+        found.append((table.caption, [*table.columns[: table.heads]], [*table.columns[table.heads :]], False))
     for caption, names, columns, headed in found:
         most = across or max(len(columns), 1)
         for start in range(0, max(len(columns), 1), most):

@@ -30,25 +30,24 @@ def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
     >>> scale_of([2.4e7, 1.0])
     Scale(decimals=2, exponent=6)
     """
-    least = 0 if digits is None else -_LARGE
-    digits = digits or DIGITS
     largest = max((abs(value) for value in values if value is not None), default=0.0)
     if largest == 0:
         return Scale(0)
-    power = _power(largest, digits)
-    exponent = 3 * math.floor(power / 3) if power >= _LARGE or power < _SMALL else 0
-    return Scale(max(least, digits - 1 - power + exponent), exponent)
-
-
-def _power(value: float, digits: int) -> int:
-    """Return the power of ten of the value as rounded: 3 for 999.96 at four digits."""
-    return int(f"{value:.{digits - 1}e}".partition("e")[2])
+    power = _power(largest, digits or DIGITS)
+    exponent = 0 if _SMALL <= power < _LARGE else 3 * math.floor(power / 3)
+    least = 0 if digits is None else -_LARGE
+    return Scale(max(least, (digits or DIGITS) - 1 - power + exponent), exponent)
 
 
 def angle_scale(values: Iterable[Value]) -> Scale:
     """Return the fewest decimals that distinguish all these angles, at most six."""
-    texts = (_shortest(value, 6) for value in values if value is not None)
+    texts = (angle(value, decimals=6) for value in values if value is not None)
     return Scale(max((len(text.partition(".")[2]) for text in texts), default=0))
+
+
+def _power(value: float, digits: int) -> int:
+    """Return the power of ten of the value as rounded: 3 for 999.96 at four digits."""
+    return int(f"{abs(value):.{digits - 1}e}".partition("e")[2])
 
 
 def cell(value: Value, scale: Scale, comma: bool = False) -> str:
@@ -63,17 +62,13 @@ def cell(value: Value, scale: Scale, comma: bool = False) -> str:
         return ""
     if value == 0:
         return "0"
-    return decimal(f"{_rounded(_over(value, scale.exponent), scale.decimals):.{max(0, scale.decimals)}f}", comma)
-
-
-def _over(value: float, exponent: int) -> float:
-    if exponent < 0:  # two steps: 10.0 ** 324 is no float
-        return value * 10.0 ** (-exponent // 2) * 10.0 ** (-exponent - -exponent // 2)
-    return value / 10.0**exponent
-
-
-def _rounded(value: float, decimals: int) -> float:
-    return round(value, decimals) + 0.0  # adding 0.0 turns -0.0 into 0.0
+    if scale.exponent < 0:  # two steps: 10.0 ** 324 is no float
+        half = -scale.exponent // 2
+        value = value * 10.0**half * 10.0 ** (-scale.exponent - half)
+    else:
+        value /= 10.0**scale.exponent
+    # adding 0.0 turns -0.0 into 0.0
+    return decimal(f"{round(value, scale.decimals) + 0.0:.{max(0, scale.decimals)}f}", comma)
 
 
 def decimal(text: str, comma: bool) -> str:
@@ -81,46 +76,34 @@ def decimal(text: str, comma: bool) -> str:
     return text.replace(".", ",") if comma else text
 
 
-def _shortest(value: float, decimals: int) -> str:
-    text = f"{_rounded(value, decimals):.{decimals}f}"
-    return text.rstrip("0").rstrip(".")
-
-
-def single(value: float, digits: int | None = None, comma: bool = False) -> tuple[str, int]:
+def single(value: float, digits: int | None = None, comma: bool = False, own: int = 0) -> tuple[str, int]:
     """Return a single value, and its power of ten.
+
+    own: digits of a value among others of quite another size, which has a power of ten sooner.
 
     >>> single(0.8), single(2.4e7), single(-1.1e-16)
     (('0.8000', 0), ('2.400', 7), ('-1.100', -16))
-    """
-    if isinstance(value, int):
-        return str(value), 0
-    scale = scale_of((value,), digits)
-    if scale.exponent:
-        scale = Scale((digits or DIGITS) - 1, _power(abs(value), digits or DIGITS))
-    return cell(value, scale, comma), scale.exponent
-
-
-def alone(value: float, digits: int, comma: bool = False) -> tuple[str, int]:
-    """Return a value among others of quite another size, with so many digits, and its power of ten.
-
-    >>> alone(0.0417, 2), alone(3.2e-16, 2), alone(1464, 2), alone(0, 2)
+    >>> single(0.0417, own=2), single(3.2e-16, own=2), single(1464, own=2), single(0, own=2)
     (('0.042', 0), ('3.2', -16), ('1464', 0), ('0', 0))
     """
     if not value or isinstance(value, int):
         return str(int(value)), 0
-    power = _power(abs(value), digits)
-    if -3 < power < 5:
-        return decimal(f"{value:.{max(0, digits - 1 - power)}f}", comma), 0
-    return decimal(f"{value / 10.0**power:.{digits - 1}f}", comma), power
+    count = digits or own or DIGITS
+    power = _power(value, count)
+    small, large = (-2, 5) if own else (_SMALL, _LARGE)
+    exponent = 0 if small <= power < large else power
+    decimals = count - 1 - power + exponent
+    return cell(value, Scale(decimals if digits and not own else max(0, decimals), exponent), comma), exponent
 
 
-def angle(value: float, comma: bool = False) -> str:
-    """Return an angle in degrees with two decimals at most.
+def angle(value: float, comma: bool = False, decimals: int = 2) -> str:
+    """Return an angle in degrees with so many decimals at most.
 
     >>> angle(79.10014), angle(180.0)
     ('79.1', '180')
     """
-    return decimal(_shortest(value, 2), comma)
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return decimal(text.rstrip("0").rstrip("."), comma)
 
 
 def rounded(value: Value, digits: int | None) -> Value:

@@ -9,15 +9,15 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from itertools import islice
-from shutil import get_terminal_size
-from typing import TextIO
+from shutil import copyfile, get_terminal_size
+from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import Line, width
 
 _MOST_COLOURED_LINES = 400
-_STYLES = {
+STYLES = {
     "title": "bold",
     "head": "bold cyan",
     "rule": "dim",
@@ -67,46 +67,8 @@ def write_coloured(page: Iterable[Line], look: Look) -> bool:
     # a width, and a height with it, or rich believes a COLUMNS=0 of the environment and prints nothing
     console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
     for one in lines:  # as Text objects: a string would lose its brackets as markup
-        console.print(Text.assemble(*coloured(one)))
+        console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in one)))
     return True
-
-
-def coloured(line: Line) -> list[tuple[str, str]]:
-    """Return the pieces of a line with their colours."""
-    return [(piece.text, _STYLES[piece.role]) for piece in line]
-
-
-def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None = None) -> None:
-    """Write to a file as UTF-8, or to standard output, in its own encoding if none is given; UsageError as both.
-
-    What is to be piped on as a file is UTF-8 whatever the encoding of standard output.
-    """
-    if file_name is not None and file_name != "-":
-        write_file(file_name, texts)
-    else:
-        write_stdout(texts, encoding)
-
-
-def write_stdout(texts: Iterable[str], encoding: str | None = None) -> None:
-    """Write to standard output, as bytes so that line ends stay `\n`; a reader that leaves early is no fault.
-
-    Raises UsageError where it cannot be written, on a full disk say.
-    """
-    stdout = _stdout()
-    try:
-        if hasattr(stdout, "buffer"):
-            stdout.flush()
-            encoder = codecs.getincrementalencoder(encoding or stdout.encoding or "utf-8")("replace")
-            for text in texts:  # one byte order mark at most
-                stdout.buffer.write(encoder.encode(text))
-        else:
-            stdout.writelines(texts)
-        stdout.flush()
-    except BrokenPipeError:
-        silence(stdout)
-    except OSError as error:
-        silence(stdout)
-        raise UsageError(f"cannot write to standard output: {error.strerror}") from None
 
 
 def silence(stream: TextIO) -> None:
@@ -115,37 +77,70 @@ def silence(stream: TextIO) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-# files
+# standard output and files alike
 
 
-def write_file(file_name: str, texts: Iterable[str]) -> None:
-    """Write a file as UTF-8 with `\n` line ends, whole or not at all. Raises UsageError where it cannot be written."""
-    try:
-        with replaced(file_name) as path, open(path, "w", encoding="utf-8", newline="\n") as file:
-            file.writelines(texts)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else ""
-        raise UsageError(f"cannot write {file_name or 'to an empty file name'}: {reason or error}") from None
+def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None = None) -> None:
+    r"""Write with `\n` line ends to a file as UTF-8, or to standard output, in its own encoding if none is given.
+
+    Raises UsageError where it cannot be written.
+    """
+    if file_name in (None, "-"):
+        encoding = encoding or _stdout().encoding
+    # one byte order mark at most
+    encoder = codecs.getincrementalencoder(encoding or "utf-8")("replace")
+    with opened(file_name) as file:
+        for text in texts:
+            file.write(encoder.encode(text))
 
 
 @contextmanager
-def replaced(file_name: str) -> Iterator[str]:
-    """Yield the path to write to: a new file next to the wanted one, which replaces it once it is whole.
+def opened(file_name: str | None, resumed: int | None = None) -> Iterator[BinaryIO]:
+    """Yield what takes the bytes of standard output or of a file, which is replaced once it is whole, or not at all.
 
-    What is no file, such as a pipe or /dev/stdout, is written to as it is.
+    A device or a pipe is written to as it is. resumed: of what may go on later, the bytes that stay of what is there;
+    it goes to FILE.part, which an early end leaves. A reader that leaves early is no fault; raises UsageError.
     """
-    if not (target := whole_file(file_name)):
-        yield file_name
-        return
-    new = os.path.join(os.path.dirname(target), f".kurbel-{os.urandom(8).hex()}{os.path.splitext(file_name)[1]}")
+    named = file_name not in (None, "-")
     try:
-        os.close(os.open(new, os.O_CREAT | os.O_EXCL, 0o666))
-        take_mode(new, target)
-        yield new
-        os.replace(new, target)
-    except BaseException:  # an interrupt, too, leaves nothing behind
+        if not named:
+            stdout = _stdout()
+            stdout.flush()
+            yield stdout.buffer
+            stdout.flush()
+        elif target := whole_file(str(file_name)):
+            with _replacing(target, resumed) as file:
+                yield file
+        else:
+            with open(str(file_name), "wb") as file:
+                yield file
+    except OSError as error:
+        if not named:
+            silence(sys.stdout)
+        if not isinstance(error, BrokenPipeError):
+            where = (file_name or "to an empty file name") if named else "to standard output"
+            raise UsageError(f"cannot write {where}: {error.strerror or error}") from None
+
+
+@contextmanager
+def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
+    """Yield a new file next to a target, which takes its mode and its place; without anything in it it is removed."""
+    ending = f".kurbel-{os.urandom(8).hex()}"
+    path = f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
+    if resumed and not os.path.isfile(path):
+        copyfile(target, path)
+    try:
+        with open(path, "r+b" if resumed else "wb") as file:
+            with suppress(FileNotFoundError):
+                os.chmod(path, stat.S_IMODE(os.stat(target).st_mode))
+            file.seek(resumed or 0)
+            file.truncate()
+            yield file
+        os.replace(path, target)
+    except BaseException:  # an interrupt, too, leaves nothing behind that is not wanted
         with suppress(OSError):
-            os.unlink(new)
+            if resumed is None or not os.path.getsize(path):
+                os.unlink(path)
         raise
 
 
@@ -159,26 +154,18 @@ def whole_file(file_name: str) -> str:
         raise OSError(missing, os.strerror(missing))
     with suppress(FileNotFoundError):
         old = os.stat(file_name)
-        if not stat.S_ISREG(old.st_mode) or _is_open(old):
+        if not stat.S_ISREG(old.st_mode) or any(_is_same(old, descriptor) for descriptor in (1, 2)):
             return ""
         if not os.access(file_name, os.W_OK):  # a rename would not ask
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), file_name)
     return os.path.realpath(file_name)  # a link stays one
 
 
-def _is_open(status: os.stat_result) -> bool:
-    """Whether this file is where standard output or standard error goes: /dev/stdout by its other name."""
-    for descriptor in (1, 2):
-        with suppress(OSError):
-            if os.path.samestat(status, os.fstat(descriptor)):
-                return True
+def _is_same(one: os.stat_result, other: str | int) -> bool:
+    """Whether a file is the one with this name or descriptor: /dev/stdout has another name."""
+    with suppress(OSError, ValueError):
+        return os.path.samestat(one, os.stat(other))
     return False
-
-
-def take_mode(new: str, target: str) -> None:
-    """Give a file the mode of the one that it is to replace, if there is one."""
-    with suppress(FileNotFoundError):
-        os.chmod(new, stat.S_IMODE(os.stat(target).st_mode))
 
 
 def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:
@@ -187,7 +174,7 @@ def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:
         return
     for other in read:
         with suppress(OSError, ValueError):
-            status = os.fstat(0) if other == "-" else os.stat(other)
-            if stat.S_ISREG(status.st_mode) and os.path.samestat(os.stat(file_name), status):
+            status = os.stat(0 if other == "-" else other)
+            if stat.S_ISREG(status.st_mode) and _is_same(status, file_name):
                 shown = "standard input" if other == "-" else other
                 raise UsageError(f"{file_name} would overwrite {shown}, which is read; name another file")

@@ -1,23 +1,22 @@
 """The printed page: title, tables, key values, reasons and warnings; crank angles across, or a line for each row."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from kurbel.render import Look
 from kurbel.render.output import stdout_look, write_out
-from kurbel.render.text import BLANK, Line, Piece, folded, left, line, plain, right, width
+from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, plain, width
 from kurbel.render.text_tables import (
     MARK,
-    KeyValueText,
-    Sheet,
     TextColumn,
-    key_value_text,
+    key_value_table,
     part_name,
     place_table,
     sentence_text,
     sheets,
 )
 from kurbel.report.alike import shown_once
-from kurbel.report.tables import KeyValue, PlaceTable, Report
+from kurbel.report.tables import KeyValue, Report
 
 _NINE = 9  # angles to a block: the book breaks after 80°
 _GAP = 2
@@ -31,111 +30,118 @@ def page(report: Report, look: Look) -> Iterator[Line]:
     report = shown_once(report)
     yield from (line(one, "title") for one in folded(look.text(report.title), look.width))
     yield from (line(one) for text in report.head for one in folded(look.text(text), look.width))
-    for sheet in sheets(report, look):
+
+    for heads, bands in sheets(report, look):
         yield BLANK
-        yield from (_rows if look.layout == "rows" else _book)(sheet, look)
+        if look.layout == "book":
+            yield from _book(heads, bands, report.group == "ratios", look)
+            continue
+        for number, (name, columns) in enumerate(bands):
+            yield from [BLANK] * (number > 0) + [line(name, "name")] * bool(name)
+            yield from _blocks(heads, columns, look, _ROW_GAP, between=(BLANK,))
+
     for table in report.printed_tables:
         yield BLANK
-        yield from _places(table, look)
-    for paragraph in _prose(report, look):
-        yield BLANK
-        yield from paragraph
+        shown = place_table(table, look)
+        yield from (line(one, "name") for one in folded(shown.caption, look.width))
+        # without names the first column names the rows; a name that repeats the one above stays blank
+        hidden = shown.heads and not table.headed
+        side = [one._replace(symbol="") if hidden else one for one in shown.columns[: shown.heads or 1]]
+        if len(side) > 1:
+            repeated = zip(side[0].values, ("", *side[0].values))
+            side[0] = side[0]._replace(values=["" if name == above else name for name, above in repeated])
+        yield from _blocks(side, shown.columns[len(side) :], look, _GAP)
+
+    if notes := [note for note in (report.mirrored, *report.notes) if note]:
+        yield from (BLANK, *(one for note in notes for one in sentence("", note, look)))
+    for part in report.all_parts:
+        name = part_name(report, part, look)
+        of = f": {name}" if name else ""
+        if part.key_values:
+            yield from (BLANK, line(f"Key values{of}", "name"), *_key_value_lines(part.key_values, look))
+        if part.left_out:
+            yield from (BLANK, line(f"Left out{of}", "name"), *in_two_columns(part.left_out, look))
+        if part.warnings:
+            yield from (BLANK, line(f"Warnings{of}", "name"))
+            yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
 
 
 # a line for each row
-
-
-def _rows(sheet: Sheet, look: Look) -> Iterator[Line]:
-    """Yield a line for each crank angle, part under part."""
-    for number, (name, columns) in enumerate(sheet.bands):
-        if number:
-            yield BLANK
-        if name:
-            yield line(name, "name")
-        yield from _blocks(sheet.heads, columns, look, _ROW_GAP, between=(BLANK,))
-
-
-def _places(table: PlaceTable, look: Look) -> Iterator[Line]:
-    """Yield a line for each named place, under the title; without names the first column names the rows."""
-    yield from (line(one, "name") for one in folded(look.text(table.title), look.width))
-    names, columns = place_table(table, look)
-    side = names if table.headed else [one._replace(symbol="") for one in names]
-    if len(side) > 1:  # a name that repeats the one above stays blank
-        repeated = zip(side[0].values, ("", *side[0].values))
-        side[0] = side[0]._replace(values=["" if name == above else name for name, above in repeated])
-    yield from _blocks(side or columns[:1], columns if side else columns[1:], look, _GAP)
 
 
 def _blocks(
     side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int, between: Iterable[Line] = ()
 ) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    block = list(side)
+    blocks = [list(side)]
     for one in columns:
-        wide = sum(column.whole_width + gap for column in block) + one.whole_width
-        if look.width is not None and wide > look.width and len(block) > len(side):
-            yield from _block(block, look, gap)
-            yield from between
-            block = list(side)
-        block.append(one)
-    yield from _block(block, look, gap)
+        wide = sum(_wide(column) + gap for column in blocks[-1]) + _wide(one)
+        if look.width is not None and wide > look.width and len(blocks[-1]) > len(side):
+            blocks.append(list(side))
+        blocks[-1].append(one)
+    for number, block in enumerate(blocks):
+        yield from between if number else ()
+        widths = list(map(_wide, block))
+        lines = [([one.symbol for one in block], "head"), ([one.unit for one in block], "unit")]
+        for texts, role in lines if any(lines[1][0]) else lines[:1]:
+            yield _row(block, widths, gap, texts, role)
+        ruled = line(look.text("─") * (sum(widths) + gap * (len(widths) - 1)), "rule")
+        yield ruled
+        for cells in zip(*(one.cells() for one in block)):
+            yield _row(block, widths, gap, cells, "cell")
+        yield ruled
 
 
-def _block(columns: Sequence[TextColumn], look: Look, gap: int) -> Iterator[Line]:
-    ruled = line(look.text("─") * (sum(one.whole_width + gap for one in columns) - gap), "rule")
-    layout = [(" " * gap * (k > 0), one.whole_width, one.words) for k, one in enumerate(columns)]
+def _row(block: Sequence[TextColumn], widths: Sequence[int], gap: int, texts: Sequence[str], role: str) -> Line:
+    pieces = []
+    for number, (column, wide, text) in enumerate(zip(block, widths, texts)):
+        role_of = "name" if column.words else "mark" if text.endswith(MARK) else role
+        pieces.append(Piece(" " * gap * (number > 0) + padded(text, wide, not column.words), role_of))
+    return tuple(pieces)
 
-    def row(texts: Iterable[str], role: str) -> Line:
-        return tuple(
-            Piece(before + left(text, wide), "name")
-            if words
-            else Piece(before + right(text, wide), "mark" if text.endswith(MARK) else role)
-            for text, (before, wide, words) in zip(texts, layout)
-        )
 
-    yield row((one.symbol for one in columns), "head")
-    if any(one.unit for one in columns):
-        yield row((one.unit for one in columns), "unit")
-    yield ruled
-    for texts in zip(*(one.cells() for one in columns)):
-        yield row(texts, "cell")
-    yield ruled
+def _wide(column: TextColumn) -> int:
+    return max(width(column.symbol), width(column.unit), column.width)
 
 
 # the look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages
 
 
-def _book(sheet: Sheet, look: Look) -> Iterator[Line]:
-    """Yield the sheet in blocks of crank angles, nine each or as many as fit the width."""
-    rows = [*sheet.heads, *(row for _, band in sheet.bands for row in band)]
+def _book(
+    heads: Sequence[TextColumn], bands: Sequence[tuple[str, Sequence[TextColumn]]], named_beside: bool, look: Look
+) -> Iterator[Line]:
+    """Yield the columns in blocks of crank angles, nine each or as many as fit the width.
+
+    named_beside: the names of bands are short and have a column of their own, as L/R in the book.
+    """
+    rows = [*heads, *(row for _, band in bands for row in band)]
     cell = max(row.width for row in rows) + _GAP
-    symbol, unit = max(width(row.symbol) for row in rows), max(width(row.unit) for row in rows)
-    name = max(width(name) for name, _ in sheet.bands) if sheet.named_beside else 0
-    if look.width is not None and look.width < sum(wide + _GAP for wide in (name, symbol, unit) if wide) + 2 * cell:
+    texts = [name for name, _ in bands if named_beside], [row.symbol for row in rows], [row.unit for row in rows]
+    # of names, symbols and units; a column without a text takes no room
+    name, symbol, unit = (wide and wide + _GAP for wide in (max(map(width, each), default=0) for each in texts))
+    if look.width is not None and look.width < name + symbol + unit + 2 * cell:
         name = 0
-    side = sum(wide + _GAP for wide in (name, symbol, unit) if wide)
-    gap = " " * _GAP
+    side = name + symbol + unit
 
-    def book_line(band: str, row: TextColumn, across: range, role: str) -> Line:
-        pieces = [Piece(left(band, name) + gap, "name")] if name else []
-        pieces.append(Piece((right if role == "head" else left)(row.symbol, symbol) + gap, role))
-        if unit:
-            pieces.append(Piece(left(row.unit, unit) + gap, "unit"))
-        cells = row.cells(across.start, across.stop)
+    def book_line(band: str, row: TextColumn, across: range, role: str = "symbol") -> Line:
+        label = padded(row.symbol, symbol - _GAP, role == "head") + " " * _GAP
+        pieces = [Piece(padded(band, name), "name"), Piece(label, role), Piece(padded(row.unit, unit), "unit")]
         number = "head" if role == "head" else "cell"
-        return (*pieces, *(Piece(right(text, cell), "mark" if text.endswith(MARK) else number) for text in cells))
+        cells = [
+            Piece(padded(text, cell, True), "mark" if text.endswith(MARK) else number) for text in row.cells(across)
+        ]
+        return (*(one for one in pieces if one.text), *cells)
 
-    start, count = 0, len(sheet.heads[0].values)
+    start, count = 0, len(heads[0].values)
     for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
-        if start:
-            yield BLANK
+        yield from [BLANK] * (start > 0)
         across, ruled = range(start, start + size), line(look.text("─") * (side + size * cell), "rule")
-        yield from (book_line("", head, across, "head") for head in sheet.heads)
-        for band, columns in sheet.bands:
+        yield from (book_line("", head, across, "head") for head in heads)
+        for band, columns in bands:
             yield ruled
             if band and not name:
                 yield line(band, "name")
-            yield from (book_line("" if k else band, row, across, "symbol") for k, row in enumerate(columns))
+            yield from (book_line("" if k or not name else band, row, across) for k, row in enumerate(columns))
         yield ruled
         start += size
 
@@ -155,64 +161,42 @@ def fitting_sizes(count: int, most: int) -> list[int]:
 # sentences and key values
 
 
-def _prose(report: Report, look: Look) -> Iterator[list[Line]]:
-    """Yield the paragraphs below the tables: notes, key values, what was left out and why, warnings."""
-    if notes := [note for note in (report.mirrored, *report.notes) if note]:
-        yield [one for note in notes for one in sentence("", note, look)]
-    for part in report.all_parts:
-        name = part_name(report, part, look)
-        of = f": {name}" if name else ""
-        if part.key_values:
-            yield [line(f"Key values{of}", "name"), *key_value_lines(part.key_values, look)]
-        if part.left_out:
-            yield [line(f"Left out{of}", "name"), *in_two_columns(part.left_out, look)]
-        if part.warnings:
-            warnings = (one for warning in part.warnings for one in sentence("  ", warning, look))
-            yield [line(f"Warnings{of}", "name"), *warnings]
-
-
-def key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
+def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
     """Yield a line for each key value: symbol, value, unit, crank angle, meaning."""
-    shown = [key_value_text(one, look) for one in key_values]
-    numbers = _aligned(shown)
-    symbol, unit = max(width(one.symbol) for one in shown), max(width(one.unit) for one in shown)
-    number = max((wide for one in numbers if (wide := width(one)) <= _LONGEST), default=0)
-    angles = [f"at {one.at}" if one.at else "" for one in shown]
-    angle = max(map(width, angles))
-    if look.width is not None and 2 + symbol + 2 + number + 2 + unit + 2 + angle > look.width:
+    table = key_value_table("", key_values, look)
+    symbols, shown, units, angles, meanings = (one.values for one in table.columns)
+    # decimal points below one another; whole numbers end there, too
+    wholes = ["" if row in table.lists else re.findall(r"^-?\d+|$", text)[0] for row, text in enumerate(shown)]
+    before = max(map(len, wholes))
+    pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, shown)]
+    numbers = [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]
+    wide = max((width(one) for one in numbers if width(one) <= _LONGEST), default=0)
+    angles = [f"at {one}" if one else "" for one in angles]
+    symbol, unit, angle = (max(map(width, each)) for each in (symbols, units, angles))
+    if look.width is not None and 2 + symbol + 2 + wide + 2 + unit + 2 + angle > look.width:
         angle = 0
-    for one, value, at in zip(shown, numbers, angles):
-        head, text = f"  {left(one.symbol, symbol)}  {left(value, number)}  {left(one.unit, unit)}  ", one.sentence
+
+    for name, number, of, at, text in zip(symbols, numbers, units, angles, meanings):
+        start = f"  {padded(name, symbol)}  "
+        head = f"{start}{padded(number, wide)}  {padded(of, unit)}  "
         if angle:
-            head += f"{left(at, angle)}  "
+            head += f"{padded(at, angle)}  "
         elif at:
             text = f"{at}  {text}"
-        if width(value) > number:  # a long list has lines of its own
-            before = f"  {left(one.symbol, symbol)}  "
-            rest = None if look.width is None else max(look.width - width(before), _NARROWEST)
-            for row in folded(f"{value}  {one.unit}".rstrip(), rest):
-                yield line(before + row, "cell")
-                before = " " * width(before)
-            head = " " * (4 + symbol + number + 2 + unit + 2 + (angle + 2 if angle else 0))
+        if width(number) > wide:  # a long list has lines of its own
+            room = None if look.width is None else max(look.width - width(start), _NARROWEST)
+            for k, row in enumerate(folded(f"{number}  {of}".rstrip(), room)):
+                yield line((" " * width(start) if k else start) + row, "cell")
+            head = " " * (4 + symbol + wide + 2 + unit + 2 + (angle + 2 if angle else 0))
         yield from sentence(head, text, look)
 
 
-def _aligned(shown: Sequence[KeyValueText]) -> list[str]:
-    """Return the numbers with their decimal points below one another; whole numbers end there, too."""
-    ends = [one.number.lstrip("-0123456789") if one.single else one.number for one in shown]
-    whole = max(len(one.number) - len(end) for one, end in zip(shown, ends))
-    return [
-        one.number.removesuffix(end).rjust(whole) + (end or " ") if one.single else one.number
-        for one, end in zip(shown, ends)
-    ]
-
-
-def in_two_columns(found: Iterable[tuple[str, str]], look: Look) -> Iterator[Line]:
+def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
     """Yield heads in a column, each with its sentence."""
     heads = [(look.text(head), text) for head, text in found]
-    column = max(width(head) for head, _ in heads)
+    column = max((width(head) for head, _ in heads), default=0)
     for head, text in heads:
-        yield from sentence(f"  {left(head, column)}  ", text, look)
+        yield from sentence(f"{indent}{padded(head, column)}  ", text, look)
 
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
@@ -237,14 +221,11 @@ def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]
     """Return a title and sections, each a head line with its entries, as plain text."""
     lines = [line(one) for one in folded(look.text(title), look.width)]
     for name, entries in sections:
-        lines += [BLANK, *(line(one) for one in folded(look.text(name), look.width))]
-        lines += in_two_columns(entries, look)
+        lines += [BLANK, *(line(one) for one in folded(look.text(name), look.width)), *in_two_columns(entries, look)]
     return "".join(plain(lines))
 
 
 def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
     """Write heads in a column, each with its text, to a file or to standard output."""
     look = Look() if file_name else stdout_look(Look())
-    longest = max((len(head) for head, _ in found), default=0)
-    lines = (one for head, text in found for one in sentence(f"{head:<{longest}}  ", text, look))
-    write_out(plain(lines), file_name)
+    write_out(plain(in_two_columns(found, look, "")), file_name)

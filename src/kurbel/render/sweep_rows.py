@@ -9,13 +9,10 @@ import csv
 import json
 import math
 import os
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, islice
-from shutil import copyfile
 from typing import Any, BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
@@ -25,7 +22,7 @@ from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.data import csv_cell, csv_line
 from kurbel.render.numbers import single
-from kurbel.render.output import silence, stdout_look, take_mode, whole_file
+from kurbel.render.output import opened, stdout_look
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""
@@ -64,70 +61,54 @@ class Titles(NamedTuple):
 # rows as lines of text
 
 
-class Lines(NamedTuple):
-    """How rows become lines: those of the heads, and what makes the line of a row."""
+def lines_of(titles: Titles, look: Look, first: Sequence[Row] = ()) -> tuple[str, Callable[[Row], str]]:
+    """Return the lines of the heads, and what makes the line of a row.
 
-    heads: list[str]
-    of: Callable[[Row], str]
+    first: rows that decide the widths of a table.
+    """
+    if look.format == "csv":
+        csv_row = csv_line(look)
+        return (
+            csv_row([csv_cell(name, look) for name in titles.whole]),
+            lambda row: csv_row([csv_cell(value, look) for value in titles.values(row)]),
+        )
 
+    if look.format == "json":
+        heads = titles.whole
 
-def lines_of(titles: Titles, look: Look, first: Sequence[Row] = ()) -> Lines:
-    """Return how the format of the look writes rows; first: rows that decide the widths of a table."""
-    if look.format == "table":
-        return _table_lines(titles, look, first)
-    return {"csv": _csv_lines, "json": _json_lines, "markdown": _markdown_lines}[look.format](titles, look)
+        def json_row(row: Row) -> str:
+            texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
+            found = {name: texts.get(name, value) for name, value in zip(heads, titles.values(row))}
+            return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
+        return "", json_row
 
-def _csv_lines(titles: Titles, look: Look) -> Lines:
-    line = csv_line(look)
-    plain = None if look.digits or look.comma else float
+    def cells(row: Row) -> list[str]:
+        return [_cell(value, look) for value in titles.values(row)]
 
-    def of(row: Row) -> str:  # most values are numbers in full, which `csv_cell` would only take longer for
-        values = titles.values(row)
-        return line([value + 0.0 if type(value) is plain else csv_cell(value, look) for value in values])
-
-    return Lines([line(csv_cell(name, look) for name in titles.whole)], of)
-
-
-def _json_lines(titles: Titles, look: Look) -> Lines:
-    names = titles.whole
-
-    def of(row: Row) -> str:
-        texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-        found = {name: texts.get(name, value) for name, value in zip(names, titles.values(row))}
-        return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
-
-    return Lines([], of)
-
-
-def _markdown_lines(titles: Titles, look: Look) -> Lines:
-    def line(cells: Iterable[str]) -> str:
-        escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
-        return f"| {' | '.join(escaped)} |\n"
-
-    heads = [*(f"{name} ({look.unit(unit)})" if unit else name for name, unit in titles.names)]
-    rules = ["--:"] * (len(heads) + 1) + ["---"] * len(titles.last)
-    return Lines(
-        [line([titles.row, *heads, *titles.last]), line(rules)],
-        lambda row: line(_cell(value, look) for value in titles.values(row)),
-    )
-
-
-def _table_lines(titles: Titles, look: Look, first: Sequence[Row]) -> Lines:
-    """Return lines of numbers flush right, with heads and units over them."""
-    names = [titles.row, *(name for name, _ in titles.names), *titles.last]
+    names = [titles.row, *(look.text(name) for name, _ in titles.names), *titles.last]
     units = ["", *(look.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
-    cells = [[_cell(value, look) for value in titles.values(row)] for row in first]
-    widths = [max(map(len, column)) for column in zip(names, units, *cells)]
+    if look.format == "markdown":
+
+        def markdown_row(cells: Iterable[str]) -> str:
+            escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
+            return f"| {' | '.join(escaped)} |\n"
+
+        rules = ["--:"] * (len(titles.names) + 1) + ["---"] * len(titles.last)
+        named = (f"{name} ({unit})" if unit else name for name, unit in zip(names, units))
+        return markdown_row(named) + markdown_row(rules), lambda row: markdown_row(cells(row))
+
+    # a table: numbers flush right, with heads and units over them
+    widths = [max(map(len, column)) for column in zip(names, units, *map(cells, first))]
     if titles.last:  # a reason may be long, and nothing follows it
         widths[-1] = 0
 
-    def line(texts: Iterable[str]) -> str:
+    def table_row(texts: Iterable[str]) -> str:
         return "  ".join(text.rjust(width) for text, width in zip(texts, widths)).rstrip() + "\n"
 
-    heads = [line(look.text(one) for one in each) for each in ((names, units) if any(units) else (names,))]
     rule = look.text("─") * (sum(widths) + 2 * (len(widths) - 1))
-    return Lines([*heads, rule + "\n"], lambda row: line(_cell(value, look) for value in titles.values(row)))
+    above = table_row(names) + (table_row(units) if any(units) else "")
+    return f"{above}{rule}\n", lambda row: table_row(cells(row))
 
 
 def _cell(value: Any, look: Look) -> str:
@@ -145,246 +126,189 @@ def _cell(value: Any, look: Look) -> str:
 # where they go
 
 
-def part_of(file_name: str) -> str:
-    """Return the path that holds the rows of a sweep until all are there."""
+class Kept(NamedTuple):
+    """Rows that a file has already, and the bytes of their lines, which stay."""
+
+    rows: int = 0
+    size: int = 0
+
+
+def write_rows(
+    rows: Iterable[Row],
+    titles: Titles,
+    look: Look,
+    file_name: str | None,
+    early: Callable[[str], None],
+    headed: bool = True,
+    kept: Kept = Kept(),  # noqa: B008 (immutable)
+) -> None:
+    """Write the rows; a reader that leaves early is no fault. Raises UsageError.
+
+    headed: csv with its head; early: gets a sentence about what an early end leaves.
+    """
+    to_file = file_name is not None and file_name != "-"
+    if not to_file:
+        look = replace(look, encoding=stdout_look(look).encoding)
+    following = iter(rows)
+    counts = [kept.rows]
+    try:
+        # before anything is opened: there may be none, for whatever reason
+        first = list(islice(following, _WIDTH_OF if look.format == "table" else 1))
+        with opened(file_name, resumed=kept.size) as file:
+            if look.format == "parquet":
+                _write_parquet(file, titles, chain(first, following), counts.append)
+            else:
+                heads, line = lines_of(titles, look, first)
+                lines = map(line, chain(first, following))
+                _write_lines(file, heads if headed or look.format != "csv" else "", lines, look.encoding, counts.append)
+    except BaseException:
+        count = sum(counts)
+        some = f"{count} row{'s' * (count > 1)}"
+        if count and not to_file:
+            early(f"{some} written")
+        elif count and os.path.isfile(part := _part_of(str(file_name))):
+            early(f"{part} holds {some}")
+        raise
+
+
+def _part_of(file_name: str) -> str:
     return os.path.realpath(file_name) + ".part"
 
 
-class SweepOutput:
-    """The output of a sweep; headed: csv with its head; kept: rows that the file has, and their bytes, which stay."""
+def _write_lines(file: BinaryIO, heads: str, lines: Iterable[str], encoding: str, wrote: Callable[[int], None]) -> None:
+    """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
+    encoder = codecs.getincrementalencoder(encoding)("replace")  # one byte order mark at most
+    file.write(encoder.encode(heads))
+    ready: list[bytes] = []
+    due = 0.0
 
-    def __init__(
-        self,
-        titles: Titles,
-        look: Look,
-        file_name: str | None,
-        headed: bool = True,
-        kept: tuple[int, int] = (0, 0),
-    ) -> None:
-        self.titles, self._headed = titles, headed
-        self.rows, self._kept = kept
-        """Rows that are written, and bytes of those that were there before."""
-        self._file_name = None if file_name == "-" else file_name
-        self._look = look if self._file_name else replace(look, encoding=stdout_look(look).encoding)
+    def put() -> None:
+        file.write(b"".join(ready))
+        file.flush()
+        wrote(len(ready))
+        ready.clear()
 
-    def write(self, rows: Iterable[Row]) -> None:
-        """Write the rows; a reader that leaves early is no fault. Raises UsageError."""
-        write = self._parquet_writer() if self._look.format == "parquet" else self._write_lines
-        following = iter(rows)
-        # before anything is opened: there may be none, for whatever reason
-        first = list(islice(following, _WIDTH_OF if self._look.format == "table" else 1))
-        with self._opened() as file:
-            write(first, following, file)
+    try:
+        for line in lines:
+            ready.append(encoder.encode(line))
+            if time.monotonic() >= due:
+                put()
+                due = time.monotonic() + _AT_LEAST_EVERY
+    finally:
+        put()
 
-    def left(self) -> str:
-        """Return what an early end leaves, "" for nothing."""
-        count = f"{self.rows} row{'s' * (self.rows > 1)}"
-        if self.rows <= 0:
-            return ""
-        if self._file_name is None:
-            return f"{count} written"
-        part = part_of(self._file_name)
-        return f"{part} holds {count}" if os.path.isfile(part) else ""
 
-    @contextmanager
-    def _opened(self) -> Iterator[BinaryIO]:
-        path = self._file_name
-        try:
-            if path is None:
-                sys.stdout.flush()
-                yield sys.stdout.buffer
-            elif target := whole_file(path):
-                path = part_of(target)
-                with self._part(path, target) as file:
-                    yield file
-                os.replace(path, target)
-            else:  # a device or a pipe has no place to go to
-                with open(path, "wb") as file:
-                    yield file
-        except BrokenPipeError:
-            silence(sys.stdout)
-        except OSError as error:
-            raise UsageError(f"cannot write {path or 'to standard output'}: {error.strerror or error}") from None
-
-    @contextmanager
-    def _part(self, path: str, target: str) -> Iterator[BinaryIO]:
-        """Yield the file at a path, after the bytes that stay; one without rows is removed."""
-        if self._kept and not os.path.isfile(path):
-            copyfile(target, path)
-        try:
-            with open(path, "r+b" if self._kept else "wb") as file:
-                take_mode(path, target)
-                file.seek(self._kept)
-                file.truncate()
-                yield file
-        except BaseException:
-            if self.rows <= 0:
-                os.unlink(path)
-            raise
-
-    def _write_lines(self, first: list[Row], following: Iterator[Row], file: BinaryIO) -> None:
-        """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
-        lines = lines_of(self.titles, self._look, first)
-        encoder = codecs.getincrementalencoder(self._look.encoding)("replace")  # one byte order mark at most
-        if self._headed or self._look.format != "csv":
-            file.write(encoder.encode("".join(lines.heads)))
-        ready: list[bytes] = []
-        written = 0.0
-
-        def put() -> None:
-            file.write(b"".join(ready))
-            file.flush()
-            self.rows += len(ready)
-            ready.clear()
-
-        try:
-            for row in chain(first, following):
-                ready.append(encoder.encode(lines.of(row)))
-                if time.monotonic() - written >= _AT_LEAST_EVERY:
-                    put()
-                    written = time.monotonic()
-        finally:
-            put()
-
-    def _parquet_writer(self) -> Callable[[list[Row], Iterator[Row], BinaryIO], None]:
-        """Return what writes rows to a file as Parquet. Raises UsageError where pyarrow is missing."""
-        try:
-            import pyarrow
-            from pyarrow import parquet
-        except ImportError:
-            raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
-        stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
-        types = [pyarrow.int64(), *(stored[one] for one in (*self.titles.types, *("text" for _ in self.titles.last)))]
-        schema = pyarrow.schema(zip(self.titles.whole, types))
-
-        def write(first: list[Row], following: Iterator[Row], file: BinaryIO) -> None:
-            rows = chain(first, following)
-            with parquet.ParquetWriter(file, schema) as writer:
-                while group := list(islice(rows, _IN_A_GROUP)):
-                    columns = zip(types, zip(*(self.titles.values(row) for row in group)))
-                    arrays = [  # of words some may be read as numbers
-                        pyarrow.array(
-                            [None if one is None else str(one) for one in column] if type == "string" else column, type
-                        )
-                        for type, column in columns
-                    ]
-                    writer.write_table(pyarrow.table(arrays, schema=schema))
-                    self.rows += len(group)
-
-        return write
+def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Row], wrote: Callable[[int], None]) -> None:
+    """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError:
+        raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
+    stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
+    types = [pyarrow.int64(), *(stored[one] for one in (*titles.types, *("text" for _ in titles.last)))]
+    schema = pyarrow.schema(zip(titles.whole, types))
+    with parquet.ParquetWriter(file, schema) as writer:
+        while group := list(islice(rows, _IN_A_GROUP)):
+            arrays = []
+            for type, column in zip(types, zip(*map(titles.values, group))):
+                if type == "string":  # of words some may be read as numbers
+                    column = tuple(None if one is None else str(one) for one in column)
+                arrays.append(pyarrow.array(column, type))
+            writer.write_table(pyarrow.table(arrays, schema=schema))
+            wrote(len(group))
 
 
 # the rows that an interrupted sweep left
 
 
-class KeptRows:
-    """What a file, or the part of it that an early end left, has of these rows of a sweep.
+def kept_rows(
+    file_name: str, sweep: Sweep, titles: Titles, look: Look, rows: range, conditions: Sequence[Condition]
+) -> tuple[Kept, range]:
+    """Return what a file, or the part of it that an early end left, has of these rows, and those still to be computed.
 
-    kept: the number of its rows, and the bytes of its whole lines, which stay.
-    Raises UsageError for a file that begins otherwise.
+    Raises UsageError for a file that begins otherwise, or that has rows that this sweep has not, or with other inputs
+    or other answers: the inputs of each are compared, and the answers of the last one that has any.
     """
+    path = part if os.path.isfile(part := _part_of(file_name)) else file_name
+    if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
+        return Kept(), rows
+    heads, whole_line = lines_of(titles, look)
+    head = heads if rows.start == 0 else ""
+    names, width = titles.whole, 1 + len(sweep.plan.inputs)
+    _, line_of_inputs = lines_of(Titles(titles.names[: width - 1]), look)
 
-    def __init__(self, file_name: str, titles: Titles, look: Look, rows: range) -> None:
-        part = part_of(file_name)
-        self._file_name = part if os.path.isfile(part) else file_name
-        self._names, self._look, self._rows = titles.whole, look, rows
-        self._lines = lines_of(titles, look)
-        head = "".join(self._lines.heads) if rows.start == 0 else ""
-        self._headed = bool(head)
-        opening = head or '{"row": ' * (look.format == "json")
-        begin, count, size = "", -self._headed, 0
-        for line in self._file():
-            begin = begin or line.decode("utf-8", "replace")
-            if line.endswith(b"\n"):
-                count, size = count + 1, size + len(line)
-        if begin[: len(opening)] != opening[: len(begin)] or not (opening or begin[:1] in "0123456789"):
-            self._refuse(f"it begins with {begin.rstrip(chr(10))[:60]!r}")
-        self.kept = max(count, 0), size
-
-    def _file(self) -> Iterator[bytes]:
-        """Yield the lines of the file; a device or a pipe, which may have no end, keeps nothing."""
-        if not os.path.isfile(self._file_name):
-            return
-        try:
-            with open(self._file_name, "rb") as file:
-                yield from file
-        except OSError as error:
-            raise UsageError(f"cannot read {self._file_name}: {error.strerror}") from None
-
-    def rest(self, sweep: Sweep, conditions: Sequence[Condition]) -> range:
-        """Return the rows that are still to be computed.
-
-        Raises UsageError where the file has rows that this sweep has not, or has with other inputs or other answers:
-        the inputs of each are compared, and the answers of the last one that has any.
-        """
-        following, last = self._rows.start, None
-        first = 1 + len(sweep.plan.inputs)
-        lines = self._parsed()
-        while some := list(islice(lines, _COMPARED_AT_ONCE)):
-            known = [row for row, _ in some if row in self._rows]
-            inputs = dict(zip(known, sweep.inputs(known)))
-            for row, cells in some:
-                if row not in self._rows:
-                    self._refuse(f"it has row {row + 1}, these are rows {self._rows.start + 1} to {self._rows.stop}")
-                if row < following or (not conditions and row != following):
-                    self._refuse(f"row {following + 1} is missing in it")
-                self._compare(cells, [cells[0], *map(self._text, inputs[row])])
-                following = row + 1
-                last = cells if any(cells[first : 1 + len(sweep.heads)]) else last
-        if last:
-            self._compare_answers(last, sweep, conditions)
-        return self._rows[following - self._rows.start :]
-
-    def _compare_answers(self, cells: list[str], sweep: Sweep, conditions: Sequence[Condition]) -> None:
-        number = int(cells[0])
-        row = next(rows_of(sweep, range(number - 1, number)))
-        self._compare(cells, self._cells(self._lines.of(row).rstrip("\n")))
-        if not all(one.holds(row) for one in conditions):
-            self._refuse(f"row {number} is in it, which --where leaves out")
-
-    def _compare(self, cells: list[str], now: list[str]) -> None:
-        """Refuse a line that begins with other cells than those of now."""
-        for name, there, here in zip(self._names, cells, now):
-            if there != here and not _same(there, here):
-                self._refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
-
-    def _parsed(self) -> Iterator[tuple[int, list[str]]]:
-        """Yield the row of each whole line, counted from 0, and the texts of its cells."""
-        for line in islice(self._file(), int(self._headed), None):
-            text = line.decode("utf-8", "replace")
-            if not text.endswith("\n"):
-                return
-            try:
-                cells = self._cells(text.rstrip("\n"))
-                row = int(cells[0]) - 1
-            except (ValueError, IndexError, AttributeError, csv.Error):
-                self._refuse(f"it has a line {text.rstrip(chr(10))[:60]!r}")
-            yield row, cells
-
-    def _cells(self, line: str) -> list[str]:
-        """Return the texts under the heads; raises ValueError for other heads."""
-        if self._look.format == "json":
-            found = json.loads(line)
-            names, cells = list(found), [self._text(one) for one in found.values()]
-        else:
-            names, cells = self._names, next(csv.reader([line], delimiter=";" if self._look.comma else ","))
-        if names != self._names or len(cells) != len(names):
-            raise ValueError(line)
-        return cells
-
-    def _text(self, value: Any) -> str:
-        """Return the text of a cell of csv, or of a value of json."""
-        if self._look.format == "csv":
-            return str(csv_cell(value, self._look))
-        if isinstance(value, (list, tuple)):
-            return " ".join(map(repr, value))
-        return "" if value is None else value if isinstance(value, str) else repr(value)
-
-    def _refuse(self, why: str) -> NoReturn:
+    def refuse(why: str) -> NoReturn:
         raise UsageError(
-            f"--resume: {self._file_name} is not of this sweep: {why}; "
+            f"--resume: {path} is not of this sweep: {why}; "
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
+
+    def parsed(lines: Sequence[str], count: int) -> list[list[str]]:
+        try:
+            found = _cells(lines, look)
+        except csv.Error as error:
+            refuse(f"it is no csv: {error}")
+        for line, (heads, cells) in zip(lines, found):
+            if len(cells) != count or (heads and heads != names[:count]) or not cells[0].isdecimal():
+                refuse(f"it has a line {line.rstrip()[:60]!r}")
+        return [cells for _, cells in found]
+
+    def compare(cells: Sequence[str], now: Sequence[str]) -> None:
+        for name, there, here in zip(names, cells, now):
+            if there != here and not _same(there, here):
+                refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
+
+    try:
+        with open(path, "rb") as file:
+            begin = next(file, b"")
+            opening = (head or '{"row": ' * (look.format == "json")).encode()
+            if begin[: len(opening)] != opening[: len(begin)] or not (opening or begin[:1] in b"0123456789"):
+                refuse(f"it begins with {begin.decode('utf-8', 'replace').rstrip(chr(10))[:60]!r}")
+            size = len(begin) if head and begin.endswith(b"\n") else 0
+            file.seek(size)
+
+            count, following, last = 0, rows.start, None
+            whole = (line for line in file if line.endswith(b"\n"))
+            while lines := list(islice(whole, _COMPARED_AT_ONCE)):
+                some = parsed([line.decode("utf-8", "replace") for line in lines], len(names))
+                known = [row for cells in some if (row := int(cells[0]) - 1) in rows]
+                inputs = zip(known, sweep.inputs(known))
+                now = dict(zip(known, parsed([line_of_inputs(Row(row + 1, values)) for row, values in inputs], width)))
+                for cells in some:
+                    row = int(cells[0]) - 1
+                    if row not in rows:
+                        refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
+                    if row < following or (not conditions and row != following):
+                        refuse(f"row {following + 1} is missing in it")
+                    compare(cells, now[row])
+                    following = row + 1
+                    last = cells if any(cells[width : 1 + len(sweep.heads)]) else last
+                count, size = count + len(lines), size + sum(map(len, lines))
+    except OSError as error:
+        raise UsageError(f"cannot read {path}: {error.strerror}") from None
+
+    if last:
+        computed = next(rows_of(sweep, range(int(last[0]) - 1, int(last[0]))))
+        compare(last, parsed([whole_line(computed)], len(names))[0])
+        if not all(one.holds(computed) for one in conditions):
+            refuse(f"row {last[0]} is in it, which --where leaves out")
+    return Kept(count, size), rows[following - rows.start :]
+
+
+def _cells(lines: Sequence[str], look: Look) -> list[tuple[list[str], list[str]]]:
+    """Return the heads, none in csv, and the texts of the cells of each line; no cells of one that is of neither."""
+    if look.format == "csv":
+        return [([], cells) for cells in csv.reader(lines, delimiter=";" if look.comma else ",")]
+    found = []
+    for line in lines:
+        try:
+            values = dict(json.loads(line))
+        except (ValueError, TypeError):
+            values = {}
+        each = [one if isinstance(one, list) else [one] for one in values.values()]
+        found.append((list(values), [" ".join("" if one is None else str(one) for one in parts) for parts in each]))
+    return found
 
 
 def _same(there: str, here: str) -> bool:

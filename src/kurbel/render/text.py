@@ -63,7 +63,10 @@ class Look:
     def data(self, text: str) -> str:
         """Return the text for programs, without control characters and what the encoding lacks."""
         text = text.translate(_CONTROL)
-        return text if self.has(text) else "".join(c if self.has(c) else _in_ascii(c) for c in text)
+        if self.has(text):
+            return text
+        plain = (normalize("NFKD", c).encode("ascii", "ignore").decode() for c in text)
+        return "".join(c if self.has(c) else _ASCII.get(c) or other or "?" for c, other in zip(text, plain))
 
     def symbol(self, symbol: str, ascii_symbol: str) -> str:
         """Return the textbook symbol, or its ASCII name."""
@@ -84,23 +87,9 @@ class Look:
         printed = "·" + self._power(exponent)
         return f"{number}{printed if self.has(printed) else f'e{exponent}'}" if exponent else number
 
-    def below(self, exponent: int) -> str:
-        """Return what replaces a value that is only known to be less than a power of ten.
-
-        >>> Look().below(-14), Look(encoding="ascii").below(-14)
-        ('< 10⁻¹⁴', '< 1e-14')
-        """
-        printed = "< " + self._power(exponent)
-        return printed if not printed.isascii() else f"< 1e{exponent}"
-
     def _power(self, exponent: int) -> str:
         printed = "10" + str(exponent).translate(_SUPERSCRIPT)
         return printed if self.has(printed) else f"10^{exponent}"
-
-
-def _in_ascii(character: str) -> str:
-    plain = _ASCII.get(character)
-    return plain or normalize("NFKD", character).encode("ascii", "ignore").decode() or "?"
 
 
 def width(text: str) -> int:
@@ -110,14 +99,10 @@ def width(text: str) -> int:
     return sum(0 if combining(c) else 2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
-def left(text: str, cells: int) -> str:
-    """Return the text flush left in so many cells."""
-    return text + " " * (cells - width(text))
-
-
-def right(text: str, cells: int) -> str:
-    """Return the text flush right in so many cells."""
-    return " " * (cells - width(text)) + text
+def padded(text: str, cells: int, flush_right: bool = False) -> str:
+    """Return the text in so many cells, flush left or right."""
+    blanks = " " * (cells - width(text))
+    return blanks + text if flush_right else text + blanks
 
 
 class Piece(NamedTuple):

@@ -35,3 +35,11 @@ def check_rows(angles: float, parts: int) -> None:
         raise UsageError(
             f"{angles:.7g} crank angles{each} give more than {MOST_ROWS} rows; take a larger --step or fewer --angles"
         )
+
+
+def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
+    """Return the angles given, or 0, step, 2 step, … `end` in degrees; parts: cylinders or L/R that have them each."""
+    if angles is None:
+        return stepped(step, end, parts)
+    check_rows(len(angles), parts)
+    return angles

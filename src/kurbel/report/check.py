@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from kurbel.declared.forms import Physical
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine, firings
@@ -130,7 +129,7 @@ def _described(mechanism: Mechanism) -> str:
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
-        if isinstance(key.form, Physical) and isinstance(size := getattr(mechanism, name, None), float) and size
+        if key.form.kind != "ratio" and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
     return f"{mechanism.name}: {', '.join(lengths)}"
 

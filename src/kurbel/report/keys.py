@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurbel.declared.forms import Keyed, Listing, Record
-from kurbel.declared.keys import Form, Key, required
+from kurbel.declared.forms import Inline, Keyed, Listing, RecordForm
+from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.values import Form
+from kurbel.declared.keys import Key, required
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -30,7 +32,7 @@ class ListedKey(NamedTuple):
         """All about the key, each after its head."""
         key = self.key
         item = key.form.item if isinstance(key.form, Listing) else None
-        inner = _of_record(item, self.path) if isinstance(item, Record) else _below(key.form, self.path)
+        inner = _of_record(item, self.path) if isinstance(item, RecordForm) else _below(key.form, self.path)
         name = self.path.rpartition(".")[2]
         either = f"{' or '.join((name, *self.others))} must be given" if key.required and self.others else ""
         below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
@@ -49,7 +51,7 @@ class ListedKey(NamedTuple):
 
     @property
     def _form(self) -> str:
-        return self.key.form.written().replace("`", "").replace("\t", "\\t")
+        return self.key.form.written.replace("`", "").replace("\t", "\\t")
 
 
 def every_place() -> dict[str, list[ListedKey]]:
@@ -58,7 +60,7 @@ def every_place() -> dict[str, list[ListedKey]]:
     Those of a cylinder are at the top.
     """
     places: dict[str, list[ListedKey]] = {}
-    for one in _of_record(Record(Machine), ""):
+    for one in _of_record(RecordForm(Machine), ""):
         places.setdefault(one.path, []).append(one)
     return places
 
@@ -96,25 +98,25 @@ def _steps(path: str) -> list[str]:
     return [step for step in path.replace("[", ".").replace("]", "").split(".") if not step.isdecimal()]
 
 
-def _of_record(record: Record, path: str, beside: str = "") -> Iterator[ListedKey]:
+def _of_record(record: RecordForm, path: str, beside: str = "") -> Iterator[ListedKey]:
     needed = required(record.keys)
     for name, key in record.keys.items():
-        if not key.form.shared:
+        if not isinstance(key.form, Inline):
             here = f"{path}.{name}" if path else name
             others = tuple(other for other, one in record.keys.items() if one.instead == name)
             yield ListedKey(here, key, name in needed, others, beside)
             yield from _below(key.form, here)
-        for word, inner in key.form.records(name) if key.form.inline() else ():
-            yield from _of_record(inner, path, "" if key.form.shared else word)
+        for word, inner in records(key.form, name) if key.form.inline else ():
+            yield from _of_record(inner, path, "" if isinstance(key.form, Inline) else word)
 
 
 def _below(form: Form, path: str) -> Iterator[ListedKey]:
     """Yield the keys below a key of this form."""
-    if isinstance(form, Record):
+    if isinstance(form, RecordForm):
         yield from () if form.inline_too else _of_record(form, path)
         return
     if isinstance(form, Keyed):
-        yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single_keys())
-    if not form.inline():
+        yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single.items())
+    if not form.inline:
         for name, inner in form.parts():
             yield from _below(inner, f"{path}.{name}" if name else path)

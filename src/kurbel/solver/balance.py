@@ -170,7 +170,7 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 # over the crank angle
 
 
-def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled[Any]:
+def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled:
     """Return a column that is a part, or the size, of a vector of BalanceColumns; asked: printed on request alone."""
 
     def part(columns: BalanceColumns) -> Any:
@@ -235,10 +235,6 @@ class BalanceColumns(AtAngles):
 # the whole machine
 
 
-def _of_locomotive(id: str, symbol: str, kind: str, text: str) -> Tabled[Any]:
-    return value(symbol, kind, text, lambda balance: balance.rails.get(id))
-
-
 class MachineBalance(Results):
     """The key values of the whole machine over a turn; `at(degrees)` gives the columns.
 
@@ -297,19 +293,13 @@ class MachineBalance(Results):
     )
     F_free_best = value("F_min", "force", "Largest free force that it leaves", lambda one: one.least_and_force[1])
 
-    train_speed = _of_locomotive("train_speed", "v_z", "velocity", "Speed of the train")
-    traction_variation = _of_locomotive("traction_variation", "F_z", "force", "Largest variation of the tractive force")
-    swaying_couple = _of_locomotive("swaying_couple", "M_s", "torque", "Largest swaying couple, about the upright axis")
-    hammer_blow = _of_locomotive(
-        "hammer_blow", "H", "force", "Hammer blow: by how much a counterweight loads and lifts its wheel"
-    )
-    hammer_speed = _of_locomotive(
-        "hammer_speed", "n_H", "speed", "Speed of rotation at which the hammer blow is the load of the wheel"
-    )
-    hammer_train_speed = _of_locomotive("hammer_train_speed", "v_H", "velocity", "Speed of the train at which it is")
-    share_allowed = _of_locomotive(
-        "share_allowed", "c_H", "ratio", "Largest share of the reciprocating masses within the limit of the blow"
-    )
+    train_speed = value("v_z", "velocity", "Speed of the train")
+    traction_variation = value("F_z", "force", "Largest variation of the tractive force")
+    swaying_couple = value("M_s", "torque", "Largest swaying couple, about the upright axis")
+    hammer_blow = value("H", "force", "Hammer blow: by how much a counterweight loads and lifts its wheel")
+    hammer_speed = value("n_H", "speed", "Speed of rotation at which the hammer blow is the load of the wheel")
+    hammer_train_speed = value("v_H", "velocity", "Speed of the train at which it is")
+    share_allowed = value("c_H", "ratio", "Largest share of the reciprocating masses within the limit of the blow")
 
     def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
         machine = self.machine = effort.machine
@@ -535,7 +525,7 @@ class MachineBalance(Results):
         return sum(one.product for one in near), sum(one.product for one in far)
 
     @cached_property
-    def rails(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, Any]:
         """The key values of a locomotive by id, those that there are; {} of another machine.
 
         The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes

@@ -27,13 +27,13 @@ from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.cylinder import work_alike
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
-from kurbel.quantity import column, key_value
+from kurbel.quantity import value
 from kurbel.solver.figures import AtAngles, Results, told
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import ShaftLine, Vector, shaft_obstacle
+from kurbel.solver.shaft import SupportedShaft, Vector, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 HALF_CONTACT = 60.0
@@ -65,95 +65,91 @@ class Follower(NamedTuple):
         """Return the state at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
         return State.at(self.forces.drive, degrees - self.position, within - self.position)
 
-    def carried(self, pieces: Pieces, values: Any) -> Any:
-        """Return what is sampled on the pieces of the cylinder, complex or real, at the nodes of common ones."""
+    def carried(self, pieces: Pieces, *values: Any) -> Array:
+        """Return quantities sampled on the pieces of the cylinder at the nodes of common ones, (q, nodes, pieces)."""
         source = self.forces.pieces
-        values = np.broadcast_to(values, source.degrees.shape)
-        if pieces is source:
-            return values
-        if np.iscomplexobj(values):
-            return self.carried(pieces, values.real) + 1j * self.carried(pieces, values.imag)
-        return pieces.carried(values, source, self.position)
-
-
-class Size(NamedTuple):
-    """Diameter and length in m, None where they are not given."""
-
-    diameter: Any
-    length: Any
+        samples = np.stack([np.broadcast_to(one, source.degrees.shape) for one in values])
+        return samples if pieces is source else pieces.carried(samples, source, self.position)
 
 
 class BearingColumns(AtAngles):
     """The load of one bearing at crank angles φ (n,) in degrees; frames: complex in N, in each of its frames."""
 
     commands = ("bearings",)
+    load = value(
+        "F_L", "force", "Load of a rod on its pin, or of the shaft on a main bearing", lambda columns: columns.size
+    )
+    load_throw = value(
+        "ε_K",
+        "angle",
+        "Direction of the load from its throw outward, of a main bearing from that of crank 1",
+        lambda columns: columns.directions.get("throw"),
+    )
+    load_engine = value(
+        "ε_M",
+        "angle",
+        "Direction of the load from the stroke line of cylinder 1 outward",
+        lambda columns: columns.directions.get("engine"),
+    )
+    load_rod = value(
+        "ε_S",
+        "angle",
+        "Direction of the load from the line of the rod, crank pin to crosshead",
+        lambda columns: columns.directions.get("rod"),
+    )
 
     def __init__(self, phi: Array, frames: dict[str, ComplexArray]) -> None:
-        self.phi, self._frames = phi, frames
-
-    def _direction(self, frame: str) -> Array | None:
-        found = self._frames.get(frame)
-        return None if found is None else _axial(np.degrees(np.angle(found)), _ON_AXIS)
-
-    @column("F_L", "force")
-    def load(self) -> Array:
-        """Load of a rod on its pin, or of the shaft on a main bearing."""
-        return np.abs(next(iter(self._frames.values())))
-
-    @column("ε_K", "angle")
-    def load_throw(self) -> Array | None:
-        """Direction of the load from its throw outward, of a main bearing from that of crank 1."""
-        return self._direction("throw")
-
-    @column("ε_M", "angle")
-    def load_engine(self) -> Array | None:
-        """Direction of the load from the stroke line of cylinder 1 outward."""
-        return self._direction("engine")
-
-    @column("ε_S", "angle")
-    def load_rod(self) -> Array | None:
-        """Direction of the load from the line of the rod, crank pin to crosshead."""
-        return self._direction("rod")
-
-
-class _Cycle(NamedTuple):
-    """The cycle of a load in N on pieces: its magnitude, and the load as its two surfaces see it."""
-
-    pieces: Pieces
-    load: Array
-    on_journal: ComplexArray
-    on_shell: ComplexArray
+        self.phi, self.size = phi, np.abs(next(iter(frames.values())))
+        self.directions = {name: _axial(np.degrees(np.angle(load)), _ON_AXIS) for name, load in frames.items()}
 
 
 class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
-    name: as it is printed; followed: the cylinders that load it; size; journal, shell: the frames in which its two
-    surfaces stand still; contact: degrees from the direction of the load to where they touch; of_rod: whether a rod
-    of a cylinder turns on it. Of many machines all key values are arrays (machines,).
+    name: as it is printed; followed: the cylinders that load it; size: diameter and length in m, None where they are
+    not given; journal, shell: the frames in which its two surfaces stand still; contact: degrees from the direction of
+    the load to where they touch; of_rod: whether a rod of a cylinder turns on it. Of many machines all key values are
+    arrays (machines,).
     """
 
     command = "bearings"
     state = BearingColumns
-    journal: str
-    shell: str
     contact = 180.0
     of_rod = False
 
-    def __init__(self, name: str, followed: Sequence[Follower], size: Size) -> None:
+    load_max = value("F_L,max", "force", "Largest load")
+    load_min = value("F_L,min", "force", "Smallest load")
+    load_mean = value("F_L,m", "force", "Mean load over time")
+    load_high = value("F_L,m,½", "force", "Mean load while it exceeds half the largest")
+    unloaded_arc = value("Δε_Z", "angle", "Arc of the pin or journal that is never loaded")
+    unloaded_middle = value("ε_Z", "angle", "Middle of its widest piece, in the frame of the pin")
+    unloaded_arc_shell = value("Δε_L", "angle", "Arc of the shell that is never loaded")
+    unloaded_middle_shell = value("ε_L", "angle", "Middle of its widest piece, in the frame of the shell")
+    pressure_max = value("p_L,max", "pressure", "Largest pressure, load over d l")
+    pressure_mean = value("p_L,m", "pressure", "Mean pressure over time")
+    rubbing_speed_max = value("v_L,max", "velocity", "Largest speed of one surface on the other")
+    rubbing_speed_mean = value("v_L,m", "velocity", "Mean speed of one surface on the other")
+    pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
+    work_rubbing = value("A_f,L", "energy", "Work lost by its friction per cycle")
+
+    def __init__(
+        self, name: str, followed: Sequence[Follower], size: tuple[Any, Any], surfaces: tuple[str, str]
+    ) -> None:
         self.name, self.followed, self.size = name, tuple(followed), size
+        self.journal, self.shell = surfaces
         drive = followed[0].forces.drive
-        self.count, self.omega = drive.count, drive.omega
+        self.machine, self.count, self.omega = drive.machine, drive.count, drive.omega
+        cycle = 360.0 * self.machine.revolutions
+        self._common = common([(one.forces.pieces, one.position) for one in followed], cycle)
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
         """Return the load in N of the only machine in each of its frames at angles (n,) in degrees."""
 
     @abstractmethod
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
-        """Return pieces of the cycle, and the load in the frames of journal and shell."""
+    def _samples(self) -> Array:
+        """Return the load on the common pieces of journal and of shell, two parts each, (4, nodes, pieces)."""
 
-    @property
     @abstractmethod
     def _rate(self) -> tuple[Extreme, Any]:
         """By how much its surfaces turn on one another, over that of the crank: the largest, and the mean over time."""
@@ -165,137 +161,48 @@ class Bearing(Results):
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
         return BearingColumns(phi, self._frames(phi, within))
 
-    # the cycle
-
     @cached_property
-    def _cycle(self) -> _Cycle:
-        pieces, journal, shell = self._sampled()
-        fine, load, (x, y, shell_x, shell_y) = _with_magnitude(pieces, journal, (shell.real, shell.imag))
-        return _Cycle(fine, load, x + 1j * y, shell_x + 1j * shell_y)
-
-    def _extremes(self, pieces: Pieces, values: Array) -> Extremes:
-        """Return the extremes of samples (nodes, pieces)."""
-        return pieces.extremes(values[None]).each(lambda values: told(values, self.count))[0]
+    def _cycle(self) -> tuple[Pieces, Array, Array]:
+        return with_magnitude(self._common, self._samples())
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
+        return np.append(self._cycle[0].low, self._cycle[0].cycle)
+
+    def _told(self, values: Array) -> Any:
+        return told(values, self.count)
 
     @cached_property
-    def _load(self) -> Extremes:
-        return self._extremes(self._cycle.pieces, self._cycle.load)
+    def answers(self) -> dict[str, Any]:
+        """The key values by id in SI, those for which sizes, speed and coefficient are given."""
+        pieces, load, (x, y, shell_x, shell_y) = self._cycle
+        loads, mean = pieces.extremes(load[None]).each(self._told)[0], self._told(pieces.mean(load))
+        # the time in which it exceeds half the largest, by the mean of each piece; the weights sum to 2
+        largest = np.atleast_1d(loads.largest.value)
+        parted = pieces.split(pieces.zeros(load - pieces.of(largest / 2), largest))
+        part = load if parted is pieces else parted.carried(load, pieces)
+        above = np.where(parted.rule.weights @ part > parted.of(largest), 1.0, 0.0)
+        time, sums = parted.integral(np.stack((np.broadcast_to(above, part.shape), part * above)))
+        high = self._told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)))
+        found = {"load_max": loads.largest, "load_min": loads.smallest, "load_mean": mean, "load_high": high}
 
-    @key_value("F_L,max", "force")
-    def load_max(self) -> Extreme:
-        """Largest load."""
-        return self._load.largest
+        for surface, ending in ((x + 1j * y, ""), (shell_x + 1j * shell_y, "_shell")):
+            arc, middle = map(self._told, unloaded(pieces, surface, self.contact))
+            found[f"unloaded_arc{ending}"] = None if self.count is None and math.isnan(arc) else arc
+            found[f"unloaded_middle{ending}"] = None if self.count is None and math.isnan(middle) else middle
 
-    @key_value("F_L,min", "force")
-    def load_min(self) -> Extreme:
-        """Smallest load."""
-        return self._load.smallest
-
-    @key_value("F_L,m", "force")
-    def load_mean(self) -> Any:
-        """Mean load over time."""
-        return told(self._cycle.pieces.mean(self._cycle.load), self.count)
-
-    @key_value("F_L,m,½", "force")
-    def load_high(self) -> Any:
-        """Mean load while it exceeds half the largest."""
-        whole, load = self._cycle.pieces, self._cycle.load
-        largest = np.atleast_1d(self.load_max.value)
-        pieces = whole.split(whole.zeros(load - whole.of(largest / 2), largest))
-        load = load if pieces is whole else pieces.carried(load, whole)
-        above = np.where(pieces.rule.weights @ load > pieces.of(largest), 1.0, 0.0)  # the weights sum to 2
-        time, sums = pieces.integral(np.stack((np.broadcast_to(above, load.shape), load * above)))
-        return told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)), self.count)
-
-    # the surfaces
-
-    def _unloaded(self, load: ComplexArray) -> tuple[Any, ...]:
-        """Return the arc in degrees of a surface that is never loaded, and its middle; None where there is none."""
-        found = (told(one, self.count) for one in unloaded(self._cycle.pieces, load, self.contact))
-        return tuple(None if self.count is None and math.isnan(one) else one for one in found)
-
-    @cached_property
-    def _of_journal(self) -> tuple[Any, ...]:
-        return self._unloaded(self._cycle.on_journal)
-
-    @cached_property
-    def _of_shell(self) -> tuple[Any, ...]:
-        return self._unloaded(self._cycle.on_shell)
-
-    @key_value("Δε_Z", "angle")
-    def unloaded_arc(self) -> Any:
-        """Arc of the pin or journal that is never loaded.
-
-        None where it is loaded nowhere.
-        """
-        return self._of_journal[0]
-
-    @key_value("ε_Z", "angle")
-    def unloaded_middle(self) -> Any:
-        """Middle of its widest piece, in the frame of the pin."""
-        return self._of_journal[1]
-
-    @key_value("Δε_L", "angle")
-    def unloaded_arc_shell(self) -> Any:
-        """Arc of the shell that is never loaded."""
-        return self._of_shell[0]
-
-    @key_value("ε_L", "angle")
-    def unloaded_middle_shell(self) -> Any:
-        """Middle of its widest piece, in the frame of the shell."""
-        return self._of_shell[1]
-
-    # pressures and rubbing
-
-    @property
-    def _area(self) -> Any:
-        """d l in m²; None where one is not given."""
         diameter, length = self.size
-        return None if diameter is None or length is None else diameter * length
-
-    @property
-    def _surface_speed(self) -> Any:
-        """ω d/2 in m/s."""
-        return None if self.omega is None or self.size.diameter is None else self.omega * self.size.diameter / 2
-
-    @key_value("p_L,max", "pressure")
-    def pressure_max(self) -> Extreme | None:
-        """Largest pressure, load over d l."""
-        return None if self._area is None else Extreme(self.load_max.value / self._area, self.load_max.degrees)
-
-    @key_value("p_L,m", "pressure")
-    def pressure_mean(self) -> Any:
-        """Mean pressure over time."""
-        return None if self._area is None else self.load_mean / self._area
-
-    @key_value("v_L,max", "velocity")
-    def rubbing_speed_max(self) -> Extreme | None:
-        """Largest speed of one surface on the other."""
-        if self._surface_speed is None:
-            return None
-        largest, _ = self._rate
-        return Extreme(largest.value * self._surface_speed, largest.degrees)
-
-    @key_value("v_L,m", "velocity")
-    def rubbing_speed_mean(self) -> Any:
-        """Mean speed of one surface on the other."""
-        return None if self._surface_speed is None else self._rate[1] * self._surface_speed
-
-    @key_value("k_L", "pressure_velocity")
-    def pressure_velocity(self) -> Any:
-        """Mean pressure times mean speed, p v."""
-        pressure, speed = self.pressure_mean, self.rubbing_speed_mean
-        return None if pressure is None or speed is None else pressure * speed
-
-    @key_value("A_f,L", "energy")
-    def work_rubbing(self) -> Any:
-        """Work lost by its friction per cycle."""
-        return self._work()
+        if diameter is not None and length is not None:
+            found["pressure_max"] = Extreme(loads.largest.value / (diameter * length), loads.largest.degrees)
+            found["pressure_mean"] = mean / (diameter * length)
+        if diameter is not None and self.omega is not None:
+            surface_speed, (fastest, rate) = self.omega * diameter / 2, self._rate()
+            found["rubbing_speed_max"] = Extreme(fastest.value * surface_speed, fastest.degrees)
+            found["rubbing_speed_mean"] = rate * surface_speed
+            if length is not None:
+                found["pressure_velocity"] = found["pressure_mean"] * found["rubbing_speed_mean"]
+        return {**found, "work_rubbing": self._work()}
 
 
 class RodPin(Bearing):
@@ -304,13 +211,11 @@ class RodPin(Bearing):
     pin: `crank_pin`, or `crosshead_pin`, which moves with the crosshead and so in the frame of the engine.
     """
 
-    shell = "rod"
     of_rod = True
 
-    def __init__(self, name: str, follower: Follower, size: Size, pin: str) -> None:
-        super().__init__(name, (follower,), size)
-        self._own, self._pin = follower, pin
-        self.journal = "throw" if pin == "crank_pin" else "engine"
+    def __init__(self, name: str, own: Follower, size: tuple[Any, Any], pin: str) -> None:
+        super().__init__(name, (own,), size, ("throw" if pin == "crank_pin" else "engine", "rod"))
+        self._own, self._pin = own, pin
 
     def _in_frames(self, state: State, bank: Any) -> dict[str, ComplexArray]:
         """Return the load in N in each of its frames; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
@@ -328,29 +233,24 @@ class RodPin(Bearing):
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
         return self._in_frames(self._own.at(degrees, within), unit_vector(self._own.cylinder.bank_angle))
 
-    @cached_property
-    def _pieces(self) -> Pieces:
-        return _common_pieces(self._own.forces.drive.machine, self.followed)
+    def _samples(self) -> Array:
+        forces, bank = self._own.forces, unit_vector(self._own.cylinder.bank_angle)
+        frames = self._in_frames(forces.samples, forces.pieces.of(bank))
+        journal, shell = frames[self.journal], frames[self.shell]
+        return self._own.carried(self._common, journal.real, journal.imag, shell.real, shell.imag)
 
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
-        forces = self._own.forces
-        frames = self._in_frames(forces.samples, forces.pieces.of(unit_vector(self._own.cylinder.bank_angle)))
-        journal, shell = (self._own.carried(self._pieces, frames[name]) for name in (self.journal, self.shell))
-        return self._pieces, journal, shell
-
-    @cached_property
     def _rate(self) -> tuple[Extreme, Any]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
         state = self._own.forces.samples
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = self._own.carried(self._pieces, 1 + slope if self._pin == "crank_pin" else slope)
-        return self._extremes(self._pieces, rate).peak, told(self._pieces.mean(np.abs(rate)), self.count)
+        rate = self._own.carried(self._common, 1 + slope if self._pin == "crank_pin" else slope)
+        return self._common.extremes(rate).each(self._told)[0].peak, self._told(self._common.mean(np.abs(rate[0])))
 
     def _work(self) -> Any:
         forces = self._own.forces
         work = forces.pin_work_of(self._pin)
-        return None if work is None else work * (forces.drive.machine.revolutions // forces.drive.revolutions)
+        return None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
 
 
 class MainBearing(Bearing):
@@ -359,81 +259,75 @@ class MainBearing(Bearing):
     number: along the shaft, from 0; every: all cylinders of the machine. Its throw frame is that of crank 1.
     """
 
-    journal, shell, contact = "throw", "engine", 0.0
+    contact = 0.0
 
-    def __init__(self, name: str, number: int, line: ShaftLine, every: Sequence[Follower], size: Size) -> None:
+    def __init__(
+        self, name: str, number: int, line: SupportedShaft, every: Sequence[Follower], size: tuple[Any, Any]
+    ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
-        self._members = [index for throw in throws for index in throw.cylinders]
-        super().__init__(name, [every[index] for index in self._members], size)
-        self._number, self._line, self._every = number, line, every
+        self._members = {index: every[index] for throw in throws for index in throw.cylinders}
+        super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
+        self._number, self._line = number, line
 
-    def _force(self, line: ShaftLine, pins: dict[int, Vector], degrees: Array) -> ComplexArray:
+    def _force(self, line: SupportedShaft, pins: dict[int, Vector], degrees: Array) -> ComplexArray:
         """Return the force in N in the frame of crank 1, whose angles in degrees these are.
 
         line: with the numbers of the machines whose angles they are; pins: forces of each cylinder on its crank pin.
         """
         force: Any = 0.0
         for throw in line.throws:
-            if self._number not in (throw.A, throw.B):
-                continue
-            own = line.machine.cylinders[throw.cylinders[0]]
-            position = np.fmod(own.crank_position, self._every[throw.cylinders[0]].forces.drive.cycle)
-            pin = Vector(*(sum(parts) for parts in zip(*(pins[index] for index in throw.cylinders))))
-            both = line.carried(throw, pin, own, CrankAngle.of(degrees - position))
-            carried = both[0] if self._number == throw.A else both[1]
-            force = force + (-carried.D + 1j * carried.T) * unit_vector(throw.angle)
+            if self._number in (throw.A, throw.B):
+                own = line.machine.cylinders[throw.cylinders[0]]
+                position = np.fmod(own.crank_position, self._members[throw.cylinders[0]].forces.drive.cycle)
+                pin = Vector(*(sum(parts) for parts in zip(*(pins[index] for index in throw.cylinders))))
+                at_A, at_B = line.carried(throw, pin, own, CrankAngle.of(degrees - position))
+                carried = at_A if self._number == throw.A else at_B
+                force = force + (-carried.D + 1j * carried.T) * unit_vector(throw.angle)
         return np.broadcast_to(np.asarray(force), degrees.shape)
 
     def _frames(self, degrees: Array, within: Array) -> dict[str, ComplexArray]:
-        pins = {number: _pin_load(self._every[number].at(degrees, within)) for number in self._members}
+        pins = {number: _pin_load(own.at(degrees, within)) for number, own in self._members.items()}
         throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
-    def _on_pieces(self, rubbed: bool) -> tuple[Pieces, ComplexArray]:
-        """Return pieces of the cycle and the force there; rubbed: with what the friction of the pins does to it."""
-        machine = self._line.machine
-        pieces, pins = _common_pieces(machine, self.followed), {}
-        for number, own in zip(self._members, self.followed):
-            load = _pin_load(own.forces.samples if rubbed else own.forces.samples.unrubbed)
-            pins[number] = Vector(*(own.carried(pieces, one) for one in load))
-        machine = machine if self.count is None else taken(machine, pieces.machine)
-        assert machine.crankshaft is not None
-        return pieces, self._force(ShaftLine(machine, machine.crankshaft), pins, pieces.degrees)
+    def _sampled(self, rubbed: bool) -> ComplexArray:
+        """Return the force on the common pieces; rubbed: with what the friction of the pins does to it."""
+        pieces, pins = self._common, {}
+        for number, own in self._members.items():
+            state = own.forces.samples if rubbed else own.forces.samples.unrubbed
+            pins[number] = Vector(*own.carried(pieces, *_pin_load(state)))
+        line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
+        return self._force(line, pins, pieces.degrees)
 
-    def _sampled(self) -> tuple[Pieces, ComplexArray, ComplexArray]:
-        pieces, force = self._on_pieces(rubbed=True)
-        angle = CrankAngle.at_nodes(pieces)
-        return pieces, force, force * (angle.cos + 1j * angle.sin)
+    def _samples(self) -> Array:
+        force, angle = self._sampled(rubbed=True), CrankAngle.at_nodes(self._common)
+        engine = force * (angle.cos + 1j * angle.sin)
+        return np.stack((force.real, force.imag, engine.real, engine.imag))
 
-    @property
     def _rate(self) -> tuple[Extreme, Any]:
-        return Extreme(1.0, told(np.zeros(self.count or 1), self.count)), 1.0
+        return Extreme(1.0, self._told(np.zeros(self.count or 1))), 1.0
 
     def _work(self) -> Any:
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
-        if coefficient is None or self.size.diameter is None:
+        if coefficient is None or self.size[0] is None:
             return None
-        pieces, load, _ = _with_magnitude(*self._on_pieces(rubbed=False))
-        return told(pieces.integral(load), self.count) * coefficient * self.size.diameter / 2
+        force = self._sampled(rubbed=False)
+        pieces, load, _ = with_magnitude(self._common, np.stack((force.real, force.imag)))
+        return self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
 def _pin_load(state: State) -> Vector:
     return on_pin(state) if state.drive.has_force else Vector(0.0, 0.0)
 
 
-def _common_pieces(machine: Machine, followed: Sequence[Follower]) -> Pieces:
-    """Return the pieces of the cycle of a machine on which the samples of all of these cylinders are smooth."""
-    return common([(one.forces.pieces, one.position) for one in followed], 360.0 * machine.revolutions)
-
-
-def _with_magnitude(pieces: Pieces, load: ComplexArray, others: Sequence[Array] = ()) -> tuple[Pieces, Array, Array]:
+def with_magnitude(pieces: Pieces, parts: Array) -> tuple[Pieces, Array, Array]:
     """Return pieces on which magnitude and direction of a load are polynomials, the magnitude in N, and the parts.
 
-    load: (nodes, pieces). The parts are those of the load and the others. On each piece the load lies within a quarter
-    of a turn. The smaller a load, the less of its direction is left by rounding.
+    parts: two of the load, and others, (p, nodes, pieces). On each piece the load lies within a quarter of a turn. The
+    smaller a load, the less of its direction is left by rounding.
     """
-    parts, largest = np.stack((load.real, load.imag, *others)), pieces.largest(np.abs(load))
+    largest = pieces.largest(np.hypot(*parts[:2]))
 
     def both(some: Pieces, found: Array) -> Array:
         size, most = np.hypot(*found[:2]), some.of(largest)
@@ -520,30 +414,24 @@ def _axial(directions: Array, rounding: float) -> Array:
     return np.where(np.abs(directions - along) <= rounding, np.abs(along), directions)
 
 
-# all of them
-
-
 class ShaftBearings:
-    """What `kurbel bearings` computes. Raises UsageError where no cylinder has a force and a connecting rod."""
+    """What `kurbel bearings` computes. Raises UsageError where no cylinder has a force and a connecting rod.
+
+    obstacle: why there are no loads of main bearings, or an empty text; line: the throws on their bearings, None where
+    that is not known.
+    """
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
         self.machine, self._cylinders = machine, cylinders
-        if not any(map(_loads, cylinders)):
+        self._loading = [one.drive.has_force and bool(one.drive.mechanism.has_rod) for one in cylinders]
+        if not any(self._loading):
             raise UsageError(
                 f"{machine.name}: nothing loads a bearing: that needs a cylinder with a connecting rod, and a pressure "
                 "or masses and a speed"
             )
-
-    @property
-    def obstacle(self) -> str:
-        """Why there are no loads of main bearings, or an empty text."""
-        return shaft_obstacle(self.machine)
-
-    @cached_property
-    def line(self) -> ShaftLine | None:
-        """The throws on their bearings; None where that is not known."""
-        shaft = self.machine.crankshaft
-        return ShaftLine(self.machine, shaft) if shaft and not self.obstacle else None
+        self.obstacle = shaft_obstacle(machine)
+        known = machine.crankshaft and not self.obstacle
+        self.line = SupportedShaft(machine) if known else None
 
     @cached_property
     def parts(self) -> tuple[Bearing, ...]:
@@ -557,29 +445,21 @@ class ShaftBearings:
             first = next(one for one in self._cylinders if work_alike(one.drive.cylinder, own))
             # whole cycles are taken off, which is exact: next to a large position an angle would lose its digits
             every.append(Follower(first, own, np.fmod(own.crank_position, forces.drive.cycle)))
-        for number, one in enumerate(every):
-            if _loads(one.forces):
-                of, (pin, crosshead) = f" of {one.cylinder.name}" if len(every) > 1 else "", self._pin_sizes(number)
+        shaft, line = self.machine.crankshaft, self.line
+        for number, (one, loads) in enumerate(zip(every, self._loading)):
+            if loads:
+                friction, of = one.cylinder.friction, f" of {one.cylinder.name}" if len(every) > 1 else ""
+                pin: tuple[Any, Any] = friction.crank_pin_diameter if friction else None, None
+                if shaft:  # rods on one pin have equal parts of its length
+                    pin = shaft.pin_diameter, shaft.pin_length / (len(line.throw_of(number).cylinders) if line else 1)
+                crosshead = (
+                    (friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else (None, None)
+                )
                 yield RodPin(f"crank pin{of}", one, pin, "crank_pin")
                 yield RodPin(f"crosshead pin{of}", one, crosshead, "crosshead_pin")
-        shaft, line = self.machine.crankshaft, self.line
         if line and shaft:
             frictions = [one.friction for one in self.machine.cylinders if one.friction]
             diameters = (shaft.journal_diameter, *(one.journal_diameter for one in frictions))
-            size = Size(next((one for one in diameters if one is not None), None), shaft.journal_length)
+            size = next((one for one in diameters if one is not None), None), shaft.journal_length
             for number, name in enumerate("AB" if line.bearings == 2 else range(1, line.bearings + 1)):
                 yield MainBearing(f"bearing {name}", number, line, every, size)
-
-    def _pin_sizes(self, number: int) -> tuple[Size, Size]:
-        """Return the sizes of crank pin and crosshead pin; rods on one pin have equal parts of its length."""
-        shaft, friction = self.machine.crankshaft, self.machine.cylinders[number].friction
-        crank = Size(friction.crank_pin_diameter if friction else None, None)
-        if shaft is not None:
-            rods = len(self.line.throw_of(number).cylinders) if self.line else 1
-            crank = Size(shaft.pin_diameter, shaft.pin_length / rods)
-        given = (friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else (None, None)
-        return crank, Size(*given)
-
-
-def _loads(forces: CylinderForces) -> bool:
-    return forces.drive.has_force and bool(forces.drive.mechanism.has_rod)

@@ -18,7 +18,7 @@ from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.motion import every_dead_centre
-from kurbel.solver.shaft import ShaftLine, shaft_obstacle
+from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
 
 _IDLE = 1e-4
 """Mean indicated pressure in Pa that is rounding: such a piston neither drives nor is driven."""
@@ -48,7 +48,7 @@ class PinFriction(NamedTuple):
     crank_pin: Any
     crosshead_pin: Any
     journals: Any
-    line: ShaftLine | None
+    line: SupportedShaft | None
 
 
 class Drive:
@@ -273,7 +273,7 @@ class Drive:
             arm(friction.crank_pin, pin if friction.crank_pin_diameter is None else friction.crank_pin_diameter),
             arm(friction.crosshead_pin, friction.crosshead_pin_diameter),
             arm(friction.journals, journal if friction.journal_diameter is None else friction.journal_diameter),
-            ShaftLine(self.machine, shaft) if shaft and not shaft_obstacle(self.machine) else None,
+            SupportedShaft(self.machine) if shaft and not shaft_obstacle(self.machine) else None,
         )
 
     def locks(self, degrees: float) -> str:

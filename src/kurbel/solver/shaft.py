@@ -27,7 +27,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -88,49 +87,25 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
     return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
 
 
-class WebLoads(NamedTuple):
-    """What a web carries: force along it in N; in-plane bending, out-of-plane bending and twist in N m."""
-
-    force: Any
-    in_plane: Any
-    out_of_plane: Any
-    twist: Any
-
-
 class FreeBody:
     """One throw under the force on its pin and the weight of the flywheel.
 
     shaft: lengths in m; crank: r in m; pin: whole force on the pin in N; weight: of the flywheel in N, in one frame.
-    The torque T r leaves the shaft at the flywheel; nothing is taken off at A.
+    The torque T r in N m leaves the shaft at the flywheel; nothing is taken off at A.
+
+    A, B: forces on the bearings in N, A = (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b).
+    before_pin: what is carried through the pin from the shaft before it in N, the force of bearing A, nothing overhung.
+    along_web: force along the web toward B, compression positive: D − A_D, which is B_D less the flywheel beyond; D
+    alone in the web of an overhung crank.
     """
 
     def __init__(self, shaft: Crankshaft, crank: Any, pin: Vector, weight: Vector) -> None:
         self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
-
-    @cached_property
-    def A(self) -> Vector:
-        """Force on bearing A in N: (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b)."""
-        shaft = self.shaft
-        return Vector(
-            *((F * shaft.b - G * shaft.flywheel_position) / shaft.span for F, G in zip(self.pin, self.weight))
-        )
-
-    @cached_property
-    def B(self) -> Vector:
-        """Force on bearing B in N: (G (b − u_A + f) − F u_A)/(b − u_A)."""
-        shaft = self.shaft
-        to_flywheel = shaft.span + shaft.flywheel_position
-        return Vector(*((G * to_flywheel - F * shaft.place_A) / shaft.span for F, G in zip(self.pin, self.weight)))
-
-    @cached_property
-    def before_pin(self) -> Vector:
-        """What is carried through the pin from the shaft before it in N: the force of bearing A, nothing overhung."""
-        return Vector(self.A.D * 0.0, self.A.T * 0.0) if self.shaft.overhung else self.A
-
-    @cached_property
-    def torque(self) -> Any:
-        """Torque T r in N m that web B and the shaft beyond it carry."""
-        return self.pin.T * self.crank
+        b, f, span, both = shaft.b, shaft.flywheel_position, shaft.span, list(zip(pin, weight))
+        self.A = Vector(*((F * b - G * f) / span for F, G in both))
+        self.B = Vector(*((G * (span + f) - F * shaft.place_A) / span for F, G in both))
+        self.before_pin = Vector(self.A.D * 0.0, self.A.T * 0.0) if shaft.overhung else self.A
+        self.along_web, self.torque = pin.D - self.before_pin.D, pin.T * crank
 
     def moments_at(self, u: Any) -> Vector:
         """Return the moments in N m about the section at u beyond the pin, of what acts before it.
@@ -141,59 +116,28 @@ class FreeBody:
         from_A, from_pin = (where(arm > 0, arm, 0.0) for arm in (u - self.shaft.place_A, u))
         return Vector(*(A * from_A - F * from_pin for A, F in zip(self.A, self.pin)))
 
-    @cached_property
-    def web_before_pin(self) -> WebLoads:
-        """What web A carries, where the pin has one before it."""
-        moments, carried = self.moments_at(-self.shaft.web_distance), self.before_pin
-        return WebLoads(carried.D, moments.D, abs(carried.T) * self.crank, moments.T)
+    def equilibrium_residual(self, torque: Array) -> Array:
+        """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
 
-    @cached_property
-    def web_beyond_pin(self) -> WebLoads:
-        """What the web between pin and shaft carries, bent out of plane as it is at the worse of its ends."""
-        moments = self.moments_at(self.shaft.web_distance)
-        at_pin, at_shaft = abs(self.before_pin.T) * self.crank, abs(self.torque)
-        return WebLoads(self.force_beyond_pin, moments.D, where(at_pin >= at_shaft, at_pin, at_shaft), moments.T)
-
-    @property
-    def overhung_moments(self) -> Vector:
-        """The moments G f in N m in the middle of bearing B of a flywheel outside of it."""
-        outside = where(self.shaft.flywheel_position > 0, self.shaft.flywheel_position, 0.0)
-        return Vector(self.weight.D * outside, self.weight.T * outside)
-
-    @property
-    def force_beyond_pin(self) -> Any:
-        """Force in N along the web toward B, compression positive: D − A_D, which is B_D less the flywheel beyond.
-
-        D alone in the web of an overhung crank.
+        torque: M on the shaft in N m, shaped as the forces (…), found from the work of the piston force and not from T.
+        The sums are those of the forces at the points where they act, along the shaft and r from the pin, about the
+        middle of the pin: nothing of the formulas above is used.
         """
-        return self.pin.D - self.before_pin.D
-
-
-def equilibrium_residual(body: FreeBody, torque: Array) -> Array:
-    """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
-
-    torque: M on the shaft in N m, shaped as the forces (…), found from the work of the piston force and not from T. The
-    sums are those of the forces at the points where they act, along the shaft and r from the pin, about the middle of
-    the pin: nothing of the formulas above is used.
-    """
-    shaft = body.shaft
-    acting = (
-        (body.pin, 1.0, 0.0),
-        (body.A, -1.0, shaft.place_A),
-        (body.B, -1.0, shaft.b),
-        (body.weight, 1.0, shaft.b + shaft.flywheel_position),
-    )
-    forces = np.stack([sign * (force.D + 1j * force.T) + 0 * torque for force, sign, _ in acting])
-    bends = np.stack([force * place for force, (_, _, place) in zip(forces, acting)])
-    twists = np.stack([torque, *(force.imag * body.crank for force in forces[1:])])  # the pin's has no arm
-    left = np.hypot(np.abs(bends.sum(axis=0)), twists.sum(axis=0))
-    moments = np.abs(bends).sum(axis=0) + np.abs(twists).sum(axis=0)
-    return np.maximum(_share(np.abs(forces.sum(axis=0)), np.abs(forces).sum(axis=0)), _share(left, moments))
-
-
-def _share(left: Array, size: Array) -> Array:
-    """Return what is left over its size; 0 where there is nothing."""
-    return np.asarray(np.divide(left, size, out=np.zeros_like(size), where=size > 0))
+        shaft = self.shaft
+        acting = (
+            (self.pin, 1.0, 0.0),
+            (self.A, -1.0, shaft.place_A),
+            (self.B, -1.0, shaft.b),
+            (self.weight, 1.0, shaft.b + shaft.flywheel_position),
+        )
+        forces = np.stack([sign * (force.D + 1j * force.T) + 0 * torque for force, sign, _ in acting])
+        bends = np.stack([force * place for force, (_, _, place) in zip(forces, acting)])
+        twists = np.stack([torque, *(force.imag * self.crank for force in forces[1:])])  # the pin's has no arm
+        turning = np.hypot(np.abs(bends.sum(axis=0)), twists.sum(axis=0))
+        left = np.stack((np.abs(forces.sum(axis=0)), turning))
+        sizes = np.stack((np.abs(forces).sum(axis=0), np.abs(bends).sum(axis=0) + np.abs(twists).sum(axis=0)))
+        shares = np.divide(left, sizes, out=np.zeros_like(sizes), where=sizes > 0)
+        return np.asarray(shares.max(axis=0))
 
 
 # the throws along a shaft
@@ -222,45 +166,51 @@ def _of_first(condition: Any) -> Any:
     return np.ravel(condition)[0]
 
 
-class ShaftLine:
+class SupportedShaft:
     """The crankshaft of a machine. throws: in order along the shaft; bearings: how many main bearings there are.
 
     Of many machines the throws are those of the first; the forces of one that has others are nan.
     """
 
-    def __init__(self, machine: Machine, shaft: Crankshaft) -> None:
-        self.machine, self.shaft = machine, shaft
-        self._like_first: Any = True
-        throws = throws_of(machine.cylinders, self._decided)
-        found = sorted(throws, key=lambda throw: float(_of_first(throw.place)))
+    def __init__(self, machine: Machine) -> None:
+        assert machine.crankshaft is not None
+        self.machine, self.shaft = machine, machine.crankshaft
+        like_first: Any = True
+
+        def decided(condition: Any) -> Any:
+            """Return what holds for the first machine; others for which something else does have other throws."""
+            nonlocal like_first
+            like_first = like_first & (condition == _of_first(condition))
+            return _of_first(condition)
+
+        found = throws_of(machine.cylinders, decided)
+        found.sort(key=lambda throw: float(_of_first(throw.place)))
         for one, following in pairwise(found):
-            self._decided(one.place <= following.place)
-        self.bearings = 2 if shaft.overhung else len(found) + 1
-        weights = tuple(self._turning(found))
-        self.throws = tuple(self._supported(number, found, weights) for number in range(len(found)))
+            decided(one.place <= following.place)
 
-    def _decided(self, condition: Any) -> Any:
-        """Return what holds for the first of the machines; others for which something else does have other throws."""
-        self._like_first = self._like_first & (condition == _of_first(condition))
-        return _of_first(condition)
+        between: list[list[tuple[Any, Any]]] = [[] for _ in found]
+        for number, product, u in self._turning(found, decided):
+            between[number].append((product * unit_vector(-found[number].angle), u))
+        known = where(like_first, 0.0, math.nan)
+        self.throws = tuple(self._supported(found, number, own, known) for number, own in enumerate(between))
+        self.bearings = 2 if self.shaft.overhung else len(found) + 1
 
-    def _supported(self, number: int, throws: Sequence[Throw], weights: Sequence[tuple[int, Any, Any]]) -> Throw:
-        """Return a throw with its bearings, and with what turns between them."""
-        shaft, throw = self.shaft, throws[number]
-        own = [(weight * unit_vector(-throw.angle), u) for owner, weight, u in weights if owner == number]
-        # the second throw of an overhung shaft is at its other end
-        mirrored = shaft.overhung and number > 0
+    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[tuple[Any, Any]], known: Any) -> Throw:
+        """Return a throw with its bearings, and with what turns between them: masses times radii, and u from its pin.
+
+        known: nan for machines with other throws. The second throw of an overhung shaft is at its other end.
+        """
+        shaft, mirrored = self.shaft, self.shaft.overhung and number > 0
         sign = -1.0 if mirrored else 1.0
-        known = where(self._like_first, 0.0, math.nan)
-        return throw._replace(
+        return throws[number]._replace(
             A=1 if mirrored else number,
             B=0 if mirrored else number + 1,
             flywheel=number == (0 if shaft.overhung else len(throws) - 1),
-            at_A=known + sum(weight * (shaft.b - sign * u) / shaft.span for weight, u in own),
-            at_B=known + sum(weight * (sign * u - shaft.place_A) / shaft.span for weight, u in own),
+            at_A=known + sum(product * (shaft.b - sign * u) / shaft.span for product, u in own),
+            at_B=known + sum(product * (sign * u - shaft.place_A) / shaft.span for product, u in own),
         )
 
-    def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Any, Any]]:
+    def _turning(self, throws: Sequence[Throw], decided: Callable[[Any], Any]) -> Iterator[tuple[int, Any, Any]]:
         """Yield all that turns: the throw between whose bearings it is, mass times radius, and u in m from its pin.
 
         The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
@@ -272,11 +222,11 @@ class ShaftLine:
         weights = (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(self.machine, cranks))
         for one in weights:
             own = cranks[one.owner].place
-            if one.place is None or one.place is own or (own is not None and self._decided(one.place == own)):
+            if one.place is None or one.place is own or (own is not None and decided(one.place == own)):
                 yield of_cylinders[one.owner], one.product, 0.0
             else:
                 distances = [np.asarray(abs(throw.place - one.place)) for throw in throws]
-                nearest = int(self._decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
+                nearest = int(decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
                 yield nearest, one.product, one.place - throws[nearest].place
 
     def throw_of(self, cylinder: int) -> Throw:
@@ -291,11 +241,9 @@ class ShaftLine:
         weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else Vector(0.0, 0.0)
         body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
-        return _pulled(body.A, throw.at_A * omega * omega), _pulled(body.B, throw.at_B * omega * omega)
-
-
-def _pulled(force: Vector, pull: Any) -> Vector:
-    return Vector(force.D - pull.real, force.T + pull.imag)
+        pulls = throw.at_A * omega * omega, throw.at_B * omega * omega
+        at_A, at_B = (Vector(one.D - pull.real, one.T + pull.imag) for one, pull in zip((body.A, body.B), pulls))
+        return at_A, at_B
 
 
 def shaft_obstacle(machine: Machine) -> str:

@@ -25,7 +25,7 @@ A web is bent out of the plane of the throw most at one end of its arm, at the a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -33,7 +33,6 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import taken
@@ -41,10 +40,10 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
-from kurbel.quantity import column, for_each, key_value
+from kurbel.quantity import value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import FreeBody, Vector, WebLoads, equilibrium_residual, flywheel_weight
+from kurbel.solver.shaft import FreeBody, Vector, flywheel_weight
 from kurbel.solver.state import State, on_pin
 
 PARTS = {
@@ -70,16 +69,6 @@ def round_bending(moment: Any, diameter: Any) -> Any:
 def round_torsion(moment: Any, diameter: Any) -> Any:
     """Return τ = 16 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_d/Z_p)."""
     return 16 / math.pi * moment / diameter / diameter / diameter
-
-
-def bach_factor(allowable_bending: Any, allowable_torsion: Any) -> Any:
-    """Return α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses in Pa is not known (G).
-
-    With it a part under torsion alone is fully used just where τ reaches k_d.
-    """
-    if allowable_bending is None or allowable_torsion is None:
-        return 1.0
-    return allowable_bending / (1.3 * allowable_torsion)
 
 
 class Place(NamedTuple):
@@ -121,17 +110,23 @@ def places(body: FreeBody) -> Iterator[Place]:
 
     α₀ is 1 for what is round (G, for the pin), and that of the allowable stresses for the webs.
     """
-    shaft, diameter = body.shaft, body.shaft.journal_diameter
+    shaft, weight, diameter = body.shaft, body.weight, body.shaft.journal_diameter
     inner, outer = (shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1))  # faces of a web
+    before = body.before_pin.T * body.crank
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
     sections = {"at web A": inner} if shaft.overhung else {"middle": 0.0, "at web A": -inner, "at web B": inner}
     for name, u in sections.items():
-        yield _round("pin", name, body.moments_at(u), body.before_pin.T * body.crank, shaft.pin_diameter)
+        yield _round("pin", name, body.moments_at(u), before, shaft.pin_diameter)
+
+    at_pin, at_shaft = abs(before), abs(body.torque)
+    worse = where(at_pin >= at_shaft, at_pin, at_shaft)  # of the ends of the web between pin and shaft
+    beyond = (shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
     if shaft.overhung:
-        yield from _web("web_A", shaft, body.web_beyond_pin)
+        yield from _web("web_A", *beyond)
     else:
-        yield from _web("web_A", shaft, body.web_before_pin)
-        yield from _web("web_B", shaft, body.web_beyond_pin)
+        yield from _web("web_A", shaft, body.before_pin.D, body.moments_at(-shaft.web_distance), at_pin)
+        yield from _web("web_B", *beyond)
+
     if diameter is None:
         return
     if shaft.overhung:
@@ -141,10 +136,12 @@ def places(body: FreeBody) -> Iterator[Place]:
         yield _round("journal_A", "at web", body.moments_at(-outer), None, diameter)
         yield _round("journal_B", "at web", body.moments_at(outer), body.torque, diameter)
     if _flywheel_beyond(shaft):
-        yield _round("journal_B", "in bearing", body.overhung_moments, body.torque, diameter)
+        outside = where(shaft.flywheel_position > 0, shaft.flywheel_position, 0.0)
+        bending = Vector(weight.D * outside, weight.T * outside)  # G f in the middle of bearing B
+        yield _round("journal_B", "in bearing", bending, body.torque, diameter)
     else:
-        flywheel = body.moments_at(shaft.b + shaft.flywheel_position)
-        yield _round("journal_B", "at flywheel", flywheel, body.torque, diameter)
+        bending = body.moments_at(shaft.b + shaft.flywheel_position)
+        yield _round("journal_B", "at flywheel", bending, body.torque, diameter)
 
 
 def _flywheel_beyond(shaft: Crankshaft) -> bool:
@@ -159,17 +156,20 @@ def _round(part: str, name: str, moments: Vector, torque: Any, diameter: Any) ->
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
-def _web(part: str, shaft: Crankshaft, loads: WebLoads) -> Iterator[Place]:
+def _web(part: str, shaft: Crankshaft, force: Any, moments: Vector, out_of_plane: Any) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
+
+    force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
+    is not known (G): with it a part under torsion alone is fully used just where τ reaches k_d.
 
     Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
     (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
     """
-    t, w = shaft.web_thickness, shaft.web_width
-    alpha = bach_factor(shaft.allowable_bending, shaft.allowable_torsion)
-    direct = loads.force / t / w
-    wide, narrow = abs(6 * loads.in_plane / w / t / t), 6 * loads.out_of_plane / t / w / w
-    twist = 4.5 * abs(loads.twist)
+    t, w, allowed, twisting = shaft.web_thickness, shaft.web_width, shaft.allowable_bending, shaft.allowable_torsion
+    alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
+    direct = force / t / w
+    wide, narrow = abs(6 * moments.D / w / t / t), 6 * out_of_plane / t / w / w
+    twist = 4.5 * abs(moments.T)
     yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, abs(direct) + wide)
     yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, abs(direct) + narrow)
     yield Place(part, "corner", alpha, direct, wide, narrow, None, abs(direct) + wide + narrow)
@@ -179,58 +179,27 @@ class StressColumns(AtAngles):
     """Forces and stresses of one machine at crank angles φ (n,) in degrees; state: of its cylinder there."""
 
     commands = ("stress",)
+    D = value("D", "force", "Radial force at the crank pin, positive toward the shaft")
+    T = value("T", "force", "Tangential force at the crank pin, positive when it drives")
+    A_D = value("A_D", "force", "Force on bearing A along D, in the frame that turns with the throw")
+    A_T = value("A_T", "force", "Force on bearing A along T")
+    B_D = value("B_D", "force", "Force on bearing B, beside the flywheel, along D")
+    B_T = value("B_T", "force", "Force on bearing B along T")
+    sigma = values_for(PARTS, "sigma_*", "σ_*", "stress", "Largest combined stress of * (Bach)")
+    mises = values_for(PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)")
 
     def __init__(self, phi: Array, state: State, body: FreeBody) -> None:
         self.phi, self._state, self._body = phi, state, body
 
-    @column("D", "force")
-    def D(self) -> Any:
-        """Radial force at the crank pin, positive toward the shaft."""
-        return self._state.D
-
-    @column("T", "force")
-    def T(self) -> Any:
-        """Tangential force at the crank pin, positive when it drives."""
-        return self._state.T
-
-    @column("A_D", "force")
-    def A_D(self) -> Any:
-        """Force on bearing A along D, in the frame that turns with the throw."""
-        return self._body.A.D
-
-    @column("A_T", "force")
-    def A_T(self) -> Any:
-        """Force on bearing A along T."""
-        return self._body.A.T
-
-    @column("B_D", "force")
-    def B_D(self) -> Any:
-        """Force on bearing B, beside the flywheel, along D."""
-        return self._body.B.D
-
-    @column("B_T", "force")
-    def B_T(self) -> Any:
-        """Force on bearing B along T."""
-        return self._body.B.T
-
     @cached_property
-    def _largest(self) -> dict[str, tuple[Array, Array]]:
-        """The largest of Bach's and of von Mises' stresses of each part that is examined."""
-        found: dict[str, tuple[Array, Array]] = {}
+    def answers(self) -> dict[str, Any]:
+        """The columns by id; of the stresses those of the parts that are examined."""
+        (A_D, A_T), (B_D, B_T) = self._body.A, self._body.B
+        found = {"D": self._state.D, "T": self._state.T, "A_D": A_D, "A_T": A_T, "B_D": B_D, "B_T": B_T}
         for place in places(self._body):
-            known = found.get(place.part, (0.0, 0.0))
-            found[place.part] = np.maximum(known[0], place.combined), np.maximum(known[1], place.von_mises)
+            for id, stress in ((f"sigma_{place.part}", place.combined), (f"mises_{place.part}", place.von_mises)):
+                found[id] = np.maximum(found.get(id, 0.0), stress)
         return found
-
-    @for_each(PARTS, "sigma_*", "σ_*", "stress")
-    def sigma(self, part: str) -> Array | None:
-        """Largest combined stress of * (Bach)."""
-        return self._largest[part][0] if part in self._largest else None
-
-    @for_each(PARTS, "mises_*", "σ_v,*", "stress")
-    def mises(self, part: str) -> Array | None:
-        """Largest equivalent stress of * (von Mises)."""
-        return self._largest[part][1] if part in self._largest else None
 
 
 class _Cycle(NamedTuple):
@@ -255,6 +224,63 @@ class CrankshaftStrength(Results):
     command = "stress"
     state = StressColumns
 
+    P_dc = value(
+        "P_dc", "force", "Full piston force, without inertia, taken in the dead centre", lambda one: one.full_force
+    )
+    C_rod = value("C_r", "force", "Centrifugal force of the connecting rod's turning part, which D does not contain")
+    _dead_centre = "Combined stress of * in the dead centre under full force (Bach)"
+    sigma_dc = values_for(PARTS, "sigma_*_dc", "σ_*,dc", "stress", _dead_centre, group=str)
+    _bach, _mises = (
+        "Largest combined stress of * over the cycle (Bach)",
+        "Largest equivalent stress of * over the cycle",
+    )
+    sigma_max = values_for(PARTS, "sigma_*_max", "σ_*,max", "stress", _bach, group=str)
+    mises_max = values_for(PARTS, "mises_*_max", "σ_v,*,max", "stress", f"{_mises} (von Mises)", group=str)
+    _safety = "Smallest safety of *: k_b over its combined stress, dead centre and cycle"
+    safety = values_for(PARTS, "safety_*_min", "S_*", "ratio", _safety, group=str)
+    A_max = value("A_max", "force", "Largest force on bearing A", lambda one: one.pressures["A_max"])
+    B_max = value(
+        "B_max", "force", "Largest force on bearing B, beside the flywheel", lambda one: one.pressures["B_max"]
+    )
+    p_pin_dc = value("p_pin,dc", "pressure", "Pressure on the crank pin under full force, P/(d l)")
+    pressure_max = values_for(
+        _BEARINGS,
+        "p_*_max",
+        "p_*,max",
+        "pressure",
+        "Largest pressure on * over the cycle, force over d l",
+        of=lambda one, part: one.pressures.get(f"p_{part}_max"),
+        group=str,
+    )
+    pressure_mean = values_for(
+        _BEARINGS,
+        "p_*_mean",
+        "p_*,m",
+        "pressure",
+        "Mean pressure on * over the time of a cycle",
+        of=lambda one, part: one.pressures.get(f"p_{part}_mean"),
+        after="p_*_max",
+        group=str,
+    )
+    pressure_velocity = values_for(
+        _BEARINGS,
+        "k_*",
+        "k_*",
+        "pressure_velocity",
+        "Mean pressure times surface speed, p_m v, of *",
+        of=lambda one, part: one.pressures.get(f"k_{part}"),
+        after="p_*_mean",
+        group=str,
+    )
+    equilibrium_residual = value(
+        "ΣF, ΣM",
+        "ratio",
+        "What is left of the sums of forces and moments on the crankshaft",
+        lambda one: one.unbalanced(),
+        plain="sum F, M",
+        residual=True,
+    )
+
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
         obstacle = machine.strength_obstacle
         if obstacle or machine.crankshaft is None:
@@ -264,19 +290,10 @@ class CrankshaftStrength(Results):
         self.forces = cylinders[0]
         self.count = self.forces.drive.count
 
-    # loads
-
-    @property
-    def weight(self) -> Any:
-        """Weight of the flywheel in N that counts; None where there is none, or its direction is not known."""
-        if self.forces.drive.cylinder.inclination is None or not some(self.shaft.flywheel_mass != 0):
-            return None
-        return self.shaft.flywheel_mass * GRAVITY
-
     def _body(self, pin: Vector, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
-        spread = pieces if self.count is not None else None
-        machine = self.machine if spread is None else taken(self.machine, spread.machine)
+        several = pieces is not None and self.count is not None
+        machine = taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
         (cylinder,), shaft = machine.cylinders, machine.crankshaft
         assert shaft is not None
         return FreeBody(shaft, cylinder.mechanism.crank, pin, flywheel_weight(machine, cylinder, angle))
@@ -289,16 +306,24 @@ class CrankshaftStrength(Results):
 
     @cached_property
     def _cycle(self) -> _Cycle:
-        """The cycle cut where the force or moment of a stress is zero, so that its magnitude has a kink there."""
+        """The cycle cut where the force or moment of a stress is zero, so that its magnitude has a kink there.
+
+        Raises UsageError where the stresses of the only machine are no finite numbers.
+        """
         pieces, state = self.forces.pieces, self.forces.samples
         pin = on_pin(state)
         parts = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (*pin, state.D - pin.D)])
         body = self._body(Vector(*parts[:2]), state.angle, pieces)
-        self._refuse_overflow(body)
-        in_plane, twist = body.moments_at(body.shaft.web_distance)
+        if self.count is None and not all(
+            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
+        ):
+            raise UsageError(
+                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
+                "check the numbers and units of the machine file"
+            )
         # the web beyond the pin is bent out of plane as much at the pin as at the shaft
         ends = (body.before_pin.T - body.pin.T, body.before_pin.T + body.pin.T)
-        kinked = (*body.pin, *body.A, body.force_beyond_pin, in_plane, twist, *ends, state.D)
+        kinked = (*body.pin, *body.A, body.along_web, *body.moments_at(body.shaft.web_distance), *ends, state.D)
         kinks = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in kinked])
 
         def magnitudes(some: Pieces, found: Array) -> Array:
@@ -309,15 +334,10 @@ class CrankshaftStrength(Results):
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         return _Cycle(fine, found, loads)
 
-    def _refuse_overflow(self, body: FreeBody) -> None:
-        """Raise UsageError where the stresses of the only machine are no finite numbers."""
-        if self.count is None and not all(
-            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
-        ):
-            raise UsageError(
-                f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
-                "check the numbers and units of the machine file"
-            )
+    @property
+    def breaks(self) -> Array:
+        """The crank angles in degrees of the only machine between which every quantity is smooth."""
+        return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
 
     @cached_property
     def _largest(self) -> list[Extreme]:
@@ -334,15 +354,52 @@ class CrankshaftStrength(Results):
         return [Extreme(*map(self.forces.told, pair)) for pair in zip(found, degrees)]
 
     @cached_property
-    def _largest_loads(self) -> list[Extreme]:
-        """The largest forces on pin, A and B."""
-        found = self._cycle.pieces.extremes(self._cycle.loads[:3])
-        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found.largest, found.largest_at)]
+    def answers(self) -> dict[str, Any]:
+        """The key values of the stresses by id, of the parts that are examined; the safety where k_b is given."""
+        shaft, pull, allowable = self.shaft, self.forces.drive.rod_pull, self.shaft.allowable_bending
+        found: dict[str, Any] = {
+            "C_rod": pull if some(pull != 0) else None,
+            "p_pin_dc": abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length,  # G: P_max/(d_z l_z)
+        }
+        at, count = self.at_dead_centre, len(self.at_dead_centre)
+        of_cycle = list(zip(at, self._largest[:count], self._largest[count:]))
+        for part in dict.fromkeys(place.part for place in at):
+            resting = largest(*(Extreme(place.combined, place.degrees) for place in at if place.part == part))
+            turning = largest(*(bach for place, bach, _ in of_cycle if place.part == part))
+            found[f"mises_{part}_max"] = largest(*(mises for place, _, mises in of_cycle if place.part == part))
+            found[f"sigma_{part}_dc"], found[f"sigma_{part}_max"] = resting.value, turning
+            worst = largest(resting, turning)
+            if allowable is not None and not every(worst.value == 0):
+                safety = allowable / where(worst.value == 0, math.nan, worst.value)
+                found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
+        return found
 
-    @property
-    def breaks(self) -> Array:
-        """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
+    @cached_property
+    def pressures(self) -> dict[str, Any]:
+        """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
+
+        The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
+        """
+        (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
+        extremes = pieces.extremes(loads[:3])
+        most = [Extreme(*map(self.forces.told, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
+        mean_A, mean_B, of_rod = map(self.forces.told, pieces.mean(loads[1:]))
+        found: dict[str, Any] = {"A_max": most[1], "B_max": most[2]}
+        for part, load, mean in zip(_BEARINGS, most, (of_rod, mean_A, mean_B)):
+            diameter, length = shaft.journal_diameter, shaft.journal_length
+            if part == "pin":
+                diameter, length = shaft.pin_diameter, shaft.pin_length
+            if diameter is not None and length is not None:
+                found[f"p_{part}_max"] = Extreme(load.value / diameter / length, load.degrees)
+                found[f"p_{part}_mean"] = pressure = mean / diameter / length
+                found[f"k_{part}"] = None if speed is None else pressure * math.pi * diameter * speed
+        return found
+
+    def unbalanced(self) -> Any:
+        """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
+        pieces, state = self.forces.pieces, self.forces.samples
+        body = self._body(on_pin(state), state.angle, pieces)
+        return self.forces.told(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
 
     # the two positions of the book, and the worst of the cycle
 
@@ -378,7 +435,7 @@ class CrankshaftStrength(Results):
         body = self._body(Vector(force * radial, 0.0), angle)
         return tuple(place._replace(degrees=degrees) for place in places(body))
 
-    @cached_property
+    @property
     def at_largest_torque(self) -> tuple[Place, ...]:
         """Every place in the position of the largest torque, of the only machine."""
         torque, degrees = self.largest_torque
@@ -386,7 +443,7 @@ class CrankshaftStrength(Results):
         nearest = np.abs(body.pin.T - torque).argmin()
         return tuple(place.one_of(nearest, degrees) for place in places(body))
 
-    @cached_property
+    @property
     def at_worst(self) -> tuple[Place, ...]:
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
         worst = self._largest[: len(self.at_dead_centre)]
@@ -403,119 +460,3 @@ class CrankshaftStrength(Results):
         rows = pieces.holding(np.zeros(len(each), dtype=np.intp), each + np.tile((-1e-9, 1e-9), len(degrees)))
         state = State(self.forces.drive, CrankAngle.of(each), pieces.middle[rows])
         return self._body(on_pin(state), state.angle), np.repeat(np.arange(len(degrees)), 2)
-
-    # key values
-
-    @key_value("P_dc", "force")
-    def P_dc(self) -> Extreme:
-        """Full piston force, without inertia, taken in the dead centre."""
-        return self.full_force
-
-    @key_value("C_r", "force")
-    def C_rod(self) -> Any:
-        """Centrifugal force of the connecting rod's turning part, which D does not contain."""
-        return self.forces.drive.rod_pull if some(self.forces.drive.rod_pull != 0) else None
-
-    @for_each(PARTS, "sigma_*_dc", "σ_*,dc", "stress", group=str)
-    def sigma_dc_value(self, part: str) -> Any:
-        """Combined stress of * in the dead centre under full force (Bach)."""
-        found = self.sigma_dc(part)
-        return found and found.value
-
-    def sigma_dc(self, part: str) -> Extreme | None:
-        """Return the largest combined stress of a part in Pa in the dead centre; None for one that is not examined."""
-        return _highest(Extreme(one.combined, one.degrees) for one in self.at_dead_centre if one.part == part)
-
-    def _largest_of(self, part: str, found: Sequence[Extreme]) -> Extreme | None:
-        return _highest(one for one, place in zip(found, self.at_dead_centre) if place.part == part)
-
-    @for_each(PARTS, "sigma_*_max", "σ_*,max", "stress", group=str)
-    def sigma_max(self, part: str) -> Extreme | None:
-        """Largest combined stress of * over the cycle (Bach)."""
-        return self._largest_of(part, self._largest)
-
-    @for_each(PARTS, "mises_*_max", "σ_v,*,max", "stress", group=str)
-    def mises_max(self, part: str) -> Extreme | None:
-        """Largest equivalent stress of * over the cycle (von Mises)."""
-        return self._largest_of(part, self._largest[len(self.at_dead_centre) :])
-
-    @for_each(PARTS, "safety_*_min", "S_*", "ratio", group=str)
-    def safety(self, part: str) -> Extreme | None:
-        """Smallest safety of *: k_b over its combined stress, dead centre and cycle."""
-        allowable = self.shaft.allowable_bending
-        worst = _highest(one for one in (self.sigma_dc(part), self.sigma_max(part)) if one)
-        if allowable is None or worst is None or every(worst.value == 0):
-            return None
-        return Extreme(allowable / where(worst.value == 0, math.nan, worst.value), worst.degrees)
-
-    @key_value("A_max", "force")
-    def A_max(self) -> Extreme:
-        """Largest force on bearing A."""
-        return self._largest_loads[1]
-
-    @key_value("B_max", "force")
-    def B_max(self) -> Extreme:
-        """Largest force on bearing B, beside the flywheel."""
-        return self._largest_loads[2]
-
-    @key_value("p_pin,dc", "pressure")
-    def p_pin_dc(self) -> Any:
-        """Pressure on the crank pin under full force, P/(d l).
-
-        G: P_max/(d_z l_z).
-        """
-        return abs(self.full_force.value) / self.shaft.pin_diameter / self.shaft.pin_length
-
-    @for_each(_BEARINGS, "p_*_max", "p_*,max", "pressure", group=str)
-    def pressure_max(self, part: str) -> Extreme | None:
-        """Largest pressure on * over the cycle, force over d l."""
-        size, load = self._size(part), self._largest_loads[[*_BEARINGS].index(part)]
-        return Extreme(load.value / size[0] / size[1], load.degrees) if size else None
-
-    @for_each(_BEARINGS, "p_*_mean", "p_*,m", "pressure", after="p_*_max", group=str)
-    def pressure_mean(self, part: str) -> Any:
-        """Mean pressure on * over the time of a cycle.
-
-        On the pin that of the rod force alone, as G has it for its bounds on p_m v.
-        """
-        size = self._size(part)
-        return self._mean_loads[part] / size[0] / size[1] if size else None
-
-    @cached_property
-    def _mean_loads(self) -> dict[str, Any]:
-        """Means over time in N of the forces on both bearings, and of the force of the rod on the pin."""
-        means = self._cycle.pieces.mean(self._cycle.loads[1:])
-        return dict(zip(("journal_A", "journal_B", "pin"), map(self.forces.told, means)))
-
-    @for_each(_BEARINGS, "k_*", "k_*", "pressure_velocity", after="p_*_mean", group=str)
-    def pressure_velocity(self, part: str) -> Any:
-        """Mean pressure times surface speed, p_m v, of *.
-
-        In W/m², v = π d n (G); None without a speed of rotation.
-        """
-        pressure, speed, size = self.pressure_mean(part), self.machine.speed, self._size(part)
-        return None if pressure is None or speed is None or size is None else pressure * math.pi * size[0] * speed
-
-    def _size(self, part: str) -> tuple[Any, Any] | None:
-        """Return diameter and length of a pin or journal in m; None where one is not given."""
-        shaft = self.shaft
-        if part == "pin":
-            return shaft.pin_diameter, shaft.pin_length
-        given = shaft.journal_diameter is not None and shaft.journal_length is not None
-        return (shaft.journal_diameter, shaft.journal_length) if given else None
-
-    @key_value("ΣF, ΣM", "ratio", plain="sum F, M", residual=True)
-    def equilibrium_residual(self) -> Any:
-        """What is left of the sums of forces and moments on the crankshaft.
-
-        Over the sizes of their terms, at its worst.
-        """
-        pieces, state = self.forces.pieces, self.forces.samples
-        body = self._body(on_pin(state), state.angle, pieces)
-        return self.forces.told(pieces.largest(equilibrium_residual(body, np.asarray(state.torque))))
-
-
-def _highest(found: Iterable[Extreme]) -> Extreme | None:
-    """Return the one with the largest value, the first of equal ones; None of none."""
-    every_one = list(found)
-    return largest(*every_one) if every_one else None

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, NoReturn
 import numpy as np
 
 from kurbel.arrays import Array, Indices
-from kurbel.declared.units import MOST_POINTS, out_of_size
+from kurbel.declared.forms.values import out_of_size
+from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError
 from kurbel.traces.correct import PERIODS
 from kurbel.traces.read import LIMITS, Layout, read_table

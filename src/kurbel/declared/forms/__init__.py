@@ -1,44 +1,26 @@
-"""What may stand under a key of the machine file; each form reads, explains and describes itself."""
+"""What may stand under a key of the machine file; each form reads and describes itself."""
 
-from kurbel.declared.forms.figures import Expectations, Limits
-from kurbel.declared.forms.structures import Alike, Inline, Keyed, Listing, OneOf, Record, Variant
-from kurbel.declared.forms.values import (
-    Choice,
-    ColumnRange,
-    Count,
-    FilePath,
-    FiringOrder,
-    Number,
-    Physical,
-    Points,
-    Settings,
-    Text,
-    Truth,
-    Uncertainties,
-    UnitName,
-)
+from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, SETTINGS, UNCERTAINTIES
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, FIRING_ORDER, TEXT, Choice, Number, Points, unit_name
 
 __all__ = [
-    "Alike",
+    "COLUMN_RANGE",
+    "EXPECTATIONS",
+    "FILE_PATH",
+    "FIRING_ORDER",
+    "LIMITS",
+    "SETTINGS",
+    "TEXT",
+    "UNCERTAINTIES",
     "Choice",
-    "ColumnRange",
-    "Count",
-    "Expectations",
-    "FilePath",
-    "FiringOrder",
     "Inline",
     "Keyed",
-    "Limits",
     "Listing",
     "Number",
     "OneOf",
-    "Physical",
     "Points",
-    "Record",
-    "Settings",
-    "Text",
-    "Truth",
-    "Uncertainties",
-    "UnitName",
+    "RecordForm",
     "Variant",
+    "unit_name",
 ]

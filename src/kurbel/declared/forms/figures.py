@@ -1,16 +1,14 @@
-"""Forms of what key values are held against: bounds, and expected figures with their tolerance."""
+"""Forms of what is put on key values, or on keys by their dotted names: bounds, expected figures, uncertainties."""
 
 import re
-from abc import abstractmethod
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kurbel.declared.forms.values import Number, Physical
-from kurbel.declared.keys import Form, Schema
-from kurbel.declared.numerals import NUMBER, familiar
-from kurbel.declared.reading import REFUSED, Plain, Reading, is_nothing, kind_of, shown
+from kurbel.declared.forms.values import Form, Number, Schema, reference
+from kurbel.declared.numerals import NUMBER, familiar, plain
+from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
@@ -55,26 +53,22 @@ def scoped(name: str) -> tuple[str, str]:
     return scope, id
 
 
-class _Figures(Form):
-    """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and figure.
+class Figures(Form):
+    """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and Bound or Expected.
 
-    Before the id may stand whose it is: `machine.T_max`, or the name of a cylinder.
+    Before the id may stand whose it is: `machine.T_max`, or the name of a cylinder. what: is put on a key value;
+    tolerated: figures with a tolerance.
     """
 
     shape = dict
-    what: str
-    """What is put on a key value, for messages."""
 
-    @abstractmethod
-    def figure(self, size: Number | Physical) -> Form:
-        """Return the form of a figure for a quantity of which values have this form."""
-
-    @abstractmethod
-    def named(self, figure: Any, written: Any, name: str) -> Any:
-        """Return a figure with what it was written as, and the name that it stands under."""
+    def __init__(self, expected: str, written: str, what: str, tolerated: bool = False) -> None:
+        super().__init__(expected, written=written)
+        self.what, self.tolerated = what, tolerated
 
     def _figure_of(self, quantity: Quantity) -> Form:
-        return self.figure(Number() if quantity.kind == "ratio" else Physical(quantity.kind))
+        number = Number(quantity.kind)
+        return _Figure(number) if self.tolerated else number
 
     def schema(self, definitions: Schema) -> Schema:
         return {"type": "object"}  # what reads machine files knows the key values: see `schema_of`
@@ -83,19 +77,16 @@ class _Figures(Form):
         """Return the schema of a mapping from these key values, by id."""
         # a symbol of several, or of one and the id of another, names none
         named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
-        properties = {
-            name: {**self._figure_of(quantity).schema(definitions), "description": quantity.text}
-            for id, quantity in known.items()
-            for name in (id, quantity.symbol, quantity.ascii_symbol)
-            if not quantity.listed and (name == id or named[name] == 1)
-        }
-        # the same below a scope: of those of one form one pattern
+        properties: Schema = {}
+        names: dict[str, list[str]] = {}  # of those of one form, which have one pattern below a scope
         forms: dict[str, Schema] = {}
-        names: dict[str, list[str]] = {}
-        for name, schema in properties.items():
-            form = {key: value for key, value in schema.items() if key != "description"}
-            forms.setdefault(repr(form), form)
-            names.setdefault(repr(form), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
+        for id, quantity in known.items():
+            for name in (id, quantity.symbol, quantity.ascii_symbol):
+                if not quantity.listed and (name == id or named[name] == 1) and name not in properties:
+                    form = self._figure_of(quantity).schema(definitions)
+                    properties[name] = {**form, "description": quantity.text}
+                    forms[repr(form)] = form
+                    names.setdefault(repr(form), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
         patterns = {f"^.+\\.({'|'.join(names[form])})$": schema for form, schema in forms.items()}
         return {
             "type": "object",
@@ -107,18 +98,20 @@ class _Figures(Form):
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
         if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
-            refused(f"expected {self.expected()}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+            refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         known = reading.key_values()
         found: dict[str, Any] = {}
-        for name, figure in value.items():
+        for name, written in value.items():
             id, wrong = self._meant(name, known)
             if id in found:
                 wrong = f"'{shown(name)}' is the symbol of {id}, which is given already; leave one of them out"
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
-            else:
-                read = self._figure_of(known[scoped(id)[1]]).read(reading, figure, (*path, name))
-                found[id] = read if read is REFUSED else self.named(read, figure, name)
+                continue
+            figure = self._figure_of(known[scoped(id)[1]]).read(reading, written, (*path, name))
+            if isinstance(figure, Expected):
+                figure = replace(figure, name=name)
+            found[id] = Bound(figure, written_unit(written), name) if isinstance(figure, float) else figure
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: Mapping[str, Quantity]) -> tuple[str, str]:
@@ -136,41 +129,13 @@ class _Figures(Form):
         return found[0], ambiguity(name, found) or wrong
 
 
-class Limits(_Figures):
-    """A mapping from key values to bounds; becomes pairs of id and Bound."""
-
-    what = "bound"
-
-    def figure(self, size: Number | Physical) -> Form:
-        return size
-
-    def named(self, figure: Any, written: Any, name: str) -> Bound:
-        return Bound(figure, written_unit(written), name)
-
-    def expected(self) -> str:
-        return "a mapping of key values to bounds, such as 'c_max: 6 m/s'"
-
-    def written(self) -> str:
-        return "`{key value: bound}`"
-
-
-class Expectations(_Figures):
-    """A mapping from key values to figures with a tolerance; becomes pairs of id and Expected."""
-
-    what = "expectation"
-
-    def figure(self, size: Number | Physical) -> Form:
-        return _Figure(size)
-
-    def named(self, figure: Expected, written: Any, name: str) -> Expected:
-        return replace(figure, name=name)
-
-    def expected(self) -> str:
-        return "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'"
-
-    def written(self) -> str:
-        return "`{key value: figure ± tolerance}`, or two bounds `[least, most]`"
-
+LIMITS = Figures("a mapping of key values to bounds, such as 'c_max: 6 m/s'", "`{key value: bound}`", "bound")
+EXPECTATIONS = Figures(
+    "a mapping of key values to figures, such as 'b_max: 13.16 m/s2 ± 0.5 %'",
+    "`{key value: figure ± tolerance}`, or two bounds `[least, most]`",
+    "expectation",
+    tolerated=True,
+)
 
 _PLUS_MINUS = r"\s*(?:±|\+\s*/?\s*-)\s*"
 _PERCENT = rf"({NUMBER.pattern})\s*%"
@@ -179,19 +144,12 @@ _PERCENT = rf"({NUMBER.pattern})\s*%"
 class _Figure(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
-    def __init__(self, size: Number | Physical) -> None:
+    def __init__(self, size: Number) -> None:
         self.size = size
-
-    def expected(self) -> str:
-        return (
-            f"a figure and its tolerance, such as '{self.example()}' or '{self._absolute()}', or two bounds in a list"
-        )
-
-    def example(self) -> str:
-        return f"{self.size.example()} ± 0.5 %"
-
-    def _absolute(self) -> str:
-        return f"{self.size.example()} ± 0.1 {written_unit(self.size.example())}".rstrip()
+        self._absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
+        sample = f"{size.example} ± 0.5 %"
+        either = f"a figure and its tolerance, such as '{sample}' or '{self._absolute}'"
+        super().__init__(f"{either}, or two bounds in a list", sample)
 
     def schema(self, definitions: Schema) -> Schema:
         name = f"figure_{self.size.kind}"
@@ -200,40 +158,79 @@ class _Figure(Form):
                 {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},
                 {"type": "array", "items": self.size.schema(definitions), "minItems": 2, "maxItems": 2},
             ],
-            "errorMessage": f"write {self.expected()}",
-            "examples": [self.example(), self._absolute()],
+            "errorMessage": f"write {self.expected}",
+            "examples": [self.example, self._absolute],
         }
-        return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
+        return reference(name)
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a figure with its tolerance, or two bounds."""
         if isinstance(value, list) and len(value) == 2:
             low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
-            return self._between(low, high, value)
+            if low is REFUSED or high is REFUSED:
+                return REFUSED
+            if low > high:
+                refused(f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them")
+            return Expected(low, high, written_unit(value[0]), f"{value[0]} to {value[1]}")
         parts = re.split(_PLUS_MINUS, familiar(value)) if isinstance(value, str) else []
         if len(parts) != 2 or not all(parts):
-            refused(f"expected {self.expected()}, got {kind_of(value)}")
+            refused(f"expected {self.expected}, got {kind_of(value)}")
         figure, tolerance = parts
-        if not written_unit(figure) and not re.fullmatch(_PERCENT, tolerance):
+        percent = re.fullmatch(_PERCENT, tolerance)
+        if not written_unit(figure) and not percent:
             figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
         middle = self.size.read(reading, Plain(figure), path)
-        around = REFUSED if middle is REFUSED else self._around(reading, tolerance, middle, path)
+        if middle is REFUSED:
+            return REFUSED
+        around = float(percent[1]) / 100 * abs(middle) if percent else self.size.read(reading, Plain(tolerance), path)
         if around is REFUSED:
             return REFUSED
         if not around > 0:
             refused(f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be")
         return Expected(middle - around, middle + around, written_unit(figure), value)
 
-    def _around(self, reading: Reading, tolerance: str, middle: float, path: Path) -> Any:
-        """Return the tolerance in the base; one in percent is a share of the figure."""
-        share = re.fullmatch(_PERCENT, tolerance)
-        if share:
-            return float(share[1]) / 100 * abs(middle)
-        return self.size.read(reading, Plain(tolerance), path)
 
-    def _between(self, low: Any, high: Any, value: list[str]) -> Any:
-        if low is REFUSED or high is REFUSED:
-            return REFUSED
-        if low > high:
-            refused(f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them")
-        return Expected(low, high, written_unit(value[0]), f"{value[0]} to {value[1]}")
+_SPREADS = "'bore: ± 0.2 mm' or 'masses.piston: ± 2 %'"
+
+
+class ByKey(Form):
+    """A mapping from dotted keys to texts; becomes pairs of them. spreads: they are standard uncertainties."""
+
+    shape = dict
+
+    def __init__(self, expected: str, spreads: bool = False) -> None:
+        super().__init__(expected)
+        self.spreads = spreads
+
+    def schema(self, definitions: Schema) -> Schema:
+        values = {"additionalProperties": {"type": ["string", "number"]}} if self.spreads else {}
+        return {"type": "object", "minProperties": 1, **values}
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read uncertainties; values that stand instead of others are read with their load case."""
+        if not isinstance(value, dict) or not value:
+            refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+        if not self.spreads:
+            return tuple(value.items())
+        found: list[tuple[str, Any]] = []
+        for name, one in value.items():
+            text = spread_text(one) if isinstance(one, str) and len(one) <= LONGEST_VALUE else ""
+            got = repr(shown(one) if isinstance(one, str) and len(one) <= LONGEST_VALUE else one)
+            wrong = f"expected a standard uncertainty above 0, such as {_SPREADS}, got {got}"
+            found.append((name, text or reading.fault((*path, name), wrong)))
+        return REFUSED if any(text is REFUSED for _, text in found) else tuple(found)
+
+
+UNCERTAINTIES = ByKey(f"a mapping of keys to standard uncertainties, such as {_SPREADS}", spreads=True)
+SETTINGS = ByKey("a mapping of dotted keys to values, such as 'speed: 60 rpm' or 'cylinders.0.bore: 450 mm'")
+
+
+def spread_text(text: str) -> str:
+    """Return the number with its unit, or percent, after `±`; '' for what is none above 0.
+
+    >>> spread_text("± 0.2 mm"), spread_text("+-2 %"), spread_text("±-1 mm")
+    ('0.2 mm', '2 %', '')
+    """
+    rest = re.sub(r"(±|\+/-|\+-)\s*", "", plain(text).strip(), count=1)
+    number = NUMBER.match(rest)
+    return rest if number and float(number.group()) > 0 else ""

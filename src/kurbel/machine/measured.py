@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import Choice, ColumnRange, Count, FilePath, OneOf, Physical, Points, UnitName
-from kurbel.declared.forms import Record as RecordForm
+from kurbel.declared.forms import COLUMN_RANGE, FILE_PATH, Choice, Number, OneOf, Points, RecordForm, unit_name
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point, unit_factor
@@ -29,7 +28,7 @@ RECORDED_SPEED = alternative("speed", "Constant speed at which times were record
 ANGLE_STEP = alternative(
     "angle", "Crank angle from one row to the next, instead of a column of angles", above=0, instead="angle_column"
 )
-SKIP_ROWS = alternative(Count(least=0), "Number of lines above the first figures", absent="0")
+SKIP_ROWS = alternative(Number(whole=True, least=0), "Number of lines above the first figures", absent="0")
 DELIMITER = alternative(
     (*DELIMITERS, *DELIMITERS.values()), "Sign between two columns", absent="comma", also=("separator", "sep")
 )
@@ -74,7 +73,7 @@ class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
     motored: str = field(
-        FilePath(), "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
+        FILE_PATH, "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
     )
     loss_angle: float = field(
         "angle",
@@ -89,23 +88,23 @@ class Measured(Record):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
     file = alternative(
-        FilePath(),
+        FILE_PATH,
         "File with a column of angles in degrees and one of pressures; or give `points`",
         required=True,
         example="indicator.csv",
     )
     points = alternative(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file")
-    unit = alternative(UnitName("pressure"), "Unit of the pressures", required=True)
+    unit = alternative(unit_name("pressure"), "Unit of the pressures", required=True)
     angle_column, angle_unit, recorded_speed, angle_step = ANGLE_COLUMN, ANGLE_UNIT, RECORDED_SPEED, ANGLE_STEP
     pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2")
     skip_rows, delimiter, decimal = SKIP_ROWS, DELIMITER, DECIMAL
     angle_zero = alternative(
-        OneOf(Physical("angle"), RecordForm(Motored)),
+        OneOf(Number("angle"), RecordForm(Motored)),
         "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
         absent="0 deg",
     )
     pressure_columns = alternative(
-        ColumnRange(), "Columns of pressures, one for each measured cycle", instead="pressure_column"
+        COLUMN_RANGE, "Columns of pressures, one for each measured cycle", instead="pressure_column"
     )
     angle_sense = alternative(
         ("with", "against"), "Whether angles count with the rotation, or against it", absent="with"

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import FilePath, Points, UnitName
+from kurbel.declared.forms import FILE_PATH, Points, unit_name
+from kurbel.declared.forms.values import size_faults
 from kurbel.declared.keys import Key
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative
-from kurbel.declared.units import Factor, Point, size_faults
+from kurbel.declared.units import Factor, Point
 from kurbel.errors import refuse, refused
-from kurbel.machine.turning import Effort, Harmonics
-from kurbel.machine_file.trace import (
+from kurbel.machine.measured import (
     ANGLE_COLUMN,
     ANGLE_STEP,
     ANGLE_UNIT,
@@ -24,6 +24,7 @@ from kurbel.machine_file.trace import (
     layout_of,
     layout_rules,
 )
+from kurbel.machine.turning import Effort, Harmonics
 from kurbel.traces.cycles import Samples, samples_of_file
 
 _HIGHEST = 1000
@@ -37,14 +38,14 @@ def _of_file(key: Key) -> Key:
 class Known(Record):
     """What becomes an `Effort`, or `Harmonics`."""
 
-    unit = alternative(UnitName("torque"), "Unit of the torques", required=True)
+    unit = alternative(unit_name("torque"), "Unit of the torques", required=True)
     points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
         "M",
         instead="file",
     )
-    file = alternative(FilePath(), "File with a column of angles in degrees and one of torques", example="effort.csv")
+    file = alternative(FILE_PATH, "File with a column of angles in degrees and one of torques", example="effort.csv")
     angle_column, angle_unit = _of_file(ANGLE_COLUMN), _of_file(ANGLE_UNIT)
     recorded_speed, angle_step = _of_file(RECORDED_SPEED), _of_file(ANGLE_STEP)
     torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")

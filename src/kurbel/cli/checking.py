@@ -1,0 +1,113 @@
+"""What `kurbel check` does with its files: each is read and checked, and all that is found is written."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from kurbel.cli.group import DONE, message_of, to_stderr
+from kurbel.designs.uncertainty import given_uncertainty
+from kurbel.errors import Fault, KurbelError, MachineFileError
+from kurbel.machine import Machine
+from kurbel.machine.origin import Origin
+from kurbel.machine_file import load
+from kurbel.machine_file.events import located
+from kurbel.machine_file.reader import read_machine
+from kurbel.render import Look
+from kurbel.render.data import findings_json
+from kurbel.render.output import refuse_overwriting, stdout_look, write_out
+from kurbel.render.page import listing
+from kurbel.report.check import Checked, checked, faults_found, findings
+from kurbel.report.commands import BROKEN
+from kurbel.solver.case import Case
+
+_GRAVEST = 2, 3, BROKEN, DONE
+"""Exit statuses, of which the first is that of several files."""
+
+
+class Outcome(NamedTuple):
+    """What is found of a file: a machine with its checks, or why it cannot be read."""
+
+    file: str
+    error: KurbelError | None = None
+    machine: Machine | None = None
+    checked: Checked | None = None
+
+
+def check_files(
+    files: Sequence[str],
+    case_name: str,
+    overrides: Sequence[str],
+    format: str,
+    file_name: str | None,
+    width: int | None,
+) -> int:
+    """Check machine files, write what is found as `table` or `json`, and return the exit status.
+
+    Raises UsageError where the output would overwrite what is read, and the error of an only file.
+    """
+    refuse_overwriting(file_name, files)
+    outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
+    look = Look(width=width) if file_name else stdout_look(Look(width=width))
+    write_out(_as_json(outcomes, look) if format == "json" else _as_text(outcomes, look), file_name)
+    for one in outcomes:
+        if one.error and format == "table":
+            if len(files) == 1:
+                raise one.error
+            to_stderr(message_of(one.error))
+    statuses = [one.error.exit_status if one.error else DONE for one in outcomes]
+    statuses += [BROKEN for one in outcomes if not one.error and one.checked and one.checked.broken]
+    return min(statuses, key=_GRAVEST.index)
+
+
+def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str | None) -> Outcome:
+    """Read and check one machine; raises UsageError where the output would overwrite a trace that it names."""
+    try:
+        machine = load(file, tuple(overrides), case_name)
+        if machine.uncertainty:  # is judged by what is in the file
+            given_uncertainty(machine)
+        names = [one.name for one in machine.cases] if not case_name else []
+        cases = [Case(one) for one in _of_cases(machine.origin, names)] if machine.origin else []
+    except KurbelError as error:
+        return Outcome(file, error)
+    refuse_overwriting(file_name, machine.trace_files)
+    found = checked(Case(machine), cases)
+    # all errors of a machine as one of the gravest kind
+    gravest = min(found.errors, key=lambda error: error.exit_status, default=None)
+    return Outcome(file, gravest and type(gravest)("\n".join(map(str, found.errors))), machine, found)
+
+
+def _of_cases(origin: Origin, names: Sequence[str]) -> list[Machine]:
+    """Return the machine of each load case; raises MachineFileError with the faults of all of them."""
+    machines: list[Machine] = []
+    faults: list[Fault] = []
+    for name in names:
+        try:
+            machines.append(read_machine(origin._replace(case=name)))
+        except MachineFileError as error:
+            faults += error.faults
+    if faults:
+        raise MachineFileError(origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column)))
+    return machines
+
+
+def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
+    """Yield the listing of every machine that could be read; of several each after the name of its file."""
+    for number, one in enumerate(outcomes):
+        if one.checked:
+            topics = [
+                (topic.title, [(entry.what, entry.text) for entry in topic.entries]) for topic in one.checked.shown_once
+            ]
+            several = f"{one.file}: " if len(outcomes) > 1 else ""
+            yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
+
+
+def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
+    """Return all findings, those of files that cannot be read, too."""
+    found = [
+        findings(one.machine, one.checked, located)
+        if one.machine and one.checked
+        else faults_found(one.file, one.error or KurbelError())
+        for one in outcomes
+    ]
+    listed = [finding._asdict() for each in found for finding in each.findings]
+    name, made_from = (found[0].machine, found[0].provenance) if len(found) == 1 else (None, None)
+    return findings_json(name, made_from, listed, look)
