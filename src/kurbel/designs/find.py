@@ -45,10 +45,11 @@ class Varied(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """A key value that is to have a value in SI; None for one that is to be the least or the greatest."""
+    """A key value that is to have a value in SI (aim `=`), or to be the `least` or the `greatest`."""
 
     text: str
     answer: Answer
+    aim: str
     value: float | None
 
 
@@ -71,12 +72,15 @@ class Failed(NamedTuple):
 class Findings(NamedTuple):
     """What was found: solutions in the order of the first key, and places where the wanted value is passed by a jump.
 
-    answers: whose key values a solution has, those that are wanted first. met: least and greatest value of each wanted
-    key value. places (n, keys), values (n, answers): all designs that were computed, in SI, in the order of the keys.
+    machine: its name. names, answers: of the key values of a solution, those that are wanted first. met: least and
+    greatest value of each wanted key value. places (n, keys), values (n, answers): all designs that were computed, in
+    SI, in the order of the keys.
     """
 
+    machine: str
     varied: tuple[Varied, ...]
     wanted: tuple[Wanted, ...]
+    names: tuple[str, ...]
     answers: tuple[Answer, ...]
     found: tuple[Solution, ...]
     jumps: tuple[Solution, ...]
@@ -105,11 +109,8 @@ def find(
     extreme = least or greatest
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    designs = _Designs(origin, vary, equations or [extreme], conditions)
-    if extreme:
-        solutions, jumps = _extreme(designs, 1.0 if least else -1.0), []
-    else:
-        solutions, jumps = _solved(designs)
+    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions)
+    solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
     findings = designs.findings(solutions, jumps)
     if not solutions:
         raise NoSolutionError(_nothing(findings))
@@ -119,21 +120,23 @@ def find(
 class _Designs:
     """Designs of a file by their places (n, keys), from 0 to 1 in each range, and all that was computed of them."""
 
-    def __init__(self, origin: Origin, vary: Sequence[str], wanted: Sequence[str], conditions: Sequence[str]) -> None:
+    def __init__(
+        self, origin: Origin, vary: Sequence[str], wanted: Sequence[str], aim: str, conditions: Sequence[str]
+    ) -> None:
         spans = [_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         parts = [one.partition("=") for one in wanted]
         of_conditions = [found[1] for text in conditions if (found := _NAME.fullmatch(plain(text)))]
-        names = dict.fromkeys([*(name.strip() for name, _, _ in parts), *of_conditions])
-        names = [name for name in names if name not in keys]
-        self.binder, self.answers = _begun(origin, spans, names)
+        every = dict.fromkeys([*(name.strip() for name, _, _ in parts), *of_conditions])
+        self.names = [name for name in every if name not in keys]
+        self.binder, self.answers = _begun(origin, spans, self.names)
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.binder.kinds)]
         self.wanted = [
-            Wanted(text, answer, _parsed(text, value, answer.kind) if equals else None)
+            Wanted(text, answer, "=" if equals else aim, _parsed(text, value, answer.kind) if equals else None)
             for text, answer, (_, equals, value) in zip(wanted, self.answers, parts)
         ]
         heads = [Head(one.key, SI[one.kind], True, one.kind) for one in self.varied]
-        heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(names, self.answers)]
+        heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(self.names, self.answers)]
         self.conditions: list[tuple[str, Condition]] = [(one, read_condition(one, heads, ())) for one in conditions]
         self.limits = tuple(limit_answers(self.binder.machine))
         self.computed: list[tuple[tuple[float, ...], Array, str]] = []
@@ -185,8 +188,10 @@ class _Designs:
             if fails and len(self.varied) == 1:
                 failed.append(Failed(inside[0][0][0], inside[-1][0][0], inside[0][2]))
         return Findings(
+            self.binder.machine.name,
             tuple(self.varied),
             tuple(self.wanted),
+            tuple(self.names),
             tuple(self.answers),
             tuple(sorted(solutions)),
             tuple(jumps),
@@ -197,13 +202,13 @@ class _Designs:
         )
 
 
-def _solved(designs: _Designs) -> tuple[list[Solution], list[Solution]]:
+def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
     """Return where all equations hold, and where the value of the only one is passed by a jump."""
     values = np.array([one.value for one in designs.wanted], dtype=float)
 
     def left(places: Array) -> Array:
         found = designs.at(places)[0][:, : len(values)] - values
-        return found[:, 0] if len(values) == 1 else found
+        return np.asarray(found[:, 0] if len(values) == 1 else found)
 
     if len(values) == 1:
         found, jumps = roots(left)
@@ -222,7 +227,7 @@ def _solved(designs: _Designs) -> tuple[list[Solution], list[Solution]]:
     return solutions[0], solutions[1]
 
 
-def _extreme(designs: _Designs, sign: float) -> list[Solution]:
+def _extreme(designs: _Designs, sign: float) -> Sequence[Solution]:
     """Return the design whose first key value is the least (sign 1) or greatest (−1) within all limits; or none."""
 
     def cost(places: Array) -> Array:
@@ -274,7 +279,7 @@ def _nothing(findings: Findings) -> str:
     wanted = " and ".join(one.text.strip() for one in findings.wanted)
     if not np.isfinite(findings.met).any():
         return f"{ranges}: no design has {wanted}: {findings.failed[0].why if findings.failed else 'all fail'}"
-    if findings.wanted[0].value is None:
+    if findings.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
     met = " and ".join(
         f"{one.answer.quantity.id} is {_shown(low, one.answer)} to {_shown(high, one.answer)}"
@@ -321,6 +326,8 @@ def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tupl
             errors.append(error)
             continue
         for name, each in found:
+            if each[0].quantity.listed:
+                raise UsageError(f"{name}: a list of values, of which none is the wanted one")
             if len(each) > 1:
                 own = f"{each[0].subject}.{each[0].quantity.id}"
                 raise UsageError(f"{name}: there are {len(each)} of it; write whose is meant, such as '{own}'")

@@ -11,8 +11,8 @@ from kurbel.machine_file.overrides import dotted, path_of
 def rewritten(text: str, values: Mapping[str, str]) -> str:
     """Return the text of a machine file with texts of values in place of those under dotted keys.
 
-    A key that is not there yet comes last in the file, or first in its mapping. Raises UsageError where a key has a list or mapping, and
-    where it is shared by an anchor.
+    A key that is not there yet comes last in the file, or first in its mapping. Raises UsageError for one of a list or
+    mapping.
 
     >>> rewritten("crank: 400 mm  # of 1905\\nrod: 2 m\\n", {"crank": "410 mm", "flywheel.inertia": "9 kg m2"})
     'crank: 410 mm  # of 1905\\nrod: 2 m\\nflywheel: {inertia: 9 kg m2}\\n'

@@ -10,7 +10,7 @@ from itertools import product
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Flags, Indices
 from kurbel.numerics.roots import bracketed_roots
 
 _PLACES, _MOST = 65, 1000
@@ -76,7 +76,7 @@ def _sampled(function: Function) -> tuple[Array, Array]:
     return x, y
 
 
-def _to_halve(x: Array, y: Array) -> Array:
+def _to_halve(x: Array, y: Array) -> Indices:
     """Return the intervals in whose neighbourhood samples leave a cubic, or might touch zero between two of them."""
     nodes = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
     weights = np.ones_like(nodes)
@@ -156,7 +156,7 @@ def lowest(function: Function, sides: int) -> tuple[Array, float]:
     """
     side = np.linspace(0.0, 1.0, _PLACES if sides == 1 else _FINE_SIDE)
     grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
-    cost = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
+    cost: Array = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
     around = np.pad(cost, 1, constant_values=np.inf)
     shifts = [tuple(slice(1 + d, 1 + d + len(side)) for d in shift) for shift in product((-1, 0, 1), repeat=sides)]
     valleys = np.isfinite(cost) & (cost <= np.min([around[shift] for shift in shifts], axis=0))
@@ -164,9 +164,9 @@ def lowest(function: Function, sides: int) -> tuple[Array, float]:
     if not len(centres):
         return np.full(sides, np.nan), np.inf
 
-    reach = np.full(len(centres), side[1])
+    reach: Array = np.full(len(centres), side[1])
     offsets = np.array([*product(np.linspace(-1.0, 1.0, _BOX if sides == 1 else 9), repeat=sides)])
-    values = np.full(len(centres), np.inf)
+    values: Array = np.full(len(centres), np.inf)
     for _ in range(60):
         places = np.clip(centres[:, None] + reach[:, None, None] * offsets, 0.0, 1.0)
         cost = _cost(function, places.reshape(-1, sides)).reshape(len(centres), -1)
