@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
 from kurbel.designs.find import Findings, find
-from kurbel.errors import NoSolutionError, UsageError
+from kurbel.errors import UsageError
 from kurbel.machine_file.source import decode, read
 
 CONFIGS = Path(__file__).parents[2] / "configs"
