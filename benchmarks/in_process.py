@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import kurbel
-from kurbel.report.crank import forces_subjects
-from kurbel.report.frame import Subject
+from kurbel.report.frame import Subject, subjects_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ANGLES = np.arange(361.0)
@@ -24,7 +23,7 @@ ANGLES = np.arange(361.0)
 
 def everything(machine: kurbel.Machine) -> None:
     """All columns and key values of all cylinders."""
-    for subject in forces_subjects(kurbel.solve(machine)):
+    for subject in subjects_of(kurbel.solve(machine), "forces"):
         columns_only(subject)
         list(subject.key_values("forces"))
 

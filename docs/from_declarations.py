@@ -11,8 +11,7 @@ from collections.abc import Iterable, Iterator
 import click
 
 from kurbel.cli import COMMANDS, kurbel
-from kurbel.declared.forms import Inline, Keyed, RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, Keys, Record, required
 from kurbel.declared.unit_systems import SYSTEMS
@@ -21,7 +20,7 @@ from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.balance import ELLIPSES, ORDERS, WEIGHTS
-from kurbel.report.loads import STRESSES
+from kurbel.report.crank import STRESSES
 from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.report.zusammenstellung import FACTORS
 
@@ -160,7 +159,7 @@ def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
 def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     if isinstance(form, Keyed):
         yield from form.single.items()
-    yield from (one for word, inner in form.parts() if not word for one in _cases(inner))
+    yield from (one for word, inner in form.parts if not word for one in _cases(inner))
 
 
 def _absent(key: Key, needed: bool) -> str:

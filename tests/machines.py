@@ -8,7 +8,9 @@ from typing import Any
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.parts import Masses, Piston
+from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.extreme import Extreme
 from kurbel.solver.forces import CylinderForces
 
 AT = 98066.5
@@ -25,7 +27,7 @@ def constant_pressure(pressure: float) -> Card:
     return Constant.from_keys(expansion=pressure, compression=pressure)
 
 
-def one_cylinder(mechanism: SliderCrank, rpm: float | None = None, **cylinder: Any) -> CylinderForces:
+def one_cylinder(mechanism: Mechanism, rpm: float | None = None, **cylinder: Any) -> CylinderForces:
     """Solve a machine with one cylinder."""
     own = Cylinder(mechanism, **cylinder)
     return CylinderForces(Machine((own,), speed=None if rpm is None else rpm / 60), own)
@@ -48,3 +50,10 @@ def single_acting(
 def bore_of_area(area: float) -> float:
     """Bore in m of a piston of this area in m²."""
     return math.sqrt(4 * area / math.pi)
+
+
+def largest_velocity(mechanism: Mechanism) -> Extreme:
+    """The largest velocity over ω in m, and its crank angle."""
+    found = one_cylinder(mechanism, rpm=60 / math.tau).motion.c_max
+    assert found is not None
+    return found

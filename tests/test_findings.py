@@ -18,9 +18,10 @@ from kurbel.errors import UsageError
 from kurbel.quantities import every_quantity
 from kurbel.quantity import by_id
 from kurbel.report.check import checked
-from kurbel.report.commands import REPORTS, report_of
+from kurbel.report.commands import REPORTS
 from kurbel.report.frame import Frame
 from kurbel.report.limits import Unjudged, compared
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few, shipped
 

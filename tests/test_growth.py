@@ -112,11 +112,6 @@ def test_a_smooth_trace_is_drawn_from_whole_arrays() -> None:
     assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), traced, 2000, 4000) < 0.1
 
 
-@pytest.mark.xfail(
-    strict=True,
-    raises=AssertionError,
-    reason="100 calls a sample: one shaded piece for each of the crossings in the noise (160,000 samples: 21 s)",
-)
 def test_a_picture_has_no_piece_for_every_crossing_in_the_noise() -> None:
     """A picture of 1000 dots across shows no more than it has dots, whatever crosses between them."""
     assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), lambda n: traced(n, 3.0), 1000, 2000) < 5

@@ -59,15 +59,6 @@ def test_one_key_in_full() -> None:
     assert "absent   mean_diameter or outer_diameter must be given\nor give  outer_diameter" in rim
 
 
-def test_a_key_that_several_mechanisms_have_is_told_for_each() -> None:
-    text = told("frame")
-    assert [line.split(": ")[1] for line in text.splitlines() if line.startswith("beside")] == [
-        "slotted-lever",
-        "four-bar",
-        "parallel-crank",
-    ]
-
-
 @pytest.mark.parametrize(
     "path", ["cylinders.0.bore", "cylinders[0].bore", "cylinders.each.bore", "tandem.0.bore", "bore"]
 )
@@ -108,30 +99,6 @@ def test_cylinders_are_completed_from_the_file(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(CONFIGS)
     found = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
     assert found == [f"cylinder {i}" for i in (1, 2, 3, 4)]
-
-
-def test_files_are_left_to_the_shell() -> None:
-    environment = {
-        "_KURBEL_COMPLETE": "bash_complete",
-        "COMP_WORDS": "kurbel motion eng",
-        "COMP_CWORD": "2",
-    }
-    assert CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout.startswith("file,")
-
-
-def test_a_tandem_shows_what_stands_below_it() -> None:
-    lines = dict(line.split("  ", 1) for line in told("tandem").splitlines())
-    named = set(lines.get("below it", "").replace(",", " ").split())
-    assert {"name", "bore", "head_end_rod", "crank_end_rod"} <= named
-    assert any(one.startswith("indicator") for one in named)
-
-
-@pytest.mark.parametrize("end", ["head_end", "crank_end"])
-def test_the_mean_pressure_of_an_end_is_a_key(end: str) -> None:
-    result = CliRunner().invoke(kurbel, ["keys", f"indicator.{end}.mean_pressure"])
-    assert result.exit_code == 0
-    assert "meaning" in result.stdout
-    assert f"indicator.{end}.mean_pressure" in every_place()
 
 
 def test_no_unit_is_listed_that_nobody_writes() -> None:

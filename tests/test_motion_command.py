@@ -287,7 +287,8 @@ def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) ->
     machine = tmp_path / "cam.yaml"
     machine.write_text("speed: 60 rpm\nmechanism: harmonic-cam\ncrank: 20 mm\nsecond: 2 mm\nram_force: {work: 1 kN}\n")
     code = (
-        "import sys\nfrom kurbel.declared.forms import RecordForm\nfrom kurbel.mechanisms.kinds import MECHANISMS\n"
+        "import sys\nfrom kurbel.declared.forms.structures import RecordForm\n"
+        "from kurbel.mechanisms.kinds import MECHANISMS\n"
         "from toy_mechanism import HarmonicCam\n"
         "MECHANISMS['harmonic-cam'] = RecordForm(HarmonicCam)\n"
         "from kurbel.cli import kurbel\n"

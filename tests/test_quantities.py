@@ -18,9 +18,9 @@ from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, by_id, called, for_each, key_value, placed
-from kurbel.report.commands import report_of
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from kurbel.solver.figures import Results, part
 from representative import case_of

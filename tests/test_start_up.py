@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -25,15 +23,6 @@ NEEDLESS = (
 @pytest.mark.parametrize(("arguments", "needless"), NEEDLESS, ids=[arguments[0] for arguments, _ in NEEDLESS])
 def test_a_command_imports_nothing_that_it_does_not_need(arguments: list[str], needless: tuple[str, ...]) -> None:
     assert {f"kurbel.{name}" for name in needless} & modules_after(arguments) == set()
-
-
-def test_the_end_loses_nothing_that_was_written_before() -> None:
-    code = (
-        "import sys\nfrom kurbel.__main__ import main\n"
-        "sys.stdout.write('before ')\nsys.argv[1:] = ['--version']\nmain()"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
-    assert done.stdout.startswith("before kurbel")
 
 
 def test_no_reversal_of_the_rod_load_of_an_engine_is_searched() -> None:

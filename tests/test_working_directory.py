@@ -54,8 +54,3 @@ def test_no_command_imports_from_the_working_directory(start: tuple[list[str], P
 def test_an_empty_python_path_is_not_the_working_directory(tmp_path: Path) -> None:
     trap(tmp_path, {"click", "numpy", "yaml", "pickle"})
     assert ran(tmp_path, *STARTS["kurbel"], *LINES["sweep"], PYTHONPATH=os.pathsep) == (0, "")
-
-
-def test_kurbel_may_be_in_the_working_directory() -> None:
-    source = Path(__file__).parent.parent / "src"
-    assert ran(source, *STARTS["-m"], "--version") == (0, "")

@@ -1,6 +1,6 @@
 """Every error kurbel raises on purpose: one root, raised where the rule lives, caught once at the top."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import NamedTuple, NoReturn, Union
 
 Step = Union[str, int]
@@ -98,36 +98,25 @@ class MachineFileError(KurbelError):
         place = fault.override or f"{self.file_name}:{fault.line}:{fault.column}"
         return f"{place}: {where}{fault.message}"
 
-    def pretty(self, cells: int = 104, spelt: Callable[[str], str] = str, size: Callable[[str], int] = len) -> str:
+    def pretty(self, cells: int = 104, spelt: Callable[[str], str] = str) -> str:
         """Return every fault with its source line below it, cut to this many cells, and a caret under the place.
 
-        spelt: returns a text as the output can show it; size: the cells that such a text takes.
+        spelt: returns a text as the output can show it.
         """
-
-        def lines() -> Iterator[str]:
-            for fault in self.faults:
-                yield spelt(self.line(fault))
-                yield from _pointed(fault, cells, spelt, size)
-
-        return "\n".join(lines())
-
-
-def _pointed(fault: Fault, cells: int, spelt: Callable[[str], str], size: Callable[[str], int]) -> Iterator[str]:
-    """Yield the source line, cut and cleared of what could steer a terminal, and the caret under the fault."""
-    text, place = fault.source_line, fault.column - 1
-    if not text.strip():
-        return
-    first = max(0, place - cells)
-    shown = [spelt(c if c.isprintable() else " ") for c in text[first : place + cells]]
-    widths, at = [size(one) for one in shown], place - first
-    room = max(cells - 6, 1)  # beside the margin and a sign of the cut, with its blank, on either side
-    whole = len(shown) == len(text) and sum(widths) <= room
-    start = 0 if whole else next(i for i in range(at + 1) if sum(widths[i:at]) <= room * 3 // 4)
-    end = next(i for i in range(len(shown), -1, -1) if sum(widths[start:i]) <= room)
-    cut = spelt("…")[:1]
-    lead, tail = f"{cut} " if first + start else "  ", f" {cut}" if first + end < len(text) else ""
-    yield f"  {lead}{''.join(shown[start:end])}{tail}".rstrip()
-    yield " " * (4 + sum(widths[start:at])) + "^"
+        shown: list[str] = []
+        for fault in self.faults:
+            shown.append(spelt(self.line(fault)))
+            if not fault.source_line.strip():
+                continue
+            place, room = fault.column - 1, max(cells - 6, 1)  # beside the margin and a sign of the cut on either side
+            start = 0 if len(fault.source_line) <= room else max(place - room * 3 // 4, 0)
+            text = fault.source_line[start : start + room]
+            clean = [spelt(c if c.isprintable() else " ") for c in text]
+            cut = spelt("…")[:1]
+            lead, tail = cut if start else " ", f" {cut}" if start + len(text) < len(fault.source_line) else ""
+            shown.append(f"  {lead} {''.join(clean)}{tail}".rstrip())
+            shown.append(" " * (4 + len("".join(clean[: place - start]))) + "^")
+        return "\n".join(shown)
 
 
 class UsageError(KurbelError):

@@ -1,7 +1,8 @@
 """What a notebook shows of results: the tables of the reports, and pictures."""
 
 import os
-from typing import TYPE_CHECKING, NamedTuple
+from html import escape
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,11 +10,17 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
+from kurbel.render import Look
+from kurbel.render.drawing import draw_file
+from kurbel.render.markup import Html, written
+from kurbel.render.svg import svg_file
+from kurbel.render.text_tables import key_value_table
+from kurbel.report.frame import shown_key_values
+from kurbel.report.picture import Picture
+from kurbel.report.picture_source import PictureOptions
+from kurbel.report.pictures import pictures
 from kurbel.solver import case as solved
 from kurbel.solver.figures import Results, Shown
-
-if TYPE_CHECKING:
-    from kurbel.report.picture import Picture
 
 
 class Case(solved.Case):
@@ -26,19 +33,13 @@ class Case(solved.Case):
 class Drawing(NamedTuple):
     """Pictures of a machine, one below the other; a notebook shows them."""
 
-    pictures: "tuple[Picture, ...]"
+    pictures: tuple[Picture, ...]
 
     def _repr_svg_(self) -> str:
-        from kurbel.render import Look
-        from kurbel.render.svg import svg_file
-
         return svg_file(self.pictures, Look())
 
     def save(self, file_name: str) -> None:
         """Draw to a file that ends in .svg, .png or .pdf. Raises UsageError where it cannot be written."""
-        from kurbel.render import Look
-        from kurbel.render.drawing import draw_file
-
         draw_file(self.pictures, Look(), file_name)
 
 
@@ -47,9 +48,6 @@ def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ..
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
     """
-    from kurbel.report.picture_source import PictureOptions
-    from kurbel.report.pictures import pictures
-
     return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
 
@@ -57,7 +55,6 @@ def as_html(shown: solved.Case | Results) -> str:
     """Return the key values of results, or of every part of a machine, as HTML."""
     if isinstance(shown, Results):
         return _key_values(shown, "Key values")
-    from html import escape
 
     machine = shown.machine
     parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in shown.cylinders]
@@ -68,12 +65,6 @@ def as_html(shown: solved.Case | Results) -> str:
 
 def _key_values(results: Results, caption: str) -> str:
     """Return a table, or the reason why there is none."""
-    from html import escape
-
-    from kurbel.render import Look
-    from kurbel.render.markup import Html, written
-    from kurbel.render.text_tables import key_value_table
-    from kurbel.report.frame import shown_key_values
 
     with np.errstate(all="ignore"):
         try:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from good_machines import ALL
-from kurbel.declared.forms import RecordForm
+from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
@@ -298,8 +298,8 @@ def kinds_of_numbers() -> set[tuple[str, str]]:
         seen.add(id(form))
         if isinstance(form, RecordForm):
             name = form.record.__name__
-            found.update((name, key) for key, one in form.keys.items() if one.form.numeric)
-        for _, inner in form.parts():
+            found.update((name, key) for key, one in form.keys.items() if one.form.number)
+        for _, inner in form.parts:
             visit(inner)
         for inner in form.inline:
             visit(inner)
@@ -320,7 +320,7 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
             binder = Binder(file, (key,), (text,))
             owners = {(slot.given.form.record.__name__, slot.name) for slot in binder._slots.values()}
-            if owners <= met or not all(slot.numeric for slot in binder._slots.values()):
+            if owners <= met or not all(slot.number for slot in binder._slots.values()):
                 continue
             met |= owners
             base = parse_quantity(text, binder.kinds[0])

@@ -67,11 +67,10 @@ def test_two_planted_values_are_found_again() -> None:
 
 
 def test_all_solutions_of_a_range() -> None:
-    """x_Q of a rod's point passes a height twice; here M_mean of a machine whose speed is varied is one, c_max linear."""
+    """P_max of a vertical machine is m g sin γ + m b: the angles on both sides of 90° give the same."""
     text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}"
     origin = decode("<text>", text.encode())
     found = find(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
-    # P_max = m g sin γ + m |b| is largest at γ = 90° by symmetry: two solutions at equal distances from it
     angles = [one.values[0] for one in found]
     assert len(angles) == 2
     assert sum(angles) == pytest.approx(180.0, abs=1e-6)

@@ -91,13 +91,6 @@ def test_the_console_stays_silent(names: tuple[str, ...], tmp_path: Path) -> Non
 
 
 @browser
-def test_the_console_would_tell(tmp_path: Path) -> None:
-    file = tmp_path / "report.html"
-    file.write_text(page_of("waterworks").replace("<main>", "<main><script>1</script>"), encoding="utf-8")
-    assert shown(file)[1]
-
-
-@browser
 @pytest.mark.parametrize("names", PAGES, ids=" and ".join)
 def test_nothing_overflows(names: tuple[str, ...], tmp_path: Path) -> None:
     """Nor has a reader to scroll from a key to its value."""
@@ -121,24 +114,6 @@ def test_contrast_as_it_is_shown(dark: bool, tmp_path: Path) -> None:
     found = measured(page_of("gas-engine"), (1280,), tmp_path, *flags)[1280]
     assert found["ground"] == ("rgb(21, 24, 27)" if dark else "rgb(255, 255, 255)")
     assert found["least"] >= 4.5
-
-
-@browser
-def test_print_stays_within_the_sheet(tmp_path: Path) -> None:
-    """The style of print, on a screen as wide as the sheet between its margins: A4, letter."""
-    page = page_of("gas-engine").replace("@media print", "@media all")
-    widths = [int(inner / 25.4 * 96) for inner in (210 - 28, 215.9 - 28)]
-    found = measured(page, widths, tmp_path, scrolled=False)
-    assert {width: one["beyond"] for width, one in found.items()} == {width: [] for width in widths}
-
-
-@browser
-def test_the_letters_of_two_pictures_to_compare_can_be_read_on_paper(tmp_path: Path) -> None:
-    """They were 4.5 pt where both had to stand on one sheet: now one is as wide as the sheet, the other below it."""
-    page = page_of("waterworks", "compressor").replace("@media print", "@media all")
-    (found,) = measured(page, [int((210 - 28) / 25.4 * 96)], tmp_path, scrolled=False).values()
-    assert found["beyond"] == []
-    assert 6.5 <= found["letters"] * 72 / 96 < 20
 
 
 @browser

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Callable
 from dataclasses import replace
 from hashlib import sha256
 from html import unescape
@@ -16,8 +14,7 @@ import pytest
 from click.testing import CliRunner, Result
 from pages import page_of, page_of_case
 
-from kurbel.cli import kurbel, pages
-from kurbel.cli.pages import Progress
+from kurbel.cli import kurbel
 from kurbel.machine_file import loads
 from kurbel.machine_file.given import given
 from kurbel.report.keys import every_place, meaning
@@ -168,30 +165,11 @@ def test_a_key_means_what_it_means_where_it_stands(path: str, meant: str) -> Non
     assert meaning(path, every_place()) == meant
 
 
-def test_a_long_list_is_shortened() -> None:
-    points = ", ".join(f"[{angle}, {angle / 100}]" for angle in range(0, 361, 10))
-    machine = loads(f"{{speed: 50 rpm, effort: {{unit: N m, points: [{points}]}}}}")
-    assert machine.origin
-    assert dict(given(machine.origin))["effort.points"].endswith("…, [360, 3.6]] (37 in all)")
-
-
 def test_two_machines_side_by_side() -> None:
     page = page_of("shaper", "scotch-yoke-pump")
     assert page.count('<div class="pair">') >= 6
     assert "What was given differently" in page
     html5lib.HTMLParser(strict=True).parse(page)
-
-
-@pytest.mark.slow
-def test_equal_cylinders_are_told_once_side_by_side() -> None:
-    """The pins of the crossheads, too: each shell has two equal pieces that no load reaches, and all tell the same."""
-    names = re.findall("<caption>(.*?)</caption>", page_of("v8-cross-plane", "v8-cross-plane"))
-    every = "left 1–4, right 1–4"
-    assert names[:2] == [every, every]
-    assert [name for name in names if "crosshead" in name] == [
-        "crosshead pin of left 1–4",
-        "crosshead pin of right 1–4",
-    ]
 
 
 def test_differences_are_in_percent(tmp_path: Path) -> None:
@@ -231,63 +209,8 @@ def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
-def test_three_machines_are_too_many() -> None:
-    result = run(*[str(CONFIGS["crank-rocker"])] * 3)
-    assert result.exit_code == 2
-    assert "a report is of one machine, or of two side by side" in result.stderr
-
-
-def test_the_machine_file_is_never_overwritten(tmp_path: Path) -> None:
-    file = tmp_path / "m.html"
-    file.write_bytes(CONFIGS["crank-rocker"].read_bytes())
-    assert "would overwrite" in run(str(file), "-o", str(file)).stderr
-
-
 def test_the_date_can_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     first, second = (run("-", text="{effort: {unit: N m, mean: 5, harmonics: [[1, 2, 0]]}}") for _ in "ab")
     assert "1970-01-01" in first.stdout
     assert first.stdout == second.stdout
-
-
-def test_progress_is_told_to_a_terminal_after_a_second(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Also where the first step itself takes so long, which is told once the second has gone by in its midst."""
-
-    late: list[Callable[[], None]] = []
-
-    class AfterASecond:
-        def __init__(self, seconds: float, tell: Callable[[], None]) -> None:
-            assert seconds == 1
-            late.append(tell)
-
-        def start(self) -> None:
-            pass
-
-        def cancel(self) -> None:
-            late.clear()
-
-    monkeypatch.setattr(pages, "Timer", AfterASecond)
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with Progress("kurbel report") as progress:
-        progress("reading and checking")
-        assert capsys.readouterr().err == ""
-        late[0]()
-        assert capsys.readouterr().err == "kurbel report: reading and checking …\n"
-        progress("forces")
-        assert capsys.readouterr().err == "kurbel report: forces …\n"
-    assert late == []
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: False)
-    with Progress("kurbel report") as progress:
-        progress("reading and checking")
-    assert (late, capsys.readouterr().err) == ([], "")
-
-
-def test_equal_cylinders_are_told_once_in_the_input() -> None:
-    from kurbel.report.check import checked
-
-    case = case_of("v8-cross-plane")
-    told = checked(case)
-    assert sum(one.cylinder for one in told.sections) == 8
-    assert [one.title for one in told.shown_once if one.cylinder] == ["left 1–4, right 1–4"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -48,11 +47,6 @@ def run(command: str, text: str) -> Result:
             "3.6e102 deg is too large; an angle in a machine file is at most 1e+06 deg",
         ),
         (
-            ENGINE + "bore: 1 m\nindicator: {head_end: {trace: {points: [[0, 1], [180, 2], [360, 1]], unit: bar, "
-            "angle_zero: 36000000000000360 deg}}}",
-            "36000000000000360 deg is too large; an angle in a machine file is at most 1e+06 deg",
-        ),
-        (
             ENGINE + "bore: 1 m\nindicator: {head_end: {trace: {points: [[1e9, 1], [1000000180, 2], [1000000360, 1]], "
             "unit: bar}}}",
             "an angle in a machine file is at most 1e+06 deg",
@@ -74,12 +68,6 @@ def test_every_kind_has_sizes_that_can_be_squared_and_divided(kind: str) -> None
     assert largest**6 < 1e300
     assert kind in SI
     assert smallest == 0 or smallest**6 > 1e-300
-
-
-def test_bounds_are_those_of_the_file_not_of_python() -> None:
-    from kurbel.machine.parts import Piston
-
-    assert Piston(1e-200).bore == 1e-200
 
 
 def test_the_schema_states_the_sizes() -> None:
@@ -198,10 +186,6 @@ def test_a_line_without_end_is_not_loaded(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(ENGINE + TRACE.format(file="p.csv", zero="0 deg", more=""))
     with pytest.raises(KurbelError, match="has a line of more than 10000 characters"):
         load(tmp_path / "m.yaml")
-
-
-def test_json_of_the_schema_is_finite() -> None:
-    assert json.loads(json.dumps(whole_schema(), allow_nan=False))
 
 
 def test_more_points_than_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,13 +10,12 @@ import jsonschema
 import numpy as np
 import pytest
 
-from kurbel.declared.forms import RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import RecordForm, records
 from kurbel.declared.keys import Key
-from kurbel.errors import MachineFileError, RuleError
+from kurbel.errors import RuleError
 from kurbel.machine.parts import ConnectingRod
-from kurbel.machine_file import loads
 from kurbel.machine_file.reader import ROOT
+from kurbel.machine_file.schema import describe
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.traces.correct import Trace
 from representative import law_of_each
@@ -49,7 +48,7 @@ def allowed_by_schema(record: RecordForm, *names: str) -> bool:
 @cache
 def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
     rules: list[dict[str, Any]] = []
-    record.describe({}, rules, whole_schema()["definitions"])
+    describe(record, {}, rules, whole_schema()["definitions"])
     return jsonschema.Draft7Validator({"allOf": rules})
 
 
@@ -65,26 +64,6 @@ def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) 
     with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
         record.record.from_keys(**{name: 1.5})
     assert not allowed_by_schema(record, name)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{crank: 1 m, stroke: 2 m, rod_ratio: 5}", "stroke: 'crank' and 'stroke' say the same thing"),
-        ("{crank: 1 m, rod: 5 m, rod_ratio: 5}", "rod_ratio: 'rod' and 'rod_ratio' say the same thing"),
-        ("{rod_ratio: 5}", "'crank' or 'stroke' is missing; write for instance 'crank: 400 mm'"),
-        (
-            "{crank: 1 m, rod_ratio: 5, masses: {connecting_rod: {mass: 1 kg, share: 1/3, center_of_gravity: 1 m,"
-            " inertia: 1 kg m2}}}",
-            "center_of_gravity: 'share' and 'center_of_gravity' say the same thing",
-        ),
-    ],
-)
-def test_the_reader_tells_them_with_their_place(text: str, message: str) -> None:
-    with pytest.raises(MachineFileError) as caught:
-        loads(text)
-    assert message in str(caught.value)
-    assert len(caught.value.faults) == 1
 
 
 def test_the_same_words_in_python() -> None:

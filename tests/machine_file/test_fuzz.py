@@ -18,98 +18,15 @@ from representative import few
 
 SETTINGS = settings(max_examples=3 * settings.default.max_examples)
 INFINITE_BY_WORD = {"rod", "link"}  # `rod: infinite`
+VALUES = "~ null true NO 1e400 .nan .inf -1 0 1:30 010 1_000 0,5 1e308 1e-320 1e200 {} [] '' infinite mirrored 1/0 5"
+SIGNS = '&a *a !!str !x <<: ? - : , { } [ ] | > % @ ` # --- ... " \t \x00 \x85 \u2028 é 🚂 \ud7ff'
 SNIPPETS = [
-    *(
-        [
-            "~",
-            "null",
-            "true",
-            "NO",
-            "1e400",
-            ".nan",
-            ".inf",
-            "-1",
-            "0",
-            "1:30",
-            "010",
-            "1_000",
-            "0,5",
-            "1e308",
-            "1e-320",
-            "1e200",
-            "{}",
-            "[]",
-            "''",
-            '""',
-            "infinite",
-            "mirrored",
-        ]
-    ),
-    *(
-        [
-            "&a",
-            "*a",
-            "!!str",
-            "!x",
-            "<<:",
-            "?",
-            "-",
-            ":",
-            ",",
-            "{",
-            "}",
-            "[",
-            "]",
-            "|",
-            ">",
-            "%",
-            "@",
-            "`",
-            "#",
-            "---",
-            "...",
-            "\t",
-            "\x00",
-            "\x85",
-            "\u2028",
-            "é",
-            "🚂",
-            "\ud7ff",
-        ]
-    ),
-    *(
-        [
-            "0 mm",
-            "1e308 km",
-            "-1e308 km",
-            "1e-320 mm",
-            "1 kg",
-            "5",
-            "5 at",
-            "1/0",
-            "1/200",
-            "[[0, 1]]",
-            "[[0, 1e308], [1, 2]]",
-            "[0,5, 1,5]",
-        ]
-    ),
-    *(
-        [
-            "\ncrank: 1 m\n",
-            "\n  bore: 1 mm\n",
-            "\ncylinders:\n  - {}\n",
-            "\nmechanism: four-bar\n",
-            "\ncycle: four-stroke\n",
-        ]
-    ),
-    *(
-        [
-            "\nmechanism: slotted-lever\n",
-            "\nload: {slip: 1e-320}\n",
-            "\noffset: 1e300 m\n",
-            "\nmasses: {piston: [1e308 kg, 1e308 kg]}\n",
-        ]
-    ),
+    *VALUES.split(" "),
+    *SIGNS.split(" "),
+    *["0 mm", "1e308 km", "-1e308 km", "1e-320 mm", "1 kg", "5 at", "[[0, 1]]", "[[0, 1e308], [1, 2]]", "[0,5, 1,5]"],
+    *["\ncrank: 1 m\n", "\n  bore: 1 mm\n", "\ncylinders:\n  - {}\n", "\nmechanism: four-bar\n"],
+    *["\ncycle: four-stroke\n", "\nmechanism: slotted-lever\n", "\nload: {slip: 1e-320}\n", "\noffset: 1e300 m\n"],
+    "\nmasses: {piston: [1e308 kg, 1e308 kg]}\n",
 ]
 
 

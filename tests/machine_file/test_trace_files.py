@@ -71,9 +71,7 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     ),
     "quoted numbers": (rows(form='"%s"'), ""),
     "modulo 360": (rows(TURN), ""),
-    "-180 to 180": (rows((TURN + 180) % 360 - 180)[:], ", angle_zero: 0 deg"),
     "-360 to 360": (rows(np.roll((ANGLES + 360) % 720 - 360, 180), np.roll(PRESSURES, 180)), ""),
-    "begun within a turn": (rows(np.roll(TURN, -50), np.roll(PRESSURES, -50)), ""),
     "radians": (rows(np.radians(ANGLES)), ", angle_unit: rad"),
     "seconds": (rows(ANGLES / 9000), ", angle_unit: s, recorded_speed: 1500 rpm"),
     "milliseconds": (rows(ANGLES / 9), ", angle_unit: ms, recorded_speed: 1500 rpm"),
@@ -95,23 +93,18 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
 
 @pytest.mark.parametrize("form", FORMS)
 def test_forms_of_files(tmp_path: Path, form: str) -> None:
-    content, keys = FORMS[form]
-    if form == "-180 to 180":  # from the firing dead centre on it would begin within a turn
-        turned = (ANGLES + 540) % 720  # −180 … 540 of the cycle
-        order = np.argsort((ANGLES + 180) % 720)
-        content = rows((ANGLES[order] + 180) % 360 - 180, PRESSURES[order])
-        assert turned.max() < 720
-    if form == "begun within a turn":
-        keys = ", angle_zero: 720 deg"
-    one = machine(tmp_path, content, keys)
-    if form in ("-180 to 180", "begun within a turn"):
-        trace = trace_of(one)
-        peak = float(trace.angles[int(np.argmax(trace.pressures))])
-        assert np.sort(trace.pressures[:-1] / 1e5) == pytest.approx(np.sort(PRESSURES))
-        expected = float(ANGLES[int(np.argmax(PRESSURES))])
-        assert (peak - expected) % 360 == pytest.approx(0.0, abs=1e-9)
-    else:
-        meant(one)
+    meant(machine(tmp_path, *FORMS[form]))
+
+
+@pytest.mark.parametrize(("begin", "zero"), [(-180.0, "0"), (100.0, "720")])
+def test_turns_that_begin_within_one(tmp_path: Path, begin: float, zero: str) -> None:
+    """Angles modulo 360 that do not begin at the firing dead centre."""
+    turned = np.roll(np.arange(360), int(-begin / 2))
+    angles = (ANGLES[turned] - begin) % 360 + begin if begin < 0 else TURN[turned]
+    trace = trace_of(machine(tmp_path, rows(angles, PRESSURES[turned]), f", angle_zero: {zero} deg"))
+    assert np.sort(trace.pressures[:-1] / 1e5) == pytest.approx(np.sort(PRESSURES))
+    peak = float(trace.angles[int(np.argmax(trace.pressures))])
+    assert (peak - float(ANGLES[int(np.argmax(PRESSURES))])) % 360 == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_heading_of_figures(tmp_path: Path) -> None:

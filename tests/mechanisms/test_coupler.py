@@ -91,23 +91,6 @@ def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
         assert row == pytest.approx(expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12)
 
 
-def test_at_the_far_pin_the_point_moves_as_the_crosshead() -> None:
-    s = cylinder(SLIDERS["offset"][0] + "point: {from: crosshead_pin, along: 0 mm}").at(ANGLES)
-    assert s.v_point == pytest.approx(np.abs(s.c), rel=1e-12, abs=1e-12)
-    assert s.b_point == pytest.approx(np.abs(s.b), rel=1e-12)
-
-
-def test_without_a_speed_only_its_place_is_told() -> None:
-    s = cylinder("crank: 300 mm\nrod: 1300 mm\n" + POINT).at(ANGLES)
-    assert (s.v_point, s.b_point) == (None, None)
-    assert s.x_point is not None
-
-
-def test_at_rest_it_stands() -> None:
-    s = cylinder("speed: 0 rpm\ncrank: 300 mm\nrod: 1300 mm\n" + POINT).at(ANGLES)
-    assert (s.v_point.tolist(), s.b_point.tolist(), s["psi_dot"].tolist()) == ([0.0] * 7, [0.0] * 7, [0.0] * 7)
-
-
 def test_one_end_of_the_rod_at_a_time() -> None:
     text = "crank: 300 mm\nrod: 1300 mm\npoint: {from: rocker_pin, along: 1 mm}"
     with pytest.raises(MachineFileError, match="the pins of a slider-crank are crank_pin and crosshead_pin"):

@@ -25,8 +25,8 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.numerics.lobatto import chebyshev
 from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import few, law_of_each
 
@@ -168,24 +168,6 @@ def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, inverse, outs
     # what the rounding of the angle, and that of the coordinate, leave open
     rounding = 3e-15 * max(machine.stroke, abs(machine.start)) + 4e-15 * abs(machine.slope(angle))
     assert (abs(machine.coordinate(angle) - machine.start - way) <= rounding).all()
-
-
-@every(STROKES)
-def test_closed_extremes_are_the_largest_of_many(machine):
-    angles = CrankAngle.of(np.linspace(0.0, 360.0, 3601))
-    for function, extremes in (
-        (machine.slope, machine.velocity_extremes()),
-        (machine.curvature, machine.acceleration_extremes()),
-    ):
-        for extreme in extremes:
-            assert function(CrankAngle.of(extreme.degrees)) == pytest.approx(extreme.value, rel=1e-14)
-        if extremes:
-            values = function(angles)
-            tops = [extreme.value for extreme in extremes]
-            assert values.max() == pytest.approx(max(tops), rel=1e-5)
-            assert values.min() == pytest.approx(min(tops), rel=1e-5)
-            assert values.max() <= max(tops) + 1e-14 * abs(max(tops))
-            assert values.min() >= min(tops) - 1e-14 * abs(min(tops))
 
 
 @every()

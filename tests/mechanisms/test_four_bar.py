@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from precise import DEGREE, exact_angle
+from precise import DEGREE
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.four_bar import FourBar
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
@@ -61,86 +60,6 @@ def test_loop_closure_in_fifty_digits(machine):
             assert abs(swing.slope - mp.diff(lambda t: exact_rocker(machine, t), phi)) <= 1e-13 * slope, degrees
             bent = mp.diff(lambda t: exact_rocker(machine, t), phi, 2)
             assert abs(swing.curvature - bent) <= 1e-13 * curvature, degrees
-
-
-@st.composite
-def linkages(draw):
-    """Crank-rockers of any shape, by the lengths that are left over in Grashof's sums."""
-    crank = draw(st.floats(0.01, 1))
-    flat, coupler_side, rocker_side = (draw(st.floats(1e-3, 2)) for _ in range(3))
-    frame = crank + (coupler_side + rocker_side) / 2
-    coupler = crank + (flat + coupler_side) / 2
-    rocker = crank + (flat + rocker_side) / 2
-    return FourBar(crank, coupler, rocker, frame)
-
-
-@given(linkages())
-def test_the_loop_stays_closed_on_one_side(machine):
-    angle = CrankAngle.of(np.linspace(0, 360, 91))
-    sin, cos = machine.closed_at(angle)[:2]
-    pin, joint = np.array([machine.crank * angle.cos, machine.crank * angle.sin]), machine.rocker * np.array([cos, sin])
-    joint[0] += machine.frame
-    gap = joint - pin
-    assert np.hypot(*gap) == pytest.approx(machine.coupler, rel=1e-12)
-    # the joint lies to the left of the line pin → rocker pivot all round: the branch never changes
-    assert ((machine.frame - pin[0]) * gap[1] + pin[1] * gap[0] > 0).all()
-    assert (sin > 0).all()
-
-
-@given(linkages(), st.floats(0, 1), st.booleans())
-def test_inverse_and_limits(machine, fraction, rising):
-    low, high = machine.limits
-    assert machine.swing == pytest.approx(high - low, rel=1e-9, abs=1e-12)
-    way = fraction * machine.stroke
-    degrees = float(machine.crank_angles_at(np.array([way]), rising)[0])
-    angle = CrankAngle.of(degrees)
-    rounding = 1e-14 * (1 + abs(machine.slope(angle)))
-    assert machine.coordinate(angle) - machine.start == pytest.approx(way, abs=rounding)
-
-
-@given(linkages())
-def test_transmission_angle_at_its_ends(machine):
-    low, high = machine.transmission(0.0), machine.transmission(180.0)
-    for extreme in (low, high):
-        diagonal = machine.frame - machine.crank * math.cos(math.radians(extreme.degrees))
-        wanted = mp.acos(
-            (mp.mpf(machine.coupler) ** 2 + mp.mpf(machine.rocker) ** 2 - mp.mpf(diagonal) ** 2)
-            / (2 * mp.mpf(machine.coupler) * machine.rocker)
-        )
-        assert extreme.value == pytest.approx(float(wanted / DEGREE), abs=1e-6)
-    assert 0 < low.value < high.value < 180
-    turn = CrankAngle.of(np.linspace(0, 360, 61))
-    sines = machine.closed_at(turn).H * machine.frame**2 / (machine.coupler * machine.rocker)
-    assert sines.min() >= min(math.sin(math.radians(low.value)), math.sin(math.radians(high.value))) * (1 - 1e-9)
-
-
-def test_the_power_passes_the_coupler():
-    """Coupler force times the coupler's share of the crank's motion is rocker moment times θ′."""
-    machine = LINKAGES["usual"]
-    angle = CrankAngle.of(np.linspace(0, 360, 37))
-    sin, cos = machine.closed_at(angle)[:2]
-    along = np.array([machine.frame + machine.rocker * cos, machine.rocker * sin])
-    along -= machine.crank * np.array([angle.cos, angle.sin])
-    along /= machine.coupler
-    pushed = machine.crank * (along[1] * angle.cos - along[0] * angle.sin)
-    # with the joint above, a coupler in compression turns the rocker clockwise: θ falls
-    assert -machine.coupler_force_factor(angle) * pushed == pytest.approx(machine.slope(angle), abs=1e-14)
-
-
-def test_a_long_rocker_guides_like_a_crosshead():
-    """c → ∞ with the rocker square to the line: its joint runs straight, at the height it has."""
-    crank, rod, offset, rocker = 0.3, 1.0, 0.05, 1e7
-    # pivot far below the stroke line, at the middle of the stroke: the line of the pivots stands upright
-    middle = 1.0
-    frame = math.hypot(middle, rocker - offset)
-    tilt = math.degrees(math.atan2(-(rocker - offset), middle))
-    linkage = FourBar(crank, rod, rocker, frame)
-    slider = SliderCrank(crank, rod, offset)
-    degrees = np.linspace(0, 360, 37)
-    # the crosshead lies ahead of the shaft where φ = 0 points at it; x runs toward the shaft
-    swing = linkage.swing_at(CrankAngle.of(degrees - tilt))
-    assert rocker * swing.slope == pytest.approx(slider.slope(CrankAngle.of(degrees)), abs=1e-6)
-    assert rocker * swing.curvature == pytest.approx(slider.curvature(CrankAngle.of(degrees)), abs=1e-6)
 
 
 def test_equal_strokes_take_equal_times_where_the_diagonals_agree():
@@ -209,10 +128,6 @@ def test_grashof_decides(lengths):
             FourBar(*metres)
 
 
-def test_exact_angles_agree_with_floats():
-    assert float(exact_angle(30.0).sin) == 0.5
-
-
 def test_drag_link_in_a_machine_file():
     """Frame shortest: both cranks turn. No dead centres, strokes or swing; one turn takes out 2π of the moment."""
     keys = "crank: 300 mm\ncoupler: 250 mm\nrocker: 300 mm\nframe: 100 mm"
@@ -226,12 +141,3 @@ def test_drag_link_in_a_machine_file():
     # mean of θ̇ over a turn is ω: both shafts make one turn in a second
     turn = case.cylinders[0].at(np.arange(360.0))["theta_dot"]
     assert turn.mean() == pytest.approx(math.tau, rel=1e-12)
-
-
-def test_drag_link_of_equal_cranks_passes_the_line_of_the_pivots_in_symmetry():
-    """a = c: turned by 180° − θ(φ) it runs backward through itself, so that θ(180° − θ) = 180° − φ."""
-    machine = FourBar(0.3, 0.25, 0.3, 0.1)
-    phi = np.linspace(0, 360, 25)
-    theta = machine.swing_at(CrankAngle.of(phi)).degrees
-    back = machine.swing_at(CrankAngle.of(180 - theta)).degrees
-    assert back == pytest.approx(180 - phi, abs=1e-11)

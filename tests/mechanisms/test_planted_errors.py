@@ -14,12 +14,11 @@ import test_every_mechanism as laws
 
 SLIPS = [
     ("slider_crank", "rod_angle", "angle.sin - self.offset", "angle.sin + self.offset"),
+    ("slider_crank", "coordinate", "versine + beyond", "versine - beyond"),
     ("slider_crank", "slope", "(angle.sin + angle.cos", "(angle.sin - angle.cos"),
     ("slider_crank", "curvature", "+ bend", "- bend"),
     ("slider_crank", "radial", "cos - angle.sin", "cos + angle.sin"),
     ("slider_crank", "radial", "cos - angle.sin", "sin - angle.cos"),
-    ("crank_formulas", "displacement_factor", "versine + lam", "versine - lam"),
-    ("crank_formulas", "acceleration_factor", "/ kappa - lam", "/ kappa + lam"),
     ("scotch_yoke", "coordinate", "versine", "vercosine"),
     ("scotch_yoke", "block_slope", "angle.cos", "angle.sin"),
     ("scotch_yoke", "pin_force_factor", "+ 1.0", "- 1.0"),
@@ -49,7 +48,7 @@ SLIPS = [
 
 def planted(file: str, function: str, right: str, wrong: str) -> types.ModuleType:
     """Return the module with this text replaced where it first stands from that function on."""
-    module = importlib.import_module(f"kurbel.{file}" if file == "crank_formulas" else f"kurbel.mechanisms.{file}")
+    module = importlib.import_module(f"kurbel.mechanisms.{file}")
     before, head, after = inspect.getsource(module).partition(f"def {function}(" if function else "OFFERS = (")
     assert right in after, (
         f"{file}.{function} has no '{right}' any more: plant the slip in the formula as it stands now"
@@ -93,7 +92,7 @@ def named(names: str | tuple[str, ...], value: object) -> dict[str, object]:
 
 def broken(file: str) -> Iterator[str]:
     """Yield the names of the laws that the machines of a file now break."""
-    own = f"kurbel.mechanisms.{'slider_crank' if file == 'crank_formulas' else file}"
+    own = f"kurbel.mechanisms.{file}"
     for name, test in vars(laws).items():
         calls = asked(test) if name.startswith("test_") else ()
         try:

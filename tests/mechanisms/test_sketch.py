@@ -5,15 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 from test_every_mechanism import MACHINES
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Sketch
-from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.kinds import MECHANISMS
-from kurbel.mechanisms.parallel_crank import ParallelCrank
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from representative import law_of_each
 
@@ -74,21 +70,3 @@ def test_the_output_moves_as_x_does(name: str) -> None:
     ends = [complex(*map(float, end)) for guide in sketch.guides for end in guide]
     assert min((e * toward.conjugate()).real for e in ends) <= place.min() + 1e-9
     assert max((e * toward.conjugate()).real for e in ends) >= place.max() - 1e-9
-
-
-def test_lengths_are_those_that_were_given() -> None:
-    offset = sketch_of(SliderCrank(0.3, 0.5, 0.1))
-    assert np.allclose(abs(offset["crosshead"] - offset[PIN]), 0.5)
-    assert (offset["crosshead"].imag == 0.1).all()
-    four_bar = sketch_of(FourBar(0.04, 0.15, 0.08, 0.16))
-    assert np.allclose(abs(four_bar["rocker pin"] - four_bar[PIN]), 0.15)
-    assert np.allclose(abs(four_bar["rocker pin"] - 0.16), 0.08)
-    # by hand: at 0° pin and pivot are 0.12 apart; the cosine rule gives the angle at the pivot
-    assert four_bar["rocker pin"][0] == pytest.approx(
-        0.16 + 0.08 * np.exp(1j * (math.pi - math.acos((0.08**2 + 0.12**2 - 0.15**2) / (2 * 0.08 * 0.12))))
-    )
-    coupled = sketch_of(ParallelCrank(0.3, 2.0))
-    assert np.allclose(coupled["second pin"] - coupled[PIN], 2.0)
-    shaper = sketch_of(SlottedLever(0.3, 0.8, 1.3, link=0.5))
-    assert np.allclose(abs(shaper["ram"] - shaper["end"]), 0.5)
-    assert np.allclose(abs(shaper["end"] + 0.8), 1.3)

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner, Result
 
-from imported import modules_after
 from kurbel.cli import kurbel
-from kurbel.machine_file import load
 from kurbel.report.pictures import PICTURES
 from representative import CONFIGS, few
 
@@ -50,22 +45,6 @@ def test_without_a_file_the_list_names_every_picture() -> None:
     assert "kurbel plot --list" in CliRunner().invoke(kurbel, ["--help"]).stdout
     nothing = run()
     assert (nothing.exit_code, "Missing argument 'FILE'." in nothing.stderr) == (2, True)
-
-
-def test_several_pictures_stand_one_below_the_other(tmp_path: Path) -> None:
-    one, both = tmp_path / "one.svg", tmp_path / "both.svg"
-    assert run(WATERWORKS, "card", "-o", str(one)).exit_code == 0
-    assert run(WATERWORKS, "card", "effort", "-o", str(both)).exit_code == 0
-    heights = [float(ElementTree.parse(path).getroot().get("height", "0")) for path in (one, both)]
-    assert heights[1] > 1.5 * heights[0]
-
-
-def test_all_are_drawn_where_all_are_asked_for() -> None:
-    shaper = str(CONFIGS["shaper"])
-    result = run(shaper, "all", "--width", "60")
-    assert result.exit_code == 0
-    listed = len(run(shaper, "--list").stdout.splitlines())
-    assert result.stdout.count(f"{load(shaper).name}. ") == listed
 
 
 def test_a_mechanism_at_chosen_angles(tmp_path: Path) -> None:
@@ -127,30 +106,3 @@ def test_without_typst_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch, tmp
         "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; an svg needs nothing" in result.stderr
     )
     assert run(WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0
-
-
-DRAWING = [["plot", WATERWORKS, "-o", "x.svg"], ["plot", WATERWORKS], ["report", WATERWORKS]]
-
-
-@pytest.mark.parametrize("command", few(DRAWING, DRAWING[:1]))
-def test_typst_is_imported_only_for_png_and_pdf(
-    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert not {"typst", "rich"} & {name.partition(".")[0] for name in modules_after(command)}
-
-
-def test_masked_arrays_are_not_imported() -> None:
-    """numpy imports them behind some functions, `unique` for one; they take longer than the whole picture."""
-    command = [sys.executable, "-X", "importtime", "-m", "kurbel", "plot", WATERWORKS]
-    imported = subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8").stderr
-    assert "kurbel.render.picture" in imported
-    assert "numpy.ma" not in {line.rpartition("|")[2].strip() for line in imported.splitlines()}
-
-
-def test_a_machine_without_solution_ends_with_status_3() -> None:
-    locked = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 2, masses: {piston: 100 kg}, friction: {crosshead: 5}}"
-    result = run("-", "forces", text=locked)
-    assert result.exit_code == 3
-    assert "locks itself" in result.stderr
-    assert run("-", "--list", text=locked).exit_code == 0

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 from drawn import drawn, named
 
 from kurbel.render import Look
-from kurbel.render.braille import Canvas, braille
-from kurbel.render.picture import AxisScale
+from kurbel.render.braille import braille
 from kurbel.render.text import plain, width
 from kurbel.report.picture import Picture
 from kurbel.report.picture_source import PictureOptions
@@ -58,40 +56,12 @@ def test_pictures_fit_every_width(columns: int, encoding: str) -> None:
     assert columns < 40 or "_max" in text  # the figures of θ̈, a letter with a mark on it, take one place
 
 
-def test_a_pipe_has_eighty_columns() -> None:
-    assert max(map(width, text_of(drawn("waterworks", "forces")[0], Look()).splitlines())) == 80
-
-
 def test_a_name_can_do_nothing_to_a_terminal() -> None:
     (picture,) = pictures(named(), ("motion",), PictureOptions())
     for encoding in ("utf-8", "ascii"):
         text = text_of(picture, Look(encoding=encoding))
         assert "\x1b" not in text
         assert "<script>" in text  # which is no markup there
-
-
-def test_the_canvas_sets_the_dots_of_braille() -> None:
-    """Dots 1 2 3 7 down the left, 4 5 6 8 down the right, as Unicode numbers them; what is beyond is cut off."""
-    canvas = Canvas(1, 1, braille=True)
-    canvas.line(np.array([0.0, 0.0]), np.array([0.0, 3.0]), "curve0")
-    assert canvas.lines()[0][0].text == chr(0x2800 + 0b01000111)
-    canvas.line(np.array([1.0, 1.0]), np.array([0.0, 3.0]), "curve0")
-    assert canvas.lines()[0][0].text == "⣿"
-    canvas = Canvas(4, 2, braille=True)
-    canvas.line(np.array([-50.0, 50.0]), np.array([-50.0, 50.0]), "curve0")
-    assert list(plain(canvas.lines())) == ["⠑⢄\n", "  ⠑⢄\n"]
-
-
-def test_what_is_between_two_dots_goes_to_the_same_one_on_every_processor() -> None:
-    """Sines differ in their last digit by processor and library: the polar diagram had other dots on each."""
-    between = [np.nextafter(0.5, 0), 0.5, np.nextafter(0.5, 1)]
-    assert np.rint(AxisScale(0.0, 1.0, 0.0, 5.0).place(np.array(between))).tolist() == [2.0, 2.0, 2.0]
-
-
-def test_letters_distinguish_curves_where_there_is_no_braille() -> None:
-    text = text_of(drawn("waterworks", "forces")[0], Look(width=80, encoding="ascii"))
-    assert all(letter in text for letter in "*+ox")
-    assert text.isascii()
 
 
 def test_many_lobes_have_numbers_within_them_and_few_their_work() -> None:
@@ -101,11 +71,3 @@ def test_many_lobes_have_numbers_within_them_and_few_their_work() -> None:
     few_ = text_of(drawn("waterworks", "effort")[0], Look(width=80))
     assert "A_2 −18.39 kJ" in few_
     assert all(f"A_{number}" in few_ for number in (1, 2, 3, 4))
-
-
-def test_axes_and_figures_have_units() -> None:
-    picture = drawn("waterworks", "effort")[0]
-    text = text_of(picture, Look(width=72))
-    assert all(words in text for words in ("T in kN", "φ in °", "−28.06 kN"))
-    assert "-28.06 kN" in text_of(picture, Look(width=72, encoding="ascii"))
-    assert "T_max 87,70 kN, 67,3°" in text_of(picture, Look(width=100, comma=True))

@@ -9,6 +9,7 @@ import pytest
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
+from machines import largest_velocity
 
 
 def test_example_1_1_slotted_lever():
@@ -20,7 +21,7 @@ def test_example_1_1_slotted_lever():
 
 def test_example_5_1_largest_velocity():
     """p. 160: 74.96° is the first-order angle; 7.0 m/s comes from sin 2θ/n for sin 2θ/(2n)."""
-    largest, _ = SliderCrank(0.3, 1.0).velocity_extremes()
+    largest = largest_velocity(SliderCrank(0.3, 1.0))
     assert largest.degrees == pytest.approx(74.5289308367, rel=1e-11)
     assert largest.value * 2 * math.pi * 200 / 60 == pytest.approx(6.56173215865, rel=1e-11)
 
@@ -30,4 +31,4 @@ def test_example_5_2_motion_at_40_degrees():
     machine, angle, omega = SliderCrank(0.3, 1.5), CrankAngle.of(40.0), 2 * math.pi * 180 / 60
     assert machine.slope(angle) * omega == pytest.approx(4.19643371937, rel=1e-11)
     assert machine.curvature(angle) * omega**2 == pytest.approx(85.5988562672, rel=1e-11)
-    assert machine.velocity_extremes()[0].degrees == pytest.approx(79.1001352992, rel=1e-11)
+    assert largest_velocity(machine).degrees == pytest.approx(79.1001352992, rel=1e-11)

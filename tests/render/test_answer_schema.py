@@ -6,11 +6,10 @@ import json
 from pathlib import Path
 
 import pytest
-from click import Context
 from click.testing import CliRunner
 from jsonschema import Draft7Validator
 
-from kurbel.cli import COMMANDS, kurbel
+from kurbel.cli import kurbel
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -43,14 +42,6 @@ ANSWERS = [
 ]
 
 
-def _of_machines() -> list[str]:
-    """Return the commands that answer for a machine in json by one object; `sweep` writes one a line."""
-    context = Context(kurbel)
-    found = {name: kurbel.get_command(context, name) for name in COMMANDS}
-    asked = {name: {one.name for one in command.params} for name, command in found.items() if command}
-    return [name for name, options in asked.items() if options >= {"file", "format"} and name != "sweep"]
-
-
 @pytest.fixture(scope="module")
 def validator() -> Draft7Validator:
     schema = json.loads(CliRunner().invoke(kurbel, ["schema", "--answers"]).stdout)
@@ -70,20 +61,6 @@ def test_a_check_of_a_file_with_faults_keeps_it(validator: Draft7Validator) -> N
     found = json.loads(ran.stdout)
     assert (ran.exit_code, found["machine"], len(found["findings"]) >= 5) == (2, None, True)
     validator.validate(found)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("turn", "command"), list(enumerate(_of_machines())))
-def test_answers_of_every_machine_keep_it(turn: int, command: str, validator: Draft7Validator) -> None:
-    """A third of the machines with each command, other ones with the next."""
-    answered = 0
-    quick = ["--quick"] if command == "accuracy" else []
-    for file in [CONFIGS / "waterworks.yaml"] if quick else sorted(CONFIGS.glob("*.yaml"))[turn % 3 :: 3]:
-        ran = CliRunner().invoke(kurbel, [command, str(file), *quick, "-f", "json"])
-        if ran.exit_code in (0, 1):
-            validator.validate(json.loads(ran.stdout))
-            answered += 1
-    assert answered
 
 
 def test_a_wrong_answer_does_not(validator: Draft7Validator) -> None:

@@ -14,7 +14,7 @@ from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.report.tables import Column, Part, PlaceTable, Report
-from render.sample_report import HIGH, ONE, PHI, REPORT, texts
+from render.sample_report import ONE, PHI, texts
 
 VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)
 
@@ -66,56 +66,9 @@ def test_any_name_survives_in_json(name: str, encoding: str) -> None:
     assert json.loads(text.encode(encoding))["cylinders"][0]["name"] == name
 
 
-def test_heads_carry_ascii_units_without_blanks() -> None:
-    heads = read_csv(render(ONE, Look("csv")))[0]
-    assert heads == ["phi_deg", "psi_deg", "b_m/s^2", "P_N", "M_Nm"]
-
-
-def test_several_cylinders_share_one_table() -> None:
-    rows = read_csv(render(REPORT, Look("csv")))
-    assert rows[0] == ["cylinder", "phi_deg", "psi_deg", "b_m/s^2", "P_N", "M_Nm", "F_friction_N", "T_N"]
-    assert [rows[index][0] for index in (1, 14, 27)] == [HIGH.name, "LP", "machine"]
-    assert rows[14][4:] == ["", "", "0.0", ""]
-    assert all(len(row) == 8 for row in rows)
-
-
-def test_json_fields_as_in_the_contract() -> None:
-    content = json.loads(render(REPORT, Look("json")))
-    assert {key: content[key] for key in ("format", "command", "machine")} == {
-        "format": 1,
-        "command": "forces",
-        "machine": "Demo",
-    }
-    cylinder = content["cylinders"][0]
-    assert list(cylinder) == ["name", "columns", "key_values", "left_out", "warnings"]
-    assert cylinder["columns"][0]["values"][:3] == [0, 30, 60]
-    assert cylinder["columns"][1]["values"][:3] == [0.0, 5.7391, None]
-    assert cylinder["key_values"][1] == {
-        "id": "c_max",
-        "symbol": "c_max",
-        "unit": "m/s",
-        "value": 2.1359,
-        "at_deg": 79.10014,
-    }
-    assert cylinder["key_values"][3]["value"] == [79.10014, 280.89986]
-    assert cylinder["left_out"][0] == {"what": "weight", "why": "no inclination given"}
-    assert content["machine_columns"][1]["id"] == "T"
-    assert content["machine_key_values"][0]["id"] == "W"
-    assert content["cylinders"][1]["warnings"] == []
-
-
 def test_json_never_holds_nan() -> None:
     with pytest.raises(ValueError, match="JSON compliant"):
         render(report_of([float("nan")]), Look("json"))
-
-
-def test_digits_round_scripts_output_only_when_asked_for() -> None:
-    report = report_of([123456.789, 0.000123456])
-    assert read_csv(render(report, Look("csv", digits=3)))[1:] == [["0", "123000.0"], ["1", "0.000123"]]
-    assert json.loads(render(report, Look("json", digits=2)))["cylinders"][0]["columns"][1]["values"] == [
-        1.2e5,
-        0.00012,
-    ]
 
 
 def test_json_has_no_decimal_comma() -> None:

@@ -88,11 +88,6 @@ def test_a_browser_keeps_a_unit_beside_its_number() -> None:
     assert ",.n{white-space:nowrap}" in page
 
 
-def test_a_pipe_is_not_folded() -> None:
-    assert "Largest velocity toward the shaft" in render(ONE)
-    assert len(render(ONE._replace(title="x" * 500)).splitlines()[0]) == 500
-
-
 @pytest.mark.parametrize(
     "look", [Look(), Look(layout="rows"), *map(Look, ("markdown", "csv", "json", "html", "latex"))]
 )
@@ -104,34 +99,8 @@ def test_every_character_can_be_written(look: Look) -> None:
             assert "?" not in text.encode(encoding).decode(encoding)
 
 
-def test_no_line_ends_in_a_blank() -> None:
-    for look in (Look(), Look(layout="rows"), Look("markdown"), Look("csv")):
-        text = render(REPORT, look)
-        assert text.endswith("\n")
-        assert not any(line != line.rstrip() for line in text.splitlines())
-
-
 @given(texts())
 def test_names_cannot_steer_the_terminal(name: str) -> None:
     report = ONE._replace(title=name, parts=(ONE.parts[0]._replace(name=name),) * 2)
     text = render(report)
     assert all(character == "\n" or (ord(character) >= 32 and not 127 <= ord(character) < 160) for character in text)
-
-
-@given(texts(), st.sampled_from(["ascii", "cp1252", "utf-8"]))
-def test_any_text_can_be_encoded(text: str, encoding: str) -> None:
-    written = Look(encoding=encoding).text(text)
-    assert isinstance(written.encode(encoding, "strict" if encoding != "utf-8" else "replace"), bytes)
-
-
-def test_same_text_every_time() -> None:
-    for look in (Look(), Look("csv"), Look("json"), Look("markdown")):
-        assert render(REPORT, look) == render(REPORT, look)
-
-
-def test_width_counts_cells() -> None:
-    assert (width("θ̇"), width("漢"), width("abc")) == (1, 2, 3)
-
-
-def test_no_line_breaks_between_the_numbers_of_a_long_list_and_their_unit() -> None:
-    assert folded("16 from -1.044 to 1.041  kJ", 24) == ["16 from -1.044 to", "1.041  kJ"]

@@ -16,7 +16,7 @@ from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.render.markup import Latex
 from kurbel.report.tables import KeyValue, LeftOut, Part, PlaceTable, Report
-from render.sample_report import ONE, PHI, REPORT
+from render.sample_report import ONE, PHI
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -69,13 +69,6 @@ def test_no_quantity_has_a_character_that_latex_does_not_know() -> None:
     for one in (*every_quantity().all_columns, *every_quantity().all_key_values):
         for written in (Latex().symbol(one.symbol), *map(Latex().text, (one.text, one.called))):
             assert all(ord(c) < 0x250 or c in "–—’‘“”" for c in written), one.id
-
-
-def test_equal_cylinders_are_told_once() -> None:
-    part = REPORT.parts[0]
-    twice = REPORT._replace(parts=(part, part._replace(name="cylinder 2")), whole=None)
-    assert "".join(render(twice, Look("latex"))).count("Key values") == 1
-    assert "".join(render(twice, Look("html"))).count("<caption>Key values") == 1
 
 
 @pytest.mark.slow

@@ -38,11 +38,6 @@ def test_no_page_hangs_on_rounding(look: Look) -> None:
     assert shown in pages.pop()
 
 
-def test_a_residual_that_is_no_rounding_is_shown() -> None:
-    assert "1.200·10⁻¹⁴" in render(report(1.2e-14), Look())
-    assert "-0.01460" in render(report(-0.0146), Look())
-
-
 @pytest.mark.parametrize("residual", ROUNDING)
 def test_json_keeps_every_digit(residual: float) -> None:
     parsed = json.loads(render(report(residual), Look("json")))["cylinders"][0]["key_values"][-1]
@@ -53,14 +48,3 @@ def test_a_limit_is_not_compared_with_rounding_in_sight() -> None:
     limited = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8") + "limits: {energy_residual: 0.001}\n"
     (entry,) = next(s for s in checked(Case(loads(limited))).sections if s.title == "Limits").entries
     assert entry.text.startswith("< 1e-14 ≤ 0.001  kept")
-
-
-def test_only_residuals_are_taken_for_rounding() -> None:
-    """A disturbance that dies away to 1e-60 in a cycle is no rounding."""
-    assert not shown_key_values([(KEY_VALUES["multiplier"], 1e-60)], "si")[0].noise
-    assert [name for name, quantity in KEY_VALUES.items() if quantity.residual] == [
-        "energy_residual",
-        "residual",
-        "equilibrium_residual",
-        "holzer_residual",
-    ]

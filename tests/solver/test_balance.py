@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from typing import Any
 
 import mpmath as mp
@@ -128,32 +127,7 @@ def test_a_rod_hardly_longer_than_the_crank_has_few_orders_that_are_told() -> No
     # where the even orders have alternating signs, all that are not listed add up
     listed = sum(2 * free.force.of(n)[0] * unit_vector(90.0 * n) for n in free.orders).real
     assert free.at_most(free.force) == pytest.approx(listed - 0.1 * across, rel=1e-11)
-    assert (np.abs(free.force.waves) ** 2).sum() == pytest.approx(0.1**2 * mean_square(1.00001), rel=1e-11)
     assert balance_of(single(3)).free.next_order is None
-
-
-def mean_square(ratio: float) -> float:
-    """Mean of (b/(R ω²))² over a turn, by quadrature of thirty digits: cos²φ and the square of what the rod adds."""
-    with mp.workdps(30):
-        lam = 1 / mp.mpf(ratio)
-
-        def square(phi: Any) -> Any:
-            cos_psi = mp.sqrt(1 - (lam * mp.sin(phi)) ** 2)
-            return (lam * mp.cos(phi) ** 2 / cos_psi**3 - lam * mp.sin(phi) ** 2 / cos_psi) ** 2
-
-        near = [mp.pi / 2 - mp.mpf(10) ** -k for k in range(8)]
-        return 0.5 + float(mp.quad(square, [0, *near, mp.pi / 2]) * 2 / mp.pi)
-
-
-@pytest.mark.parametrize("above", [1e-5, 1e-7])
-def test_a_rod_hardly_longer_than_the_crank_has_its_largest_force_half_way(above: float) -> None:
-    """λ/√(1 − λ²) in R ω²; what cos φ adds to it beside 90° is less than the tolerance."""
-    found = balance_of(single(1 + above))
-    rod, crank = found.throws[0].mechanism.rod, found.throws[0].mechanism.crank
-    half_way = crank / math.sqrt((rod - crank) * (rod + crank))
-    assert found.F_free_max.value / (0.1 * OMEGA**2) == pytest.approx(half_way, rel=above / 100 + 1e-13)
-    assert found.F_free_max.degrees == pytest.approx(90.0, abs=3 * above)
-    assert found.F_free_best.value <= found.F_free_max.value * (1 + 1e-14)
 
 
 def test_a_rod_as_long_as_the_crank_but_for_rounding_has_orders_without_end() -> None:
@@ -200,67 +174,6 @@ def test_the_rolling_moment_is_the_turning_effort_with_the_other_sign() -> None:
     assert case.balance.rolls_as_it_turns
 
 
-TWO_BANKS = """
-speed: 600 rpm
-cycle: four-stroke
-cylinders:
-  count: COUNT
-  firing_order: ORDER
-  bank_angles: [0 deg, 60 deg]
-  each:
-    crank: 50 mm
-    rod_ratio: 4
-    bore: 80 mm
-    masses: {reciprocating: 2 kg}
-    indicator:
-      pressures: absolute
-      head_end: {otto: {intake: 0.95 bar, exhaust: 1.08 bar, peak: 25 at, compression_ratio: 6, exponent: 1.35}}
-"""
-
-
-@pytest.mark.parametrize("count", [6, 14])
-def test_the_rolling_moment_of_equal_cylinders_comes_back_with_each_of_them(count: int) -> None:
-    """Its extremes are those of the turning effort with the other sign."""
-    case = Case(loads(TWO_BANKS.replace("COUNT", str(count)).replace("ORDER", "-".join(map(str, range(1, count + 1))))))
-    roll, effort = case.balance, case.flywheel
-    assert roll.M_roll_max.value == pytest.approx(-effort.M_min.value, rel=1e-12)
-    assert roll.M_roll_min.value == pytest.approx(-effort.M_max.value, rel=1e-12)
-    assert roll.M_roll_max.degrees == pytest.approx(effort.M_min.degrees, abs=1e-6)
-    angles = np.linspace(0.0, 720.0, 8 * count, endpoint=False)
-    assert_allclose(roll.at(angles).M_roll, roll.at(angles + 720 / count).M_roll, rtol=0, atol=1e-9)
-
-
-def test_cylinders_that_differ_come_back_as_often_as_every_group_does() -> None:
-    """Three equal cranks and three others among them, unevenly: three times in a turn; with one heavier crank, once."""
-    light, heavy = "rod_ratio: 4, masses: {other: 2 kg}", "rod_ratio: 5, masses: {other: 3 kg}"
-    cranks = [(light, 0), (light, 120), (light, 240), (heavy, 17), (heavy, 137), (heavy, 257)]
-    for given, times in ((cranks, 3), (cranks[:4], 1)):
-        each = (f"{{name: {late}, crank: 50 mm, crank_position: {late} deg, {what}}}" for what, late in given)
-        found = balance_of(f"{{speed: 600 rpm, cylinders: [{', '.join(each)}]}}")
-        angles = np.linspace(0.0, 360.0, 7201)
-        roll = found.at(angles).M_roll
-        assert (np.abs(roll - found.at(angles + 120).M_roll).max() < 1e-9 * roll.max()) == (times == 3)
-        assert found.M_roll_max.value == pytest.approx(roll.max(), rel=1e-5)
-
-
-def test_no_force_is_left_over_a_turn() -> None:
-    found = balance_of(V90).at(np.arange(0.0, 360.0, 0.5))
-    assert abs(np.mean(found.F_x)) < 1e-13 * np.abs(found.F_x).max()
-    assert abs(np.mean(found.F_y)) < 1e-13 * np.abs(found.F_y).max()
-
-
-def test_later_cranks_make_the_same_force_later() -> None:
-    early = balance_of(TWO_CRANKS).at(ANGLES)
-    late = balance_of(TWO_CRANKS, "cylinders.0.crank_position=33 deg", "cylinders.1.crank_position=123 deg")
-    assert_allclose(late.at(ANGLES + 33).M_y, early.M_y, atol=1e-12 * np.abs(early.M_y).max())
-    assert_allclose(late.at(ANGLES + 33).F_x, early.F_x, atol=1e-12 * np.abs(early.F_x).max())
-
-
-def test_bank_angles_count_from_the_line_of_cylinder_1() -> None:
-    turned = balance_of(V90, "cylinders.0.bank_angle=-45 deg", "cylinders.1.bank_angle=45 deg")
-    assert_allclose(turned.at(ANGLES).F_y, balance_of(V90).at(ANGLES).F_y, rtol=1e-13, atol=1e-9)
-
-
 # by symmetry
 
 
@@ -305,17 +218,6 @@ def test_ninety_degrees_with_a_counterweight_of_one_mass() -> None:
     assert (force.of(1)[0], force.of(-1)[0]) == (0, 0)
     assert abs(force.of(2)[0]) + abs(force.of(-2)[0]) == pytest.approx(math.sqrt(2) * 0.1 * 0.254025042307, rel=1e-11)
     assert found.F_free_max.value == pytest.approx(found.F_free_best.value, rel=1e-13)
-
-
-def test_equal_throws_of_unequal_masses() -> None:
-    """A middle throw of twice the mass, opposite the outer ones: neither force nor moment of first order."""
-    one = (
-        "{name: %s, crank: 50 mm, rod: infinite, masses: {other: %s kg}, crank_position: %s deg, axial_position: %s mm}"
-    )
-    several = ", ".join(one % row for row in ((1, 1.3, 0, 0), (2, 2.6, 180, 80), (3, 1.3, 0, 160)))
-    found = balance_of(f"{{speed: 600 rpm, cylinders: [{several}]}}")
-    assert (found.F_free_max.value, found.M_free_max.value) == (0.0, 0.0)
-    assert (found.counterweight_best, found.counterweight_best_angle) == (0.0, None)
 
 
 # counterweights
@@ -400,22 +302,6 @@ def test_lanchester_shafts() -> None:
     assert not free.moment.waves.any()
 
 
-def test_counterweights_of_a_cylinder_count_from_its_own_throw() -> None:
-    """By mass and radius, opposite the throw where no angle says otherwise, at its place: as its share 1/2 does."""
-    weight = "[{mass: 27 kg, radius: 1 m}]"  # (120 + 300/2) kg at 300 mm is 81 kg m
-    own = [f"cylinders.{k}.counterweights={weight.replace('27', '81')}" for k in (0, 1)]
-    listed, shared = balance_of(TWO_CRANKS, *own), balance_of(TWO_CRANKS, "counterweights={share: 1/2}")
-    for one in ("force", "moment"):
-        assert_allclose(getattr(listed.free, one).waves, getattr(shared.free, one).waves, atol=1e-13)
-
-
-def test_weights_in_planes_have_the_force_and_the_moment_of_those_at_the_throws() -> None:
-    own = balance_of(TWO_CRANKS, "counterweights={share: 1/2}").free
-    wheels = balance_of(TWO_CRANKS, "counterweights={share: 1/2, planes: [-0.8 m, 0.8 m]}").free
-    for one in ("force", "moment"):
-        assert_allclose(getattr(wheels, one).waves, getattr(own, one).waves, atol=1e-12)
-
-
 def test_a_locomotive() -> None:
     """Infinite rod: √2 (1 − c) m R ω² and (1 − c) m R ω² a/√2 of the books, and the blow as by a lever."""
     found = balance_of(
@@ -432,21 +318,6 @@ def test_a_locomotive() -> None:
     assert found.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / (0.6 * blow)))
     assert found.hammer_train_speed == pytest.approx(found.hammer_speed * math.pi * 1.7)
     assert found.train_speed == pytest.approx(10 * math.pi * 1.7)
-
-
-@pytest.mark.parametrize("speed", ["", "speed: 0 1/s"])
-def test_the_speed_at_which_a_wheel_lifts_does_not_hang_on_that_of_the_machine(speed: str) -> None:
-    """u ω² = Q: at 10 rev/s the hammer blow of u kg m is u (20π)² N."""
-    wheels = (
-        "locomotive={wheel_distance: 1.6 m, wheel_load: 80 kN, wheel_diameter: 1.7 m}",
-        "counterweights={share: 0.6}",
-    )
-    still = balance_of(TWO_CRANKS.replace("speed: 600 rpm", speed), *wheels)
-    turning = balance_of(TWO_CRANKS, *wheels)
-    assert turning.hammer_blow is not None
-    assert still.hammer_speed == pytest.approx(10 * math.sqrt(80e3 / turning.hammer_blow), rel=1e-14)
-    assert still.hammer_train_speed == pytest.approx(still.hammer_speed * math.pi * 1.7, rel=1e-14)
-    assert (still.train_speed, still.hammer_blow, still.share_allowed) == (None, None, None)
 
 
 def test_the_book_beside_the_exact() -> None:
@@ -497,15 +368,6 @@ def test_what_cannot_be_balanced_is_refused(text: str, message: str) -> None:
         _ = balance_of(text).free
 
 
-def test_rotating_masses_turn_with_the_flywheel() -> None:
-    """0.7 kg at 50 mm add m R² to the mean inertia of the moving masses, and nothing to the torque."""
-    plain, heavy = (Case(loads(single(4, more))) for more in ("", ", flywheel: {inertia: 1 kg m2}"))
-    loaded = Case(loads(single().replace("2 kg", "2 kg, rotating: 0.7 kg")))
-    assert loaded.cylinders[0].drive.pin_inertia == pytest.approx(0.7 * 0.05**2)
-    assert plain.cylinders[0].drive.pin_inertia == 0
-    assert_allclose(loaded.cylinders[0].at(ANGLES).T, heavy.cylinders[0].at(ANGLES).T, rtol=1e-15)
-
-
 # numerics
 
 
@@ -516,17 +378,6 @@ def test_the_smallest_circle() -> None:
     assert np.abs(circle.centre - [0, 1j]).max() < 1e-14
     assert_allclose(circle.square, [1, 0], atol=1e-15)
     assert_allclose((circle.shares * points).sum(axis=0), circle.centre, atol=1e-14)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_the_carriers_alone_have_the_same_smallest_circle(seed: int) -> None:
-    """Also where four or more points, mirror images, are on it: no point may be dropped that holds it."""
-    angles = np.random.default_rng(seed).uniform(0, 2 * math.pi, 4)
-    points = np.array([[complex(math.cos(a), sign * math.sin(a))] for a in angles for sign in (1, -1)])
-    circle = smallest_circle(points)
-    assert np.abs(points - circle.centre).max() ** 2 == pytest.approx(circle.square[0], rel=1e-12)
-    alone = smallest_circle(points[circle.shares[:, 0] > 1e-9])
-    assert alone.square[0] == pytest.approx(circle.square[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("turns", [1, 7, -3])
@@ -545,32 +396,6 @@ def test_an_ellipse_is_longest_where_its_circles_meet() -> None:
 def closed_curve(forward: Sequence[complex], backward: Sequence[complex]) -> ClosedCurve:
     """The curve Σ f_n e^{inφ} + g_n e^{−inφ}, n from 1 on."""
     return ClosedCurve(np.array([*reversed(backward), 0, *forward], complex)[:, None])
-
-
-def random_circles(seed: int) -> ClosedCurve:
-    random = np.random.default_rng(seed)
-    forward, backward = ((random.normal(size=(5, 2)) @ [1, 1j]) * 0.3 ** np.arange(5) for _ in range(2))
-    return closed_curve(forward, backward)
-
-
-OF_FORCE = {
-    "two cranks": lambda: balance_of(TWO_CRANKS).bare.force,
-    "short rod": lambda: balance_of(single(1.2)).bare.force,
-    **{f"random {seed}": partial(random_circles, seed) for seed in range(6)},
-}
-
-
-@pytest.mark.parametrize("name", few(OF_FORCE, ["two cranks", "random 0", "random 1"]))
-def test_no_weight_beside_the_best_one_leaves_less(name: str) -> None:
-    """Of two cranks at 90° two points carry the circle and the third all but does."""
-    products = OF_FORCE[name]()
-    (centre,), (most,), _ = products.turned_back().least_circle()
-    around = products.plus(1, -centre)
-    assert np.abs(vector_at(around, np.linspace(0, 360, 2001))).max() <= most * (1 + 1e-12)
-    for degrees in np.linspace(3, 318, 8):
-        for way in (1e-3, 1e-6):
-            aside = around.plus(1, way * most * complex(unit_vector(degrees)))
-            assert longest(aside)[0] >= most * (1 - 1e-12)
 
 
 def test_wheels_need_to_know_where_the_cylinders_stand() -> None:

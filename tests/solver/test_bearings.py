@@ -235,10 +235,8 @@ def test_unloaded_arcs_against_many_samples() -> None:
 
 
 def free(*arcs: tuple[float, float]) -> tuple[float, float]:
-    """What these arcs leave free of the circle of one machine, and the middle of its widest stretch."""
-    start, end = np.array(arcs).T
-    (arc,), (middle,) = unreached(np.zeros(len(arcs), int), start, end, 1)
-    return arc, middle
+    """What arcs from start to end leave free of the circle, and the middle of its widest stretch."""
+    return unreached([(start, end - start) for start, end in arcs])
 
 
 def test_arcs_join_round_the_circle() -> None:
@@ -324,11 +322,3 @@ def test_nothing_loads_a_bearing() -> None:
         _ = Case(loads("crank: 100 mm\nrod: 500 mm\n")).bearings
     with pytest.raises(UsageError, match="nothing loads a bearing"):
         _ = Case(loads("effort: {unit: N m, mean: 100, harmonics: [[1, 5, 5]]}")).bearings
-
-
-def test_weights_in_planes_need_the_place_of_their_cylinder() -> None:
-    """As `kurbel balance` has it: without it nobody knows how the planes share its weight."""
-    text = HEAD + EACH.replace("\n    ", "\n") + "counterweights: {share: 0.5, planes: [-40 mm, 40 mm]}\n"
-    obstacle = Case(loads(text)).bearings.obstacle
-    assert obstacle == "cylinder 1: weights in two planes need its 'axial_position', or 'spacing' of equal cylinders"
-    assert not Case(loads(text + "axial_position: 0 mm\n")).bearings.obstacle

@@ -17,9 +17,9 @@ from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.measured import Measured
 from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.angles import stepped
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
+from kurbel.report.tables import stepped
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure

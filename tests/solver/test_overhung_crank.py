@@ -10,10 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.errors import KurbelError, RuleError
-from kurbel.machine_file import loads
+from kurbel.errors import RuleError
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.case import Case
 from kurbel.solver.shaft import FreeBody, Vector
 from kurbel.solver.stress import places
 from machines import constant_pressure
@@ -125,30 +123,3 @@ def test_whole_cycle_by_brute_force_and_equilibrium() -> None:
 def test_lengths_that_contradict(changed: dict[str, Any], message: str) -> None:
     with pytest.raises(RuleError, match=message):
         shaft(**OVERHUNG | {"flywheel_position": -0.4, "flywheel_mass": 1.0, "journal_length": 0.3} | changed)
-
-
-FILE = """
-crank: 300 mm
-rod: 1500 mm
-bore: 400 mm
-indicator: {head_end: {constant: {expansion: 10 bar, compression: 0 bar}}}
-crankshaft:
-  overhung: OVERHUNG
-  a: 400 mm
-  b: 1200 mm
-  web_distance: 170 mm
-  web_thickness: 120 mm
-  web_width: 220 mm
-  pin_diameter: 180 mm
-  pin_length: 200 mm
-"""
-
-
-def test_in_a_machine_file() -> None:
-    """10 bar on 400 mm: A carries b/(b − a) = 1.5 times the force in the dead centre, B half of it, upward."""
-    load = 1e6 * math.pi / 4 * 0.4**2
-    for word, lever in (("true", 1.5), ("false", 0.75)):
-        at = Case(loads(FILE.replace("OVERHUNG", word))).stress.at([0.0])
-        assert (at.A_D[0], at.B_D[0]) == pytest.approx((load * lever, load * (1 - lever)), rel=1e-12)
-    with pytest.raises(KurbelError, match="unknown word 'yes'; write 'true' or 'false'"):
-        loads(FILE.replace("OVERHUNG", "yes"))

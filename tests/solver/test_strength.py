@@ -11,17 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.batch import Lot, batch
-from kurbel.machine.indicator import Card, Indicator
-from kurbel.machine.parts import Masses, Piston
+from kurbel.machine.indicator import Card
+from kurbel.machine.parts import Masses
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.shaft import FreeBody, weight_in_throw
-from kurbel.solver.stress import PARTS, places
+from kurbel.solver.shaft import weight_in_throw
+from kurbel.solver.stress import PARTS
 from machines import STEAM_CARD, constant_pressure
 from representative import few
 from shafts import body, place_at, shaft, strength
@@ -100,17 +99,6 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
             assert brute == pytest.approx(largest.value, rel=1e-4)
 
 
-def test_a_smooth_largest_stress_is_exact() -> None:
-    """Near the angle found, the stress is a parabola with its top there: no smaller step finds more."""
-    solved = strength(shaft(**HEAVY), inclination=0.0)
-    for part in ("pin", "journal_A"):
-        largest = solved.sigma_max(part)
-        around = largest.degrees + np.array([-1e-3, 0.0, 1e-3])
-        values = getattr(solved.at(around), f"sigma_{part}")
-        assert values[1] == pytest.approx(largest.value, rel=1e-14)
-        assert (values[[0, 2]] < values[1]).all()
-
-
 @pytest.mark.parametrize(
     ("inclination", "degrees", "D", "T"),
     [(0, 0, 0, -1), (0, 90, 1, 0), (0, 180, 0, 1), (90, 0, 1, 0), (90, 90, 0, 1), (90, 180, -1, 0), (-90, 0, -1, 0)],
@@ -118,68 +106,6 @@ def test_a_smooth_largest_stress_is_exact() -> None:
 def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T: float) -> None:
     """Lying, the pin stands above the shaft at 90° and the weight points from it to the shaft."""
     assert weight_in_throw(1.0, CrankAngle.of(float(degrees)), float(inclination)) == (D, T)
-
-
-def test_bearings_carry_piston_force_and_flywheel() -> None:
-    """Turned back into the frame of the ground, A + B is the pin force and a weight that always points down."""
-    solved = strength(shaft(**HEAVY), inclination=0.0)
-    phi = np.linspace(0, 360, 25)
-    at = solved.at(phi)
-    sin, cos = np.sin(np.radians(phi)), np.cos(np.radians(phi))
-    D, T = at.A_D + at.B_D - at.D, at.A_T + at.B_T - at.T
-    weight = 5000 * GRAVITY
-    assert D * sin - T * cos == pytest.approx(np.full(25, weight), rel=1e-12)
-    assert D * cos + T * sin == pytest.approx(np.zeros(25), abs=1e-9 * weight)
-
-
-class TestLimits:
-    """What is left when a cause is taken away, in closed form."""
-
-    def stresses(self, found: FreeBody) -> dict[tuple[str, str], Any]:
-        return {(place.part, place.name): place for place in places(found)}
-
-    def test_no_flywheel_and_equal_arms(self) -> None:
-        found = body(D=3e5, T=1e5, b=0.4)
-        assert (found.A.D[0], found.A.T[0]) == (1.5e5, 0.5e5)
-        assert (found.B.D[0], found.B.T[0]) == (1.5e5, 0.5e5)
-        at = self.stresses(found)
-        assert at["web_A", "wide face"].compression[0] == at["web_B", "wide face"].compression[0]
-        in_plane = [at[web, "wide face"].bending_in_plane[0] for web in ("web_A", "web_B")]
-        assert in_plane == pytest.approx([6 * 1.5e5 * (0.4 - 0.17) / (0.12**2 * 0.22)] * 2, rel=1e-13)
-
-    def test_radial_force_alone_twists_nothing(self) -> None:
-        for (part, _), at in self.stresses(body(D=3e5, T=0.0)).items():
-            assert at.torsion is None or at.torsion[0] == 0
-            assert at.bending_out_of_plane is None or at.bending_out_of_plane[0] == 0, part
-
-    def test_tangential_force_alone_compresses_nothing(self) -> None:
-        at = self.stresses(body(D=0.0, T=1e5, b=0.4))
-        for place in at.values():
-            assert place.compression is None or place.compression[0] == 0
-            assert place.bending_in_plane is None or place.bending_in_plane[0] == 0
-        # web A is bent by ½ T r at the pin, web B by T r at the shaft; both are twisted by ½ T (a − e)
-        assert at["web_A", "narrow face"].bending_out_of_plane[0] == pytest.approx(6 * 0.5e5 * 0.3 / (0.12 * 0.22**2))
-        assert at["web_B", "narrow face"].bending_out_of_plane[0] == pytest.approx(6 * 1e5 * 0.3 / (0.12 * 0.22**2))
-        twist = 0.5e5 * (0.4 - 0.17)
-        for web in ("web_A", "web_B"):
-            assert at[web, "wide face"].torsion[0] == pytest.approx(4.5 * twist / (0.12**2 * 0.22))
-            assert at[web, "narrow face"].torsion[0] == pytest.approx(4.5 * twist / (0.12 * 0.22**2))
-        assert at["journal_B", "in bearing"].torsion[0] == pytest.approx(16 * 1e5 * 0.3 / (math.pi * 0.19**3))
-        assert at["journal_B", "in bearing"].normal == 0
-
-    def test_flywheel_alone(self) -> None:
-        """Overhung by f beyond B it lifts A by G f/(a + b) and bends the journal in B by G f."""
-        found = body(D=0.0, T=0.0, weight=(0.0, 5e4), flywheel_position=0.5)
-        assert found.A.T[0] == pytest.approx(-5e4 * 0.5 / 0.82, rel=1e-14)
-        assert found.B.T[0] == pytest.approx(5e4 * (0.82 + 0.5) / 0.82, rel=1e-14)
-        at = self.stresses(found)["journal_B", "in bearing"]
-        assert at.normal[0] == pytest.approx(32 * 5e4 * 0.5 / (math.pi * 0.19**3), rel=1e-13)
-
-    def test_flywheel_between_the_bearings(self) -> None:
-        """Without a pin force, a beam on two supports: G times both distances over the span, under the flywheel."""
-        found = body(D=0.0, T=0.0, weight=(5e4, 0.0), flywheel_position=-0.1)
-        at = self.stresses(found)["journal_B", "at flywheel"]
-        assert at.normal[0] == pytest.approx(32 * (5e4 * 0.72 * 0.1 / 0.82) / (math.pi * 0.19**3), rel=1e-13)
 
 
 def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
@@ -238,15 +164,6 @@ class TestBearings:
         mean_A = solved.pressure_mean("journal_A")
         assert mean_A == pytest.approx(pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14)
 
-    def test_mean_over_time_by_another_quadrature(self) -> None:
-        solved = strength(**ENGINES["lying"])
-        phi = (np.arange(45_000) + 0.5) / 125
-        at = solved.at(phi)
-        assert solved.pressure_mean("pin") == pytest.approx(np.hypot(at.D, at.T).mean() / (0.18 * 0.2), rel=1e-7)
-        assert solved.pressure_mean("journal_B") == pytest.approx(
-            np.hypot(at.B_D, at.B_T).mean() / (0.19 * 0.3), rel=1e-7
-        )
-
     def test_what_is_not_given_is_not_told(self) -> None:
         solved = strength(shaft(journal_diameter=None))
         assert (solved.sigma_max("journal_A"), solved.mises_max("journal_B")) == (None, None)
@@ -286,17 +203,6 @@ def test_many_shafts_have_what_each_has_alone() -> None:
         for id, figure in one.key_values().items():
             value = np.broadcast_to(together[id].value, len(alone))[number]
             assert value == pytest.approx(figure.value, rel=1e-12, abs=1e-14), id
-
-
-def test_four_stroke_cycle_is_scanned_whole() -> None:
-    lines = {"expansion": [(0, 25), (1, 2)], "exhaust": [(1, 0.1), (0, 0.1)], "intake": [(0, -0.1), (1, -0.1)]}
-    card = Card.from_keys(unit=(1e5, 1), compression=[(1, 0), (0, 8)], **lines)
-    cylinder = Cylinder(SliderCrank(0.3, 1.5), pistons=(Piston(0.4, indicator=Indicator(card)),))
-    solved = Case(Machine((cylinder,), cycle="four-stroke", crankshaft=shaft())).stress
-    at = solved.at(np.linspace(0, 720, 7201))
-    assert at.sigma_pin.max() == pytest.approx(solved.sigma_max("pin").value, rel=1e-5)
-    assert solved.at_dead_centre[0].degrees == 0
-    assert solved.equilibrium_residual <= 1e-14
 
 
 @pytest.mark.parametrize(

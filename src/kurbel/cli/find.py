@@ -74,7 +74,7 @@ def find(
     from kurbel.machine_file import source
     from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.sweep_rows import Titles, write_rows
-    from kurbel.report.findings import as_json, as_rows, heads, remarks
+    from kurbel.render.findings import as_json, as_rows, heads, remarks
 
     if write and (case_name or format):
         raise click.UsageError(f"--write prints FILE; leave {'--case' if case_name else '--format'} out.")

@@ -3,8 +3,6 @@
 import os
 import sys
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from io import StringIO
 from shutil import get_terminal_size
 from typing import Any, NoReturn
@@ -16,7 +14,6 @@ from kurbel.errors import KurbelError, MachineFileError
 from kurbel.near_words import did_you_mean
 from kurbel.render import Look
 from kurbel.render.output import silence
-from kurbel.render.text import width
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
@@ -55,14 +52,6 @@ class _Kurbel(click.Group):
             return super().resolve_command(ctx, args)
         raise click.UsageError(f"no command '{name}'{did_you_mean(name, tuple(COMMANDS))}", ctx)
 
-    def make_context(self, *args: Any, **extra: Any) -> click.Context:
-        with _silent_interrupt():
-            return super().make_context(*args, **extra)
-
-    def invoke(self, ctx: click.Context) -> Any:
-        with _silent_interrupt():
-            return super().invoke(ctx)
-
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         # no message fails because standard error is closed or an encoding lacks one of its characters
         sys.stderr = sys.stderr or StringIO()
@@ -98,30 +87,19 @@ class _Kurbel(click.Group):
                 f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
                 f"Please report it; {_DEBUG}=1 shows where it happened."
             )
+            # what Python before 3.12 makes of an interrupt that comes while attributes of a class are named
+            if isinstance(error.__cause__, KeyboardInterrupt):
+                status, message = INTERRUPTED, ""
         if message:
             to_stderr(message)
         sys.exit(status if isinstance(status, int) else DONE)
-
-
-@contextmanager
-def _silent_interrupt() -> Iterator[None]:
-    """End with an interrupt before click answers it with an empty line, which may fail."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise click.Abort from None
-    except RuntimeError as error:
-        # what Python before 3.12 makes of one that comes while attributes of a class are named
-        if isinstance(error.__cause__, KeyboardInterrupt):
-            raise click.Abort from None
-        raise
 
 
 def message_of(error: KurbelError) -> str:
     """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text, width)
+    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text)
 
 
 def _stderr_look() -> Look:

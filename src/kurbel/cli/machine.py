@@ -49,7 +49,7 @@ def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spr
     count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
     do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.crank import cycles_report, forces_report
+    from kurbel.report.crank import forces_report
 
     case = request.case(cycle)
     if not each_cycle:
@@ -57,7 +57,7 @@ def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spr
     elif given := request.given(**{"--cycle": cycle}):
         raise click.UsageError(f"--each-cycle has no table over the angle; leave out {given[0]}.")
     else:
-        request.write(cycles_report(case, request.units))
+        request.print(forces_report, True, case=case)
 
 
 @click.command()
@@ -88,7 +88,7 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
     von Mises (sigma_v). Key values are exact and do not depend on --step. FILE needs 'crankshaft', one cylinder and
     a pressure; it may be - for standard input.
     """
-    from kurbel.report.loads import stress_report
+    from kurbel.report.crank import stress_report
 
     request.print(stress_report, places_only, spreads=spreads)
 
@@ -103,7 +103,7 @@ def bearings(request: "Request") -> None:
     throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
     are exact and do not depend on --step. FILE may be - for standard input.
     """
-    from kurbel.report.loads import bearings_report
+    from kurbel.report.crank import bearings_report
 
     request.print(bearings_report)
 

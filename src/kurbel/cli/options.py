@@ -14,6 +14,7 @@ from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
+from kurbel.render.formats import write_report
 from kurbel.report.tables import Report
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
@@ -174,8 +175,6 @@ class Output(NamedTuple):
 
     def write(self, report: Report) -> None:
         """Write the report."""
-        from kurbel.render.formats import write_report
-
         write_report(report, self.look, self.file_name)
 
 
@@ -235,10 +234,11 @@ columns_option = click.option(
     help="Only these columns, by id or symbol, in this order.",
     shell_complete=completing(_columns),
 )
+cylinder_option = click.option(
+    "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
+)
 _part_options = stacked(
-    click.option(
-        "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
-    ),
+    cylinder_option,
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
 units_option = click.option(
@@ -254,8 +254,15 @@ output_option = click.option(
     "--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output."
 )
 number_options = stacked(
-    click.option("--decimal", type=click.Choice(["point", "comma"]), default="point", help="Decimal sign."),
-    click.option("--digits", type=click.IntRange(1, 17), help="Significant digits; 4 if not given."),
+    click.option(
+        "--decimal",
+        type=click.Choice(["point", "comma"]),
+        default="point",
+        help="Decimal sign; a comma makes csv use ';'.",
+    ),
+    click.option(
+        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
+    ),
 )
 _look_options = stacked(
     click.option(
@@ -269,15 +276,7 @@ _look_options = stacked(
         help="By the suffix of --output, or table, if not given.",
     ),
     output_option,
-    click.option(
-        "--decimal",
-        type=click.Choice(["point", "comma"]),
-        default="point",
-        help="Decimal sign; a comma makes csv use ';'.",
-    ),
-    click.option(
-        "--digits", type=click.IntRange(1, 17), help="Significant digits; if not given 4, and all in csv and json."
-    ),
+    number_options,
     width_option,
 )
 

@@ -3,14 +3,14 @@
 import os
 import sys
 import time
-from threading import Timer
+from collections.abc import Callable
 
 import click
 
 from kurbel.cli.options import (
     Output,
-    complete_cylinder,
     complete_picture,
+    cylinder_option,
     format_of,
     number,
     number_options,
@@ -61,51 +61,31 @@ def report(
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
     refuse_overwriting(file_name, files)
-    with Progress("kurbel report") as progress:
-        progress("reading and checking")
-        cases = [case_of(file, case_name, overrides, file_name) for file in files]
-        system = units or "metric"
-        keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
-        if len(cases) == 1:
-            document = whole_report(cases[0], keys[0], system, step, progress)
-        else:
-            document = side_by_side(cases, keys, system, progress)
-        progress("writing")
-        look = Look("html", comma=decimal == "comma", digits=digits)
-        write_out(report_page(document, look, _today()), file_name, "utf-8")
-
-
-def _today() -> str:
-    """Return the date; SOURCE_DATE_EPOCH decides it where a page must come out the same every time."""
+    progress = progress_of("kurbel report")
+    cases = [case_of(file, case_name, overrides, file_name) for file in files]
+    keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
+    system = units or "metric"
+    if len(cases) == 1:
+        document = whole_report(cases[0], keys[0], system, step, progress)
+    else:
+        document = side_by_side(cases, keys, system, progress)
+    progress("writing")
+    look = Look("html", comma=decimal == "comma", digits=digits)
+    # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    seconds = float(epoch) if epoch.isdecimal() else time.time()
-    return time.strftime("%Y-%m-%d", time.gmtime(seconds) if epoch.isdecimal() else time.localtime(seconds))
+    today = time.strftime("%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime())
+    write_out(report_page(document, look, today), file_name, "utf-8")
 
 
-class Progress:
-    """Called with what is done next; a terminal is told so from the second on, also in its midst; a pipe is not."""
+def progress_of(command: str) -> Callable[[str], None]:
+    """Return what is called with what is done next, of which a terminal is told from the second second on."""
+    begun = time.monotonic()
 
-    def __init__(self, command: str) -> None:
-        self._command, self._doing, self._late = command, "", False
-        self._timer = Timer(_PATIENCE, self._tell)
-        self._timer.daemon = True
+    def progress(doing: str) -> None:
+        if sys.stderr.isatty() and time.monotonic() - begun > _PATIENCE:
+            click.echo(f"{command}: {doing} …", err=True)
 
-    def __enter__(self) -> "Progress":
-        if sys.stderr.isatty():
-            self._timer.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._timer.cancel()
-
-    def __call__(self, doing: str) -> None:
-        self._doing = doing
-        if self._late:
-            self._tell()
-
-    def _tell(self) -> None:
-        self._late = True
-        click.echo(f"{self._command}: {self._doing} …", err=True)
+    return progress
 
 
 @click.command()
@@ -117,12 +97,10 @@ class Progress:
 )
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
-@click.option(
-    "--cylinder", metavar="NAME", help="Only of this cylinder, by name or number.", shell_complete=complete_cylinder
-)
+@cylinder_option
 @units_option
 @number_options
-@click.option("--width", type=click.IntRange(20, 100_000), metavar="N", help="Columns to fill in the terminal.")
+@width_option
 def plot(
     file: str | None,
     case_name: str,

@@ -11,6 +11,7 @@ from kurbel.cli.options import (
     complete_key,
     completing,
     number,
+    output_option,
     output_options,
     shipped,
     units_option,
@@ -21,7 +22,7 @@ from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
-from kurbel.report.angles import crank_angles
+from kurbel.report.tables import crank_angles
 
 
 def _ratio(text: str) -> float:
@@ -112,7 +113,7 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
 
 @click.command()
 @click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
-@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+@output_option
 def example(name: str | None, file_name: str | None) -> None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
 
@@ -173,7 +174,7 @@ def units(kind: str | None) -> None:
 
 @click.command()
 @click.option("--answers", is_flag=True, help="The schema of what -f json prints instead, for programs.")
-@click.option("--output", "-o", "file_name", metavar="FILE", help="Write to this file instead of standard output.")
+@output_option
 def schema(answers: bool, file_name: str | None) -> None:
     """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.
 

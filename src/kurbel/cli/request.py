@@ -11,11 +11,10 @@ from kurbel.cli.options import Output, Spreads, with_bar
 from kurbel.machine import of_cycle
 from kurbel.machine_file import load
 from kurbel.render.output import refuse_overwriting
-from kurbel.report.angles import crank_angles
 from kurbel.report.commands import COMMANDS
 from kurbel.report.frame import Frame
 from kurbel.report.rows import over_stroke, rows_where
-from kurbel.report.tables import Report
+from kurbel.report.tables import Report, crank_angles
 from kurbel.solver.case import Case
 
 

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Flags
-from kurbel.declared.forms.values import Form
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, refuse, refused
 
@@ -76,6 +76,14 @@ def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
         if other and keys[other].required and not {name, other} & given.keys():
             shown = other if keys[other].example else name
             yield Fault((), f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
+
+
+def out_of_bounds(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield which numbers are out of the bounds of their keys."""
+    for name, value in given.items():
+        form = keys[name].form if name in keys else None
+        if isinstance(form, Number) and (wrong := form.out_of_bounds(value)):
+            yield Fault((name,), f"{value:g} {wrong}")
 
 
 class Rule(NamedTuple):
@@ -171,8 +179,7 @@ class Record:
     def faults(self) -> Iterator[Fault]:
         """Yield what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
         given = {name: value for name, value in self._entered().items() if value is not None and np.ndim(value) == 0}
-        wrong = {name: self.KEYS[name].form.out_of_bounds(value) for name, value in given.items()}
-        found = [Fault((name,), f"{given[name]:g} {how}") for name, how in wrong.items() if how]
+        found = [*out_of_bounds(self.KEYS, given)]
         found = found or [rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken]
         yield from found or (Fault((name,), "nan is no number") for name, value in given.items() if value != value)
 
@@ -184,9 +191,7 @@ class Record:
         are out of the bounds of their keys, and for whatever the record refuses.
         """
         given = {name: value for name, value in values.items() if value is not None}
-        wrong = {name: cls.KEYS[name].form.out_of_bounds(value) for name, value in given.items() if name in cls.KEYS}
-        beyond = (Fault((name,), f"{given[name]:g} {how}") for name, how in wrong.items() if how)
-        refuse(*contradictions(cls.KEYS, given), *beyond)
+        refuse(*contradictions(cls.KEYS, given), *out_of_bounds(cls.KEYS, given))
         refuse(*cls.faults_of_keys(values))
         return cls.of_keys(**values)
 

@@ -72,8 +72,6 @@ class Reading:
         self.folder, self.key_values = folder, key_values
         self._places = places
         self.faults: list[Fault] = []
-        self.partly: dict[Path, tuple[Any, ...]] = {}
-        """Lists of which some items could not be read, those REFUSED."""
         self.alike: dict[Path, Path] = {}
         """Of what takes over the values of another mapping: its path and that of the other."""
 

@@ -7,7 +7,7 @@ record that is also made in Python yields its `contradictions` among its rules.
 """
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -47,24 +47,11 @@ def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more:
     return dataclasses.field(default=None if default is ... else default, metadata={"key": declared})
 
 
-def alternative(
-    form: Any,
-    text: str,
-    symbol: str = "",
-    *,
-    required: bool = False,
-    absent: str = "",
-    instead: str = "",
-    needs: str = "",
-    example: str = "",
-    also: tuple[str, ...] = (),
-    key: str = "",
-    gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None,
-    **bounds: Any,
-) -> Any:
+def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Any:
     """Declare an entry that is no attribute: `gives` returns those that follow from it, from all values by key.
 
-    key: its name in the file, '' for that of the attribute, until the class of the record is made; more: see `Key`;
-    bounds: see `form_of`.
+    key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and
+    bounds of `form_of`.
     """
-    return Key(form_of(form, bounds), text, symbol, required, absent, instead, needs, example, also, key, gives)
+    said = {name: more.pop(name) for name in Key._fields if name in more}
+    return Key(form_of(form, more), text, symbol, attribute=key, **said)

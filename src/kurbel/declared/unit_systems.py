@@ -8,8 +8,10 @@ from typing import Any
 from kurbel.declared.units import KINDS, unit_factor
 
 SYSTEMS: dict[str, dict[str, Any]] = {
-    system: {name: getattr(kind, system) or kind.si for name, kind in KINDS.items()}
-    for system in ("si", "metric", "technical", "imperial")
+    "si": {name: kind.si for name, kind in KINDS.items()},
+    "metric": {name: kind.metric or kind.si for name, kind in KINDS.items()},
+    "technical": {name: kind.technical or kind.si for name, kind in KINDS.items()},
+    "imperial": {name: kind.imperial or kind.si for name, kind in KINDS.items()},
 }
 """Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
 SI: dict[str, str] = SYSTEMS["si"]

@@ -92,29 +92,34 @@ _LBF = _POUND * GRAVITY
 _MMHG = 133.322387415
 
 _FACTORS: dict[str, Factor] = {
-    # length in m, volume in m³
-    **{"m": (1, 1), "mm": (1, 1e3), "cm": (1, 1e2), "dm": (1, 10), "um": (1, 1e6), "km": (1e3, 1)},
-    **{"in": (254, 1e4), "ft": (3048, 1e4), "l": (1, 1e3)},
-    # mass in kg
-    **{"kg": (1, 1), "g": (1, 1e3), "mg": (1, 1e6), "t": (1e3, 1), "tonne": (1e3, 1), "lb": (_POUND, 1)},
+    # length in m, volume in m³, mass in kg, time in s, frequency in Hz
+    **{"m": (1, 1), "in": (254, 1e4), "ft": (3048, 1e4), "l": (1, 1e3)},
+    **{"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "tonne": (1e3, 1), "lb": (_POUND, 1)},
     **{"long_ton": (2240 * _POUND, 1), "short_ton": (2e3 * _POUND, 1)},
-    # time in s, frequency in Hz
-    **{"s": (1, 1), "min": (60, 1), "h": (3600, 1), "Hz": (1, 1), "kHz": (1e3, 1)},
-    # angle in rad, revolutions
-    **{"rad": (1, 1), "deg": (1, 1), "°": (1, 1)},
-    **{"rpm": (1, 60), "rps": (1, 1), "U": (1, 1), "rev": (1, 1), "r": (1, 1), "1": (1, 1)},
-    # force in N
-    **{"N": (1, 1), "kN": (1e3, 1), "MN": (1e6, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
+    **{"s": (1, 1), "min": (60, 1), "h": (3600, 1), "Hz": (1, 1)},
+    # angle and revolutions, but for those of `_ELSEWHERE`
+    **dict.fromkeys(("rad", "deg", "°", "rps", "U", "rev", "r", "1"), (1, 1)),
+    "rpm": (1, 60),
+    # force in N, pressure in Pa
+    **{"N": (1, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
     **{"lbf": (_LBF, 1), "long_tonf": (2240 * _LBF, 1), "short_tonf": (2e3 * _LBF, 1)},
-    # pressure in Pa
-    **{"Pa": (1, 1), "kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1), "hPa": (1e2, 1), "mbar": (1e2, 1)},
-    **{"bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH), "Torr": (101325, 760)},
-    **{"mmHg": (_MMHG, 1), "inHg": (25.4 * _MMHG, 1), "mWS": (GRAVITY * 1e3, 1)},
+    **{"Pa": (1, 1), "bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH)},
+    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "inHg": (25.4 * _MMHG, 1), "mWS": (GRAVITY * 1e3, 1)},
     # torque in N m, energy in J, power in W
-    **{"Nm": (1, 1), "kNm": (1e3, 1), "J": (1, 1), "kJ": (1e3, 1), "MJ": (1e6, 1)},
-    **{"W": (1, 1), "kW": (1e3, 1), "MW": (1e6, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
+    **{"Nm": (1, 1), "J": (1, 1), "W": (1, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
 }
-"""Single units, of which those of every kind are made; `deg` and `rad` count as `_ELSEWHERE` says."""
+"""Single units, of which those of every kind are made."""
+
+_PREFIXES: dict[str, Factor] = {
+    **{"G": (1e9, 1), "M": (1e6, 1), "k": (1e3, 1), "h": (1e2, 1)},
+    **{"d": (1, 10), "c": (1, 1e2), "m": (1, 1e3), "u": (1, 1e6)},
+}
+_FACTORS |= {
+    prefix + name: (up * _FACTORS[name][0], down * _FACTORS[name][1])
+    for name in ("m", "g", "Hz", "N", "Pa", "bar", "Nm", "J", "W")
+    for prefix, (up, down) in _PREFIXES.items()
+    if prefix + name != "kg"
+}
 
 _DEGREES: dict[str, Factor] = {"rad": (180, math.pi)}
 _POUND_OF_FORCE: dict[str, Factor] = {"lb": (_LBF, 1)}
@@ -128,53 +133,45 @@ _ELSEWHERE: dict[str, dict[str, Factor]] = {
 }
 """Kind -> single units that mean something else in it. GD2 = 4J counts in kg m2: 1 kgf is the weight of 1 kg."""
 
-_LENGTHS = ("m", "mm", "cm", "dm", "um", "km", "in", "ft")
-_AREAS = tuple(f"{one}2" for one in _LENGTHS)
-_MASSES = ("kg", "g", "t", "lb")
-_FORCES = ("N", "kN", "MN", "kgf", "kp", "tf", "lbf")
-_PRESSURES = ("Pa", "kPa", "MPa", "GPa", "hPa", "mbar", "bar", "at", "atm", "psi", "Torr", "mmHg", "inHg", "mWS")
-_EVERYDAY = ("lb/in2", "lb/ft2")
-
-
-def _each(first: Iterable[str], joint: str, second: Iterable[str]) -> tuple[str, ...]:
-    """Return every unit of one list joined to every unit of another, which is used up once for each."""
-    return tuple(f"{a}{joint}{b}" for a in first for b in tuple(second))
-
+_LENGTHS = "m, mm, cm, dm, um, km, in, ft"
+_AREAS = "m2, mm2, cm2, dm2, um2, km2, in2, ft2"
+_MASSES = "kg, g, t, lb"
+_FORCES = "N, kN, MN, kgf, kp, tf, lbf"
+_PRESSURES = "Pa, kPa, MPa, GPa, hPa, mbar, bar, at, atm, psi, Torr, mmHg, inHg, mWS"
+_STRESSES = f"{_FORCES} / {_AREAS}"
+_TORQUES = f"{_FORCES} * {_LENGTHS}"
 
 _UNITS: dict[str, tuple[str, ...]] = {
-    "length": _LENGTHS,
-    "area": _AREAS,
-    "mass": (*_MASSES, "tonne", "long ton", "short ton"),
-    "force": (*_FORCES, "long tonf", "short tonf"),
-    "pressure": (*_PRESSURES, *_each(_FORCES, "/", _AREAS), *_EVERYDAY),
-    "stress": ("N/mm2", *_each(_FORCES, "/", _AREAS), *_PRESSURES, *_EVERYDAY),
-    "time": ("s", "min", "h"),
-    "angle": ("deg", "°", "rad"),
-    "speed": ("1/s", "rpm", "1/min", "U/min", "rev/min", "r/min", "min-1", "rps", "s-1", "Hz", "rad/s"),
-    "frequency": ("Hz", "1/s", "kHz", "1/min"),
+    "length": (_LENGTHS,),
+    "area": (_AREAS,),
+    "mass": (_MASSES, "tonne, long ton, short ton"),
+    "force": (_FORCES, "long tonf, short tonf"),
+    "pressure": (_PRESSURES, _STRESSES, "lb/in2, lb/ft2"),
+    "stress": ("N/mm2", _STRESSES, _PRESSURES, "lb/in2, lb/ft2"),
+    "time": ("s, min, h",),
+    "angle": ("deg, °, rad",),
+    "speed": ("1/s, rpm, 1/min, U/min, rev/min, r/min, min-1, rps, s-1, Hz, rad/s",),
+    "frequency": ("Hz, 1/s, kHz, 1/min",),
     "angular_velocity": ("rad/s",),
     "angular_acceleration": ("rad/s2",),
-    "velocity": _each(_LENGTHS, "/", ("s", "min", "h")),
-    "acceleration": _each(_LENGTHS, "/", ("s2",)),
-    "torque": (*_each(_FORCES, " ", _LENGTHS), "Nm", "kNm", "lb ft", "ft lb", "ft lbf", "lb in", "in lb", "in lbf"),
-    "energy": ("J", "kJ", "MJ", *_each(_FORCES, " ", _LENGTHS), "Nm"),
-    "power": ("W", "kW", "MW", "PS", "hp", "kgf m/s"),
-    "inertia": (*_each(_MASSES, " ", _AREAS), "lbf in s2", "lbf ft s2"),
-    "unbalance": _each((*_MASSES, "mg"), " ", _LENGTHS),
-    "gd2": (*_each(("kg", "t"), " ", ("m2", "cm2")), "kgf m2", "kp m2", "tf m2", "N m2", "lb ft2"),
-    "stiffness": (*_each(_FORCES, " ", ("m/rad", "mm/rad", "ft/rad")), "Nm/rad", "kNm/rad"),
-    "damping": (
-        *_each(_FORCES, " ", ("m s/rad",)),
-        *("Nm s/rad", "kNm s/rad", "N m s", "Nm s", "kN m s", "lbf ft s/rad"),
-    ),
-    "density": ("kg/m3", "kg/dm3", "g/cm3", "t/m3", "lb/ft3", "lb/in3"),
-    "spring": (*_each(("mm", "cm", "m", "in"), "/", (*_PRESSURES, *_EVERYDAY)), "mm/kgf/cm2", "cm/kgf/cm2"),
-    "volume": ("m3", "dm3", "l", "cm3", "mm3", "in3"),
-    "volume_rise": _each(("m3", "cm3", "in3"), "/", ("deg", "rad")),
-    "pressure_rise": _each((*_PRESSURES, *_EVERYDAY), "/", ("deg", "rad")),
-    "pressure_velocity": ("W/m2", "N/mm2 m/s", "kgf m/s/cm2", "psi ft/s"),
+    "velocity": (f"{_LENGTHS} / s, min, h",),
+    "acceleration": (f"{_LENGTHS} / s2",),
+    "torque": (_TORQUES, "Nm, kNm, lb ft, ft lb, ft lbf, lb in, in lb, in lbf"),
+    "energy": ("J, kJ, MJ", _TORQUES, "Nm"),
+    "power": ("W, kW, MW, PS, hp, kgf m/s",),
+    "inertia": (f"{_MASSES} * {_AREAS}", "lbf in s2, lbf ft s2"),
+    "unbalance": (f"{_MASSES}, mg * {_LENGTHS}",),
+    "gd2": ("kg, t * m2, cm2", "kgf m2, kp m2, tf m2, N m2, lb ft2"),
+    "stiffness": (f"{_FORCES} * m/rad, mm/rad, ft/rad", "Nm/rad, kNm/rad"),
+    "damping": (f"{_FORCES} * m s/rad", "Nm s/rad, kNm s/rad, N m s, Nm s, kN m s, lbf ft s/rad"),
+    "density": ("kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",),
+    "spring": (f"mm, cm, m, in / {_PRESSURES}, lb/in2, lb/ft2", "mm/kgf/cm2, cm/kgf/cm2"),
+    "volume": ("m3, dm3, l, cm3, mm3, in3",),
+    "volume_rise": ("m3, cm3, in3 / deg, rad",),
+    "pressure_rise": (f"{_PRESSURES}, lb/in2, lb/ft2 / deg, rad",),
+    "pressure_velocity": ("W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s",),
 }
-"""Kind -> its units."""
+"""Kind -> its units: names, or each one of a list times (*) or over (/) each one of another."""
 
 ZEROED_UNITS = {
     **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
@@ -185,7 +182,16 @@ ZEROED_UNITS = {
 
 @cache
 def _units_of(kind: str) -> dict[str, Factor]:
-    return {unit: _factor(unit, kind) for unit in _UNITS[kind]}
+    """Return the units of a kind by name."""
+    names: list[str] = []
+    for listed in _UNITS[kind]:
+        for joint, sign in ((" ", " * "), ("/", " / ")):
+            first, joined, second = listed.partition(sign)
+            if joined:
+                names += [f"{one}{joint}{other}" for one in first.split(", ") for other in second.split(", ")]
+        if " * " not in listed and " / " not in listed:
+            names += listed.split(", ")
+    return {name: _factor(name, kind) for name in names}
 
 
 def _factor(unit: str, kind: str) -> Factor:

@@ -14,8 +14,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, joined
-from kurbel.report.commands import subjects_of
-from kurbel.report.frame import too_large
+from kurbel.report.frame import subjects_of, too_large
 from kurbel.solver.case import Case
 
 _ALONE = ("torsion",)

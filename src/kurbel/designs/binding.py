@@ -12,7 +12,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.forms.values import Form
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.keys import TOO_EXTREME, Record, Rule
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
@@ -55,10 +55,10 @@ class _Slot(NamedTuple):
         return self.given.form.keys[self.name].form  # type: ignore[no-any-return]
 
     @property
-    def numeric(self) -> bool:
-        """Whether one varied key is all that stands here, and what it becomes is a number."""
+    def number(self) -> Number | None:
+        """The form of the number that it becomes, if one varied key is all that stands here."""
         alone = len(self.varied) == 1 and not self.varied[0][1]
-        return alone and self.form.numeric and not isinstance(self.given.made, Indivisible)
+        return self.form.number if alone and not isinstance(self.given.made, Indivisible) else None
 
     def read(self, texts: Sequence[str], whole: Reading) -> Any:
         """Return what texts of its varied keys become, or Unbound, unraised; whole: how the file was read."""
@@ -131,7 +131,7 @@ class Binder:
         own = [columns[number] for number, _ in slot.varied]
         if isinstance(own[0], np.ndarray):
             return own[0]
-        if slot.numeric and (plain := slot.form.numbers(own[0])) is not None:
+        if slot.number and (plain := slot.number.numbers(own[0])) is not None:
             return np.array(plain)
         texts = list(zip(*own))
         known = {one: slot.read(one, self._reading) for one in dict.fromkeys(texts)}
@@ -139,7 +139,7 @@ class Binder:
             if isinstance(known[text], Unbound):
                 failures.setdefault(row, str(known[text]))
         values = [known[text] for text in texts]
-        if slot.numeric and all(isinstance(one, (float, Unbound)) for one in known.values()):
+        if slot.number and all(isinstance(one, (float, Unbound)) for one in known.values()):
             return np.array([np.nan if isinstance(one, Unbound) else one for one in values])
         return values
 
@@ -177,9 +177,9 @@ class Binder:
 
     def _formed(self, values: Mapping[_Place, Any]) -> dict[_Place, Any]:
         """Return numbers as what their forms make of them."""
-        forms = {place: self._slots[place].form for place in values}
+        forms = {place: self._slots[place].form.number for place in values}
         return {
-            place: forms[place].of_numbers(one) if isinstance(one, (float, np.ndarray)) else one
+            place: form.of_numbers(one) if (form := forms[place]) and isinstance(one, (float, np.ndarray)) else one
             for place, one in values.items()
         }
 
@@ -218,11 +218,11 @@ class _Maker(Maker):
         self.broken: Flags = np.zeros(count, dtype=bool)
         self._rules: list[tuple[Given, Any, Rule]] = []
 
-    def made(self, value: Any, path: Path = ()) -> Any:
+    def made(self, value: Any) -> Any:
         """Return the record, as it is where nothing in it is read anew."""
         if isinstance(value, Given) and id(value) not in self._anew:
             return value.made
-        return self._record(value) if isinstance(value, Given) else super().made(value, path)
+        return self._record(value) if isinstance(value, Given) else super().made(value)
 
     def _record(self, given: Given) -> Any:
         values = {name: self._values.get((id(given), name), one) for name, one in given.values.items()}
@@ -230,7 +230,7 @@ class _Maker(Maker):
         if self._count == 1:
             return super()._record(other)
         inside = len(self._rules)
-        values = {name: self.made(one, (*given.path, name)) for name, one in values.items()}
+        values = {name: self.made(one) for name, one in values.items()}
         record = given.form.record.of_keys(**values)
         stages: list[Iterable[Rule]] = [given.form.record.rules_of_keys(values)]
         if isinstance(record, Record):

@@ -14,19 +14,9 @@ from typing import Any
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import (
-    EXPECTATIONS,
-    FIRING_ORDER,
-    LIMITS,
-    SETTINGS,
-    UNCERTAINTIES,
-    Choice,
-    Inline,
-    Listing,
-    OneOf,
-    RecordForm,
-)
-from kurbel.declared.forms.figures import MACHINE, Expected, scoped
+from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
+from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
+from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse

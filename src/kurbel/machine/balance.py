@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurbel.declared.forms import Choice
+from kurbel.declared.forms.values import Choice
 from kurbel.declared.record import Record, Rule, alternative, field
 
 

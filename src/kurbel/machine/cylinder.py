@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms import Inline, Listing, OneOf, RecordForm, Variant
+from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.declared.forms import Number
+from kurbel.declared.forms.values import Number
 from kurbel.declared.reading import REFUSED, has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from kurbel.declared.forms import Choice, Keyed, Number, OneOf, Points, RecordForm, unit_name
 from kurbel.declared.forms.figures import Bound
-from kurbel.declared.forms.values import size_faults
+from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
+from kurbel.declared.forms.values import Choice, Number, Points, size_faults, unit_name
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.unit_systems import show

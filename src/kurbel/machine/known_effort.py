@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import FILE_PATH, Points, unit_name
-from kurbel.declared.forms.values import size_faults
+from kurbel.declared.forms.values import FILE_PATH, Points, size_faults, unit_name
 from kurbel.declared.keys import Key
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative

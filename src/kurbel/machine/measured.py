@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms import COLUMN_RANGE, FILE_PATH, Choice, Number, OneOf, Points, RecordForm, unit_name
+from kurbel.declared.forms.structures import OneOf, RecordForm
+from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, Number, Points, unit_name
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point, unit_factor

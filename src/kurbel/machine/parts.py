@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kurbel.declared.forms import Listing, Number, OneOf, RecordForm
-from kurbel.declared.forms.values import Form
+from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator

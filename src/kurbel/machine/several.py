@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise, product
 from typing import Any
 
-from kurbel.declared.forms import FIRING_ORDER, RecordForm
+from kurbel.declared.forms.structures import RecordForm
+from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import MOST_ITEMS

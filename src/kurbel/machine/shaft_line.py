@@ -9,7 +9,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, Union
 
-from kurbel.declared.forms import TEXT, Listing, OneOf
+from kurbel.declared.forms.structures import Listing, OneOf
+from kurbel.declared.forms.values import TEXT
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, refuse

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kurbel.declared.forms import Points, unit_name
-from kurbel.declared.forms.values import size_faults
+from kurbel.declared.forms.values import Points, size_faults, unit_name
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point

@@ -119,11 +119,10 @@ class Parser:
                 place: Path = (*self._path, name)
                 if place in self.wanted:
                     self.keys.setdefault(place, _place_of(event))
+            elif isinstance(event, yaml.AliasEvent):
+                name, wrong = "?", self._guard(event)
             else:
-                name = "?"
-                wrong = isinstance(event, yaml.AliasEvent) or self._report(
-                    event, "a key must be a plain text, not a list or a mapping"
-                )
+                name, wrong = "?", self._report(event, "a key must be a plain text, not a list or a mapping")
                 self._path.append(name)
                 self._node(event)
                 self._path.pop()

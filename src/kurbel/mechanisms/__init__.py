@@ -9,50 +9,18 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial, reduce
 from operator import mul
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Record, Rule
+from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
 from kurbel.quantity import Quantity
-
-
-class Loads(Protocol):
-    """What a column that a mechanism adds may use of the cylinder at crank angles (n,), in SI."""
-
-    @property
-    def mechanism(self) -> Any:
-        """The mechanism."""
-
-    @property
-    def posed(self) -> CrankAngle:
-        """The crank angles, with what the connecting rod does there."""
-
-    @property
-    def omega(self) -> Any:
-        """Angular velocity in rad/s; None where no speed is given."""
-
-    @property
-    def P(self) -> Any:
-        """Force along the stroke line."""
-
-    @property
-    def along_rod(self) -> Any:
-        """The part of the rod force along the stroke line: P less friction."""
-
-    @property
-    def N(self) -> Any:
-        """Force on the guide."""
-
-    @property
-    def M_out(self) -> Any:
-        """Moment on what swings."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,17 +29,18 @@ class Offer:
 
     factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
     shape of the angle, or None where it is not known. It is proportional to ω to the power `omega`, and to what `force`
-    returns. unless: takes the results of the command; where it is true, the column says nothing new there.
+    takes of the state: `P`, `along_rod` (P less friction), `N`, or the moment `M_out` on what swings. unless: takes the
+    results of the command; where it is true, the column says nothing new there.
     """
 
     quantity: Quantity
     factor: Callable[[Any, CrankAngle], Any]
     omega: int = 0
-    force: Callable[[Loads], Any] | None = None
+    force: Callable[[Any], Any] | None = None
     unless: Callable[[Any], bool] | None = None
 
-    def of(self, state: Loads) -> Any:
-        """Return the column of a cylinder at crank angles (n,) in SI; None where it is not known."""
+    def of(self, state: Any) -> Any:
+        """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
         given = [state.omega] * self.omega + ([self.force(state)] if self.force else [])
         factor = self.factor(state.mechanism, state.posed)
         return None if factor is None or any(one is None for one in given) else reduce(mul, given, 1.0) * factor
@@ -158,7 +127,7 @@ class Mechanism(Record):
     3. `dead_centres` in degrees, the end of the outstroke after its beginning.
 
     A class without one of these is refused. All else has a default here that a mechanism may override:
-    `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; closed extremes; `sketch`,
+    `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; `sketch`,
     what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
     coupler) they add as columns in OFFERS and key values in KEY_OFFERS. No other module tests for the class of a
     mechanism.
@@ -186,6 +155,8 @@ class Mechanism(Record):
     """Whether it is built for a slow working and a quick return stroke, and has key values by these names."""
     works_outward: ClassVar[Any] = True
     """Whether the outstroke is the working stroke; otherwise the return stroke is."""
+    stroke: ClassVar[Any]
+    """Stroke in m; of what only swings, its swing in radians."""
     start: ClassVar[Any] = 0.0
     """The coordinate at the inner dead centre."""
     notes: ClassVar[Any] = ()
@@ -204,11 +175,6 @@ class Mechanism(Record):
         missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
-
-    @property
-    def stroke(self) -> float:
-        """Stroke in m; of what only swings, its swing in radians."""
-        raise NotImplementedError
 
     def coordinate(self, angle: CrankAngle) -> Any:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
@@ -312,14 +278,6 @@ class Mechanism(Record):
         """Return D/P, the radial force at the crank pin (positive toward the shaft) over the force at the output."""
         return None
 
-    def velocity_extremes(self) -> tuple[Extreme, ...]:
-        """Return closed extremes of `slope`, where there are any; otherwise they are searched."""
-        return ()
-
-    def acceleration_extremes(self) -> tuple[Extreme, ...]:
-        """Return closed extremes of `curvature`, where there are any; otherwise they are searched."""
-        return ()
-
 
 def finite(record: Record, *names: str) -> Iterator[Rule]:
     """Yield the rule that these lengths are finite; what is not given is None."""
@@ -332,3 +290,123 @@ def finite(record: Record, *names: str) -> Iterator[Rule]:
 def on_circle(radius: Any, cos: Any, sin: Any, centre: Point = (0.0, 0.0)) -> Point:
     """Return the point of a circle in a direction."""
     return centre[0] + radius * cos, centre[1] + radius * sin
+
+
+# columns and key values that several mechanisms have: of a swinging member, a block on the crank pin, a coupler
+
+_BOTH, _MEMBER = ("motion", "forces"), "of the swinging member"
+
+
+def _slides(results: Any) -> bool:
+    """Return whether x gives the position of what slides, in forces."""
+    return results.command == "forces" and bool(results.mechanism.slides)
+
+
+def _swing(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
+    searched = ("motion",) if called else ()
+    return Quantity(id, symbol, kind, f"{text} {_MEMBER}", "", _BOTH, searched, called, after="b")
+
+
+SWING_OFFERS = (
+    Offer(_swing("theta", "θ", "angle", "Angle"), lambda one, angle: one.swing_at(angle).degrees, unless=_slides),
+    Offer(
+        _swing("theta_dot", "θ̇", "angular_velocity", "Angular velocity", "angular velocity of the swing"),
+        lambda one, angle: one.swing_at(angle).slope,
+        omega=1,
+        unless=_slides,
+    ),
+    Offer(
+        _swing("theta_ddot", "θ̈", "angular_acceleration", "Angular acceleration", "angular acceleration"),
+        lambda one, angle: one.swing_at(angle).curvature,
+        omega=2,
+        unless=_slides,
+    ),
+)
+"""Of a mechanism with `swing_at`, which returns how its swinging member turns."""
+
+
+def _ends(mechanism: Any) -> list[Extreme]:
+    """θ in degrees at the dead centres; where the member turns fully, none."""
+    centres = mechanism.dead_centres() if mechanism.swing is not None else ()
+    return [Extreme(float(mechanism.swing_at(CrankAngle.of(end)).degrees), end % 360.0) for end in centres]
+
+
+SWING_VALUES = (
+    KeyOffer(
+        Quantity("swing", "θ_s", "angle", "Angle through which the member swings", "", _BOTH, after="stroke"),
+        lambda one, _: one.swing,
+    ),
+    KeyOffer(
+        Quantity("theta_min", "θ_min", "angle", f"Smallest angle {_MEMBER}", "", _BOTH, after="stroke"),
+        lambda one, _: min(_ends(one), default=None),
+    ),
+    KeyOffer(
+        Quantity("theta_max", "θ_max", "angle", f"Largest angle {_MEMBER}", "", _BOTH, after="stroke"),
+        lambda one, _: max(_ends(one), default=None),
+    ),
+)
+"""Of a mechanism with `swing_at`, and a `swing` in degrees, None where the member turns fully."""
+
+F_COUPLER = Offer(
+    own_force(
+        "F_coupler",
+        "F_K",
+        "force",
+        "Force in the coupler, thrust positive",
+        called="force in the coupler",
+        after="M_out",
+    ),
+    lambda one, angle: one.coupler_force_factor(angle),
+    force=lambda state: state.M_out,
+)
+"""Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
+
+
+def pin_diameter() -> Any:
+    """Return the field of the diameter of the crank pin."""
+    text = "Diameter of the crank pin; needs `pin_length`"
+    return field("length", text, "d_z", above=0, absent="no pin pressure", needs="pin_length")
+
+
+def pin_length() -> Any:
+    """Return the field of the length of the crank pin."""
+    text = "Length of the crank pin in its block; needs `pin_diameter`"
+    return field("length", text, "l_z", above=0, absent="same", needs="pin_diameter")
+
+
+NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
+"""What a mechanism with a block lacks without its pin, and why."""
+
+
+BLOCK_OFFERS = (
+    Offer(
+        own_motion("c_block", "c_b", "velocity", "Speed at which the block on the crank pin slides along its slot"),
+        lambda one, angle: one.block_slope(angle),
+        omega=1,
+    ),
+    Offer(
+        own_force(
+            "F_pin",
+            "F_z",
+            "force",
+            "Force of the sliding block on the crank pin, in the sense of P",
+            called="force of the sliding block on the crank pin",
+        ),
+        lambda one, angle: one.pin_force_factor(angle),
+        force=lambda state: state.along_rod,
+    ),
+)
+"""Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""
+
+
+def pin_pressure(bound: float | None = None) -> KeyOffer:
+    """Return the pressure between pin and block; bound: in Pa, up to which the sources let such a pin go."""
+
+    def largest(mechanism: Any, forces: Any) -> Extreme | None:
+        found = None if mechanism.pin_diameter is None else forces.extremes_of("F_pin")
+        if not found:
+            return None
+        return Extreme(found.peak.value / (mechanism.pin_diameter * mechanism.pin_length), found.peak.degrees)
+
+    text = "Largest pressure of the sliding block on the crank pin"
+    return KeyOffer(Quantity("pin_pressure", "p_z", "pressure", text, "", ("forces",), after="T_min"), largest, bound)

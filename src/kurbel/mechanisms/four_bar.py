@@ -10,8 +10,11 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
+    F_COUPLER,
     PIN,
     SHAFT,
+    SWING_OFFERS,
+    SWING_VALUES,
     KeyOffer,
     Mechanism,
     Offer,
@@ -21,7 +24,6 @@ from kurbel.mechanisms import (
     on_circle,
     on_request,
 )
-from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity

@@ -1,6 +1,6 @@
 """The mechanisms that a machine file may name."""
 
-from kurbel.declared.forms import RecordForm
+from kurbel.declared.forms.structures import RecordForm
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank

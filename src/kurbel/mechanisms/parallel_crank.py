@@ -8,8 +8,11 @@ from typing import Any, ClassVar
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
+    F_COUPLER,
     PIN,
     SHAFT,
+    SWING_OFFERS,
+    SWING_VALUES,
     KeyOffer,
     Mechanism,
     Offer,
@@ -19,7 +22,6 @@ from kurbel.mechanisms import (
     on_circle,
     own_motion,
 )
-from kurbel.mechanisms.offers import F_COUPLER, SWING_OFFERS, SWING_VALUES
 from kurbel.quantity import Quantity
 
 _POINT = "of every coupler point"

@@ -9,10 +9,20 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field
-from kurbel.mechanisms import KeyOffer, Mechanism, Offer, Sketch, finite, own_force
-from kurbel.mechanisms.offers import BLOCK_OFFERS, NO_PIN, pin_diameter, pin_length, pin_pressure
+from kurbel.mechanisms import (
+    BLOCK_OFFERS,
+    NO_PIN,
+    KeyOffer,
+    Mechanism,
+    Offer,
+    Sketch,
+    finite,
+    own_force,
+    pin_diameter,
+    pin_length,
+    pin_pressure,
+)
 from kurbel.mechanisms.slider_crank import crank_field, stroke_instead, yoke_sketch
-from kurbel.numerics.extreme import Extreme
 
 _N_PAIR = own_force(
     "N_pair",
@@ -109,11 +119,3 @@ class ScotchYoke(Mechanism):
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""
         sweep = np.degrees(2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement)))
         return np.asarray(sweep if outstroke else 360.0 - sweep)
-
-    def velocity_extremes(self) -> tuple[Extreme, ...]:
-        """Return ±R: c_max = v at 90°."""
-        return Extreme(self.crank, 90.0), Extreme(-self.crank, 270.0)
-
-    def acceleration_extremes(self) -> tuple[Extreme, ...]:
-        """Return ±R: b_max = v²/R at 0°."""
-        return Extreme(self.crank, 0.0), Extreme(-self.crank, 180.0)

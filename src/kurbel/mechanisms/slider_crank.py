@@ -15,7 +15,6 @@ from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, alternative, field
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
-from kurbel.numerics.extreme import Extreme
 
 _INFINITE = (("infinite", math.inf),)
 
@@ -31,9 +30,12 @@ def stroke_instead(gives: Callable[[Mapping[str, Any]], dict[str, Any]]) -> Any:
 
 
 def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
-    """Return what the books have in place of a column, by their formula for R = 1."""
-    quantity = on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id)
-    return Offer(quantity, lambda one, angle: one.of_book(angle, formula), omega)
+    """Return what the books have in place of a column, by their formula for R = 1; they have none with an offset."""
+
+    def factor(one: Any, angle: CrankAngle) -> Any:
+        return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
+
+    return Offer(on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id), factor, omega)
 
 
 _DISPLACEMENT = "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"
@@ -119,7 +121,9 @@ class SliderCrank(Mechanism):
         yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
         if not np.any(apart):
             return
-        short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= self._rounding)
+        # three lengths that add up as people write them miss each other as floats by this; two by nothing
+        rounding = where(self.offset == 0, 0.0, ulp(rod) + ulp(offset) / 2)
+        short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= rounding)
         numbers = {"reach": offset}
         reach = "{rod} does not reach: it must be longer than crank and offset together ({crank} + {reach:length})"
         yield Rule("rod", short & np.not_equal(offset, 0), reach, numbers)
@@ -129,38 +133,25 @@ class SliderCrank(Mechanism):
         yield Rule("rod", straight & (rod < crank), f"{{rod}} is shorter than {fully}")
 
     @property
-    def _rounding(self) -> Any:
-        """How far three lengths that add up as people write them may miss each other as floats; two miss by nothing."""
-        return where(self.offset == 0, 0.0, ulp(self.rod) + ulp(abs(self.offset)) / 2)
-
-    @property
     def rod_length(self) -> float:
         """L in m, `math.inf` for the infinite rod."""
         return self.rod
 
     @cached_property
-    def _endless(self) -> bool:
-        return every(self.rod == math.inf)
+    def straight(self) -> bool:
+        """Whether the stroke line passes through the shaft axis, or the rod is infinite."""
+        return every(self.offset == 0) or every(self.rod == math.inf)
 
     @cached_property
-    def _straight(self) -> bool:
-        return every(self.offset == 0) or self._endless
-
-    @cached_property
-    def _gaps(self) -> tuple[float, ...]:
+    def _gaps(self) -> tuple[Any, ...]:
         """(L − R + e)/L and (L − R − e)/L, how far sin ψ stays from 1 and from −1; (L + R + e)/L and (L + R − e)/L."""
-        if self._endless:
+        if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
         sums = ((crank, offset) for crank in (-self.crank, self.crank) for offset in (self.offset, -self.offset))
         return tuple(total(self.rod, *both) / self.rod for both in sums)
 
     @cached_property
-    def rho(self) -> float:
-        """ρ = 1 − λ² without its cancellation; of a straight slider-crank."""
-        return self._gaps[0] * self._gaps[2]
-
-    @cached_property
-    def _reaches(self) -> tuple[float, float]:
+    def _reaches(self) -> tuple[Any, Any]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
         beyond, within, above, below = self._gaps
         return sqrt(above * below), sqrt(beyond * within)
@@ -168,11 +159,11 @@ class SliderCrank(Mechanism):
     @cached_property
     def stroke(self) -> float:
         """s = √((L+R)² − e²) − √((L−R)² − e²) = 4LR/(their sum); 2R without offset."""
-        return 2 * self.crank if self._straight else self.crank * (4 / sum(self._reaches))
+        return 2 * self.crank if self.straight else self.crank * (4 / sum(self._reaches))
 
     def dead_centres(self) -> tuple[float, float]:
         """Return φ_i with sin φ_i = e/(L+R) and φ_o = 180° + arcsin(e/(L−R)), in degrees."""
-        if self._straight:
+        if self.straight:
             return 0.0, 180.0
         outer, inner = self._reaches
         return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
@@ -181,15 +172,15 @@ class SliderCrank(Mechanism):
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
         if angle.rod is not None:
             return angle.rod
-        lam = self.lam
-        if self._straight:
-            return lam * angle.sin, formulas.cos_rod_angle(angle.sin, angle.cos, self.rho)
+        lam, gaps = self.lam, self._gaps
+        if self.straight:  # 1 − λ² sin²φ without its cancellation
+            return lam * angle.sin, sqrt(angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin))
         near = 1 + abs(angle.sin)
         far = angle.cos * angle.cos / near
         up = angle.sin >= 0
         # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
-        below_one = self._gaps[0] + lam * where(up, far, near)
-        above_minus_one = self._gaps[1] + lam * where(up, near, far)
+        below_one = gaps[0] + lam * where(up, far, near)
+        above_minus_one = gaps[1] + lam * where(up, near, far)
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
 
     def coupler_at(self, angle: CrankAngle) -> Turning:
@@ -218,10 +209,6 @@ class SliderCrank(Mechanism):
             across=(0.0, -1.0),
         )
 
-    def _of_radius_1(self, formula: Callable[..., Any], angle: CrankAngle) -> Any:
-        """Return R times a formula for the straight slider-crank of R = 1."""
-        return self.crank * formula(angle.sin, angle.cos, self.rod_angle(angle)[1], self.lam, self.rho)
-
     @cached_property
     def _start(self) -> CrankAngle:
         """The inner dead centre, with the rod there."""
@@ -233,14 +220,17 @@ class SliderCrank(Mechanism):
 
         With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
         """
-        if self._straight:
-            return self._of_radius_1(formulas.displacement_factor, angle)
+        if self.straight:  # (1 − cos φ) + (1 − cos ψ)/λ, as a sum of positive terms
+            beyond = self.lam * (angle.sin * angle.sin) / (1 + self.rod_angle(angle)[1])
+            return self.crank * (angle.versine + beyond)
         start = self._start
         sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
-        half_sin, half_cos = _half_angle(
-            angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
-        )
+        # sine and cosine of half of θ, both perhaps with the other sign, which their products do not see
+        sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
+        large = sqrt((1 + abs(cos)) / 2)
+        small = sin / (2 * large)
+        half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
         middle_sin = start.sin * half_cos + start.cos * half_sin
         middle_cos = start.cos * half_cos - start.sin * half_sin
         bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
@@ -248,29 +238,35 @@ class SliderCrank(Mechanism):
 
     def remaining(self, angle: CrankAngle) -> Any:
         """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
-        if not self._straight:
+        if not self.straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
         return self.crank * (angle.vercosine * (1 - lead))
 
+    def _lead(self, angle: CrankAngle, cos_psi: Any) -> Any:
+        """Return cos ψ + λ cos φ without offset; for cos φ < 0 as ρ/(cos ψ − λ cos φ), where ρ = 1 − λ²."""
+        sum_of_both = cos_psi + self.lam * abs(angle.cos)
+        return where(angle.cos >= 0, sum_of_both, self._gaps[0] * self._gaps[2] / sum_of_both)
+
     def slope(self, angle: CrankAngle) -> Any:
-        """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288."""
-        if self._straight:
-            return self._of_radius_1(formulas.velocity_factor, angle)
+        """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288; without offset R sin φ (cos ψ + λ cos φ)/cos ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
+        if self.straight:
+            return self.crank * (angle.sin * self._lead(angle, cos_psi) / cos_psi)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
     def curvature(self, angle: CrankAngle) -> Any:
-        """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m."""
-        if self._straight:
-            return self._of_radius_1(formulas.acceleration_factor, angle)
-        sin_psi, cos_psi = self.rod_angle(angle)
-        bend = self.lam * (angle.cos * angle.cos) / (cos_psi * cos_psi * cos_psi)
-        return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
+        """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m: exact, where R 291 is its first-order form.
 
-    def of_book(self, angle: CrankAngle, formula: Callable[[Any, Any, Any], Any]) -> Any | None:
-        """Return R times what a formula of the book has for sin φ, cos φ and λ, in m; None with an offset."""
-        return self.crank * formula(angle.sin, angle.cos, self.lam) if self._straight else None
+        Without offset as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ ρ sin²φ/cos³ψ], whose terms have one sign for cos φ < 0.
+        """
+        sin_psi, cos_psi = self.rod_angle(angle)
+        cube = cos_psi * cos_psi * cos_psi
+        if self.straight:
+            bend = self.lam * self._gaps[0] * self._gaps[2] * (angle.sin * angle.sin) / cube
+            return self.crank * (angle.cos * self._lead(angle, cos_psi) / cos_psi - bend)
+        bend = self.lam * (angle.cos * angle.cos) / cube
+        return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
 
     def radial(self, angle: CrankAngle) -> Any:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""
@@ -294,25 +290,6 @@ class SliderCrank(Mechanism):
         lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
         return np.asarray(lead + sweep if outstroke else 360.0 + lead - sweep)
 
-    def velocity_extremes(self) -> tuple[Extreme, ...]:
-        """Return ±c_max/ω in m in closed form, straight slider-crank only."""
-        if not self._straight:
-            return ()
-        peak = formulas.velocity_peak(self.lam, self.rho)
-        value = self.crank * peak.value
-        return Extreme(value, peak.degrees), Extreme(-value, 360 - peak.degrees)
-
-    def acceleration_extremes(self) -> tuple[Extreme, ...]:
-        """Return b/ω² in m at its extremes: both dead centres (R 292, 294) and the dip inside the stroke, if any."""
-        if not self._straight:
-            return ()
-        found = [Extreme(self.crank * (1 + self.lam), 0.0), Extreme(-self.crank * self._gaps[0], 180.0)]
-        dip = formulas.acceleration_dip(self.lam, self.rho)
-        if dip:
-            value = self.crank * dip.value
-            found += [Extreme(value, dip.degrees), Extreme(value, 360 - dip.degrees)]
-        return tuple(found)
-
 
 def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     """Return a crank whose block slides in an upright yoke, and the rod that this moves."""
@@ -335,13 +312,6 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
         toward=(-1.0, 0.0),
         across=(0.0, -1.0),
     )
-
-
-def _half_angle(sin: Any, cos: Any) -> tuple[Any, Any]:
-    """Return sine and cosine of half an angle; both may carry the other sign, which their products do not see."""
-    large = sqrt((1 + abs(cos)) / 2)
-    small = sin / (2 * large)
-    return where(cos >= 0, small, large), where(cos >= 0, large, small)
 
 
 def _crank_of_stroke(given: Mapping[str, Any]) -> Any:

@@ -9,18 +9,25 @@ from typing import Any, ClassVar, NamedTuple
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
-from kurbel.mechanisms import PIN, SHAFT, KeyOffer, Mechanism, Offer, Sketch, Turning, finite, on_circle
-from kurbel.mechanisms.offers import (
+from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
+    PIN,
+    SHAFT,
     SWING_OFFERS,
     SWING_VALUES,
+    KeyOffer,
+    Mechanism,
+    Offer,
+    Sketch,
+    Turning,
+    finite,
+    on_circle,
     pin_diameter,
     pin_length,
     pin_pressure,
 )
 from kurbel.numerics.arithmetic import bearing, sqrt, where
-from kurbel.numerics.extreme import Extreme
 
 
 class Lever(NamedTuple):
@@ -267,13 +274,6 @@ class SlottedLever(Mechanism):
             return lever.curvature
         ram = self._ram(lever.sin, lever.cos)
         return self._end * (lever.curvature * ram.lead - lever.slope * lever.slope * ram.bend)
-
-    def velocity_extremes(self) -> tuple[Extreme, ...]:
-        """Return dx/dφ at 0°, R_l r/(e + r), R 304, and at 180°, −R_l r/|e − r|, R 305; fork head only."""
-        if not math.isinf(self.link) or not self.slides:
-            return ()
-        crank, frame, gap = self._shares
-        return Extreme(self._end * crank / (crank + frame), 0.0), Extreme(-self._end * crank / abs(gap), 180.0)
 
     # the block on the crank pin
 

@@ -45,27 +45,13 @@ def bearing(sin: Any, cos: Any) -> Any:
     return np.degrees(np.arctan2(sin, cos))
 
 
-def sin(value: Any) -> Any:
-    """Return the sine of a float or an array in radians."""
-    return _of(value, "sin", "sin")
-
-
-def arcsin(value: Any) -> Any:
-    """Return the arc of a sine, a float or an array, in radians."""
-    return _of(value, "asin", "arcsin")
-
-
 def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
-    return _of(value, "ulp", "spacing")
-
-
-def _of(value: Any, of_float: str, of_array: str) -> Any:
     if isinstance(value, (float, int)):
-        return getattr(math, of_float)(value)
+        return math.ulp(value)
     import numpy as np
 
-    return getattr(np, of_array)(value)
+    return np.spacing(value)
 
 
 def every(condition: Any) -> bool:

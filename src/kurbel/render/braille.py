@@ -8,9 +8,9 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.render import Look
-from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, looks_of
+from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, looks_of, ticks
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, width
-from kurbel.report.picture import Curve, Panel, Picture
+from kurbel.report.picture import Panel, Picture
 
 # lengths in columns; a row is as high as two columns are wide
 TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5, shortest=13.5, tallest=59.5)
@@ -22,6 +22,8 @@ LETTERS = "*+ox#@"
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of the dots of a character, four down and two across."""
+_ROLES = {"member": "curve0", "arrow": "curve1"}
+"""How parts of mechanisms are drawn; others are thin lines."""
 
 
 class Canvas:
@@ -31,22 +33,21 @@ class Canvas:
     """
 
     def __init__(self, columns: int, rows: int, braille: bool) -> None:
-        self.columns, self.rows, self.braille = columns, rows, braille
-        self.fine = np.array([2, 2] if braille else [1, 0.5])  # dots to a unit across and down
+        self.columns, self.braille = columns, braille
         self._bits = np.zeros((rows, columns), dtype=int)
         self._letters = [[" "] * columns for _ in range(rows)]
         self._roles = [["text"] * columns for _ in range(rows)]
 
     def line(self, x: Array, y: Array, role: str) -> None:
         """Draw a line through places (n,), counted in dots from the upper left corner; what is beyond is cut off."""
-        down, across = (4 * self.rows, 2 * self.columns) if self.braille else (self.rows, self.columns)
+        down, across = (4, 2) if self.braille else (1, 1)
         columns, rows = (np.rint(one).astype(int) for one in dense(x, y))
-        inside = (columns >= 0) & (columns < across) & (rows >= 0) & (rows < down)
+        height, wide = self._bits.shape
+        inside = (columns >= 0) & (columns < across * wide) & (rows >= 0) & (rows < down * height)
         columns, rows = columns[inside], rows[inside]
         if self.braille:
             np.bitwise_or.at(self._bits, (rows // 4, columns // 2), _DOTS[rows % 4, columns % 2])
-            columns, rows = columns // 2, rows // 4
-        for column, row in set(zip(columns.tolist(), rows.tolist())):
+        for column, row in set(zip((columns // across).tolist(), (rows // down).tolist())):
             if not self.braille and (role != "rule" or self._letters[row][column] == " "):
                 self._letters[row][column] = "." if role == "rule" else LETTERS[int(role[-1])]
             self._roles[row][column] = role
@@ -67,9 +68,9 @@ class Canvas:
         """Return the rows, neighbours of one role as one piece."""
         found = []
         for bits, letters, roles in zip(self._bits.tolist(), self._letters, self._roles):
-            alike = groupby(zip(bits, letters, roles), key=itemgetter(2))
-            texts = ((role, [chr(_BLANK + dots) if dots else sign for dots, sign, _ in each]) for role, each in alike)
-            found.append(tuple(Piece("".join(text), role) for role, text in texts))
+            signs = zip((chr(_BLANK + dots) if dots else sign for dots, sign in zip(bits, letters)), roles)
+            alike = groupby(signs, key=itemgetter(1))
+            found.append(tuple(Piece("".join(sign for sign, _ in each), role) for role, each in alike))
         return found
 
 
@@ -85,60 +86,50 @@ def braille(picture: Picture, look: Look) -> Iterator[Line]:
 def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     has_dots = look.has("⣿")
     dot = np.array([0.5, 0.5] if has_dots else [1.0, 2.0])  # width and height of one
-    side, needed, ticks = -1, 0, []  # columns of the texts at the left, which are others in a narrower frame
+    side, needed, up = -1, 0, []  # columns of the texts at the left, which are others in a narrower frame
     while side < needed:
         side = needed
         frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
-        ticks = [] if panel.plain else frame.ticks_up(int(tall / 4))
-        needed = max((width(text) + 1 for _, text in ticks), default=0)
+        up = [] if panel.plain else ticks(panel.y, frame.y, int(tall / 4), look)
+        needed = max((width(text) + 1 for _, text in up), default=0)
     canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
     _draw(canvas, frame, dot)
     axis = "" if panel.plain else axis_text(panel.y, look)
     yield from (line(one) for one in folded("   ".join(filter(None, (look.text(panel.title), axis))), wide))
+    rows = canvas.lines()
     if panel.plain:
-        rows = canvas.lines()
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
         yield from rows[used[0] : used[-1] + 1]
         return
-    at = {int(place // 2): text for place, text in ticks}
-    for number, row in enumerate(canvas.lines()):
+    at = {int(place // 2): text for place, text in up}
+    for number, row in enumerate(rows):
         yield (*line(padded(at.get(number, ""), side - 1, True) + " ", "unit"), *row)
-    yield from _below(frame, side, canvas.columns)
+
+    # the axis below, its ticks, and what runs along it
+    rule, under = [look.text("─")] * canvas.columns, [" "] * canvas.columns
+    for place, left, text in frame.ticks_across(max(2, canvas.columns // 10), 0.0, canvas.columns):
+        rule[int(place)] = "┴" if look.has("┴") else "+"
+        under[round(left) : round(left) + len(text)] = text
+    yield line(" " * side + "".join(rule), "rule")
+    yield line(" " * side + "".join(under).rstrip(), "unit")
+    yield line(padded(axis_text(panel.x, look), wide, True), "unit")
 
 
 def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
     """Draw curves, or bars where there are none, with their labels; areas between curves are left blank."""
     panel = frame.panel.at_moment(0)
-    drawn = [(curve, _role(curve, look)) for curve, look in zip(panel.curves, looks_of(panel)) if curve.kind != "fixed"]
+    drawn = []
+    for curve, look in zip(panel.curves, looks_of(panel)):
+        role = f"curve{look}" if curve.kind in ("line", "dots") else _ROLES.get(curve.kind, "rule")
+        drawn += [(role, frame.place(*piece)) for piece in (*curve.pieces(), *curve.jumps()) if curve.kind != "fixed"]
     # the lines to compare with first, so that curves are over them
-    for curve, role in sorted(drawn, key=lambda one: one[1] != "rule"):
-        for x, y in (*curve.pieces(), *curve.jumps()):
-            places = frame.place(x, y)
-            canvas.line(places.real / dot[0], places.imag / dot[1], role)
+    for role, places in sorted(drawn, key=lambda one: one[0] != "rule"):
+        canvas.line(places.real / dot[0], places.imag / dot[1], role)
     for shade in () if panel.curves else panel.shades:
-        left, right_ = frame.x.place(shade.x[[0, -1]]) / dot[0]
+        start, end = frame.x.place(shade.x[[0, -1]]) / dot[0]
         ends = frame.y.place(np.array([shade.low[0], shade.high[0]])) / dot[1]
-        for place in np.arange(np.ceil(left), right_, 1 if shade.gain else 2):
+        for place in np.arange(np.ceil(start), end, 1 if shade.gain else 2):
             canvas.line(np.full(2, place), ends, "curve0" if shade.gain else "curve1")
     for label in frame.labels(named=True):
         role = "head" if label.look is None else f"curve{label.look}"
         canvas.write(round(label.left), round(label.top / 2), label.text, role)
-
-
-def _role(curve: Curve, look: int) -> str:
-    """Return the role in which a terminal draws a curve."""
-    if curve.kind in ("line", "dots"):
-        return f"curve{look}"
-    return {"member": "curve0", "arrow": "curve1"}.get(curve.kind, "rule")
-
-
-def _below(frame: PanelFrame, side: int, columns: int) -> Iterator[Line]:
-    """Yield the axis below a panel, its ticks, and what runs along it."""
-    look = frame.look
-    rule, under = [look.text("─")] * columns, [" "] * columns
-    for place, left, text in frame.ticks_across(max(2, columns // 10), 0.0, columns):
-        rule[int(place)] = "┴" if look.has("┴") else "+"
-        under[round(left) : round(left) + len(text)] = text
-    yield line(" " * side + "".join(rule), "rule")
-    yield line(" " * side + "".join(under).rstrip(), "unit")
-    yield line(padded(axis_text(frame.panel.x, frame.look), side + columns, True), "unit")

@@ -8,13 +8,14 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import islice
 from shutil import copyfile, get_terminal_size
 from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Line, width
+from kurbel.render.text import Line
 
 _MOST_COLOURED_LINES = 400
 STYLES = {
@@ -57,9 +58,7 @@ def write_coloured(page: Iterable[Line], look: Look) -> bool:
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return False
     lines = list(islice(page, _MOST_COLOURED_LINES + 1))
-    tables = (one for one in lines if any(piece.role in ("rule", "head") for piece in one))
-    too_wide = look.width is not None and any(sum(width(piece.text) for piece in one) > look.width for one in tables)
-    if len(lines) > _MOST_COLOURED_LINES or too_wide:
+    if len(lines) > _MOST_COLOURED_LINES:
         return False
     from rich.console import Console  # takes longer to load than most tables to print
     from rich.text import Text
@@ -86,7 +85,11 @@ def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None 
     Raises UsageError where it cannot be written.
     """
     if file_name in (None, "-"):
-        encoding = encoding or _stdout().encoding
+        stdout = _stdout()
+        if not isinstance(stdout, TextIOWrapper):  # that of a notebook has no bytes below it
+            stdout.writelines(texts)
+            return
+        encoding = encoding or stdout.encoding
     # one byte order mark at most
     encoder = codecs.getincrementalencoder(encoding or "utf-8")("replace")
     with opened(file_name) as file:

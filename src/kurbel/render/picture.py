@@ -1,7 +1,7 @@
 """Where everything of a panel is placed, on paper and in a terminal alike: scales, ticks, and labels on free ground."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,16 +10,16 @@ from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
 from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
 from kurbel.render.text import width
-from kurbel.report.picture import Axis, Curve, Figure, Panel, Picture, Shade, Words
+from kurbel.report.picture import Axis, Figure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 _MOST_MARKED = 12
-_AROUND = np.array([-1.0, 0.0, 1.0])
 LOOKS = 6
 """Different colours and strokes of curves."""
+
 
 # texts
 
@@ -36,15 +36,12 @@ def axis_text(axis: Axis, look: Look) -> str:
 
 def figure_text(figure: Figure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
-    text, place = symbol(figure.name, look), ""
-    if figure.at_deg is not None:
-        place = f"{angle(figure.at_deg, look.comma)}{look.text('°')}"
+    at = "" if figure.at_deg is None else angle(figure.at_deg, look.comma) + look.text("°")
     if figure.value is None:
-        return f"{text} {place}".rstrip()
+        return f"{symbol(figure.name, look)} {at}".rstrip()
     number, power = single(figure.value, look.digits, look.comma)
-    number = look.counted(_signed(number, look), power)
-    text = f"{text} {number} {look.unit(figure.unit)}".rstrip()
-    return f"{text}, {place}" if place else text
+    parts = symbol(figure.name, look), look.counted(_signed(number, look), power), look.unit(figure.unit)
+    return ", ".join(filter(None, (" ".join(filter(None, parts)), at)))
 
 
 def picture_text(picture: Picture, look: Look) -> str:
@@ -79,29 +76,9 @@ class AxisScale(NamedTuple):
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
-    def ticks(self, axis: Axis, most: int) -> list[float]:
-        """Return the values, at most so many or a few more, at which an axis has ticks."""
-        low, high = sorted((self.low, self.high))
-        if axis.names:
-            return [float(number) for number in range(len(axis.names)) if low <= number <= high]
-        if self.log:
-            powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
-            return [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
-        least = (high - low) / max(most, 1)
-        power = 10.0 ** math.floor(math.log10(least))
-        steps = [step for step in _DEGREES if step >= least > 10.0] if axis.unit == "deg" else []
-        step = (steps or [one * power for one in _STEPS if one * power >= least * (1 - 1e-9)])[0]
-        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-        return [float(f"{number * step:.12g}") for number in range(first, last + 1)]
 
-
-def scales(panel: Panel) -> tuple[AxisScale, AxisScale]:
-    """Return the scales from 0 to 1 of both axes of a panel, which hold all that is drawn, with air around it."""
-    across, up = panel.places
-    return _scale(panel.x, across, panel.plain), _scale(panel.y, up, True)
-
-
-def _scale(axis: Axis, drawn: Sequence[Array], air: bool) -> AxisScale:
+def scale_of(axis: Axis, drawn: list[Array], air: bool) -> AxisScale:
+    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it."""
     every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
     low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
     if axis.log:
@@ -113,17 +90,29 @@ def _scale(axis: Axis, drawn: Sequence[Array], air: bool) -> AxisScale:
     return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
 
 
-def tick_texts(axis: Axis, values: list[float], look: Look) -> list[str]:
-    """Return what is written at the ticks of an axis, numbers with the decimals that all of them need."""
+def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
+    """Return the ticks of an axis, at most so many or a few more: place and text, with the decimals that all need."""
+    low, high = sorted((scale.low, scale.high))
     if axis.names:
-        return [axis.names[int(value)] for value in values]
-    if axis.log:
-        return [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
-    if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
-        texts = [decimal(f"{value:.4g}", look.comma) for value in values]
+        values = [float(number) for number in range(len(axis.names)) if low <= number <= high]
+        texts = [axis.names[int(value)] for value in values]
+    elif scale.log:
+        powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
+        values = [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
+        texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
     else:
-        texts = [cell(value, angle_scale(values), look.comma) for value in values]
-    return [_signed(text, look) for text in texts]
+        least = (high - low) / max(most, 1)
+        power = 10.0 ** math.floor(math.log10(least))
+        steps = [step for step in _DEGREES if step >= least > 10.0] if axis.unit == "deg" else []
+        step = (steps or [one * power for one in _STEPS if one * power >= least * (1 - 1e-9)])[0]
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+        values = [float(f"{number * step:.12g}") for number in range(first, last + 1)]
+        if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
+            texts = [decimal(f"{value:.4g}", look.comma) for value in values]
+        else:
+            texts = [cell(value, angle_scale(values), look.comma) for value in values]
+        texts = [_signed(text, look) for text in texts]
+    return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
 # a panel in its place
@@ -169,12 +158,14 @@ class PanelFrame:
 
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
-        x, y = scales(panel)
+        across, up = panel.places
+        x, y = scale_of(panel.x, across, panel.plain), scale_of(panel.y, up, True)
         if panel.equal:
-            across, up = x.high - x.low, y.high - y.low
-            tall = min(max(wide * up / across, medium.shortest), medium.tallest)
-            spare = max(across / wide, up / tall) * np.array([wide, tall]) - (across, up)
-            x, y = (one._replace(low=one.low - more / 2, high=one.high + more / 2) for one, more in zip((x, y), spare))
+            sizes = np.array([x.high - x.low, y.high - y.low])
+            tall = min(max(wide * sizes[1] / sizes[0], medium.shortest), medium.tallest)
+            room = np.array([wide, tall])
+            spare = (max(sizes / room) * room - sizes) / 2
+            x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
@@ -186,45 +177,40 @@ class PanelFrame:
 
         start, end: how far texts may reach. Of two that meet the outer one is written.
         """
-        values = self.x.ticks(self.panel.x, most)
-        texts = tick_texts(self.panel.x, values, self.look)
+        letter, every = self.medium.letter, ticks(self.panel.x, self.x, most, self.look)
         found: list[tuple[float, float, str]] = []
         spans: list[tuple[float, float]] = []
-        for k in sorted(range(len(values)), key=lambda k: min(k, len(values) - 1 - k)):
-            place, wide = float(self.x.place(values[k])), width(texts[k]) * self.medium.letter
+        for k in sorted(range(len(every)), key=lambda k: min(k, len(every) - 1 - k)):
+            place, text = every[k]
+            wide = width(text) * letter
             left = max(min(place - wide / 2, end - wide), start)
-            if free := all(left >= right or left + wide <= other for other, right in spans):
-                spans.append((left - self.medium.letter, left + wide + self.medium.letter))
-            found.append((place, left, texts[k] if free else ""))
+            if all(left >= right or left + wide <= other for other, right in spans):
+                spans.append((left - letter, left + wide + letter))
+            else:
+                text = ""
+            found.append((place, left, text))
         return sorted(found)
-
-    def ticks_up(self, most: int) -> list[tuple[float, str]]:
-        """Return the ticks of the axis at the left: place and text."""
-        values = self.y.ticks(self.panel.y, most)
-        texts = tick_texts(self.panel.y, values, self.look)
-        return [(float(self.y.place(value)), text) for value, text in zip(values, texts)]
 
     def labels(self, named: bool) -> list[Label]:
         """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.
 
         Each is on the nearest ground that no other label has and no curve crosses; without room it is left out.
         """
-        panel, look, medium = self.panel.at_moment(0), self.look, self.medium
-        tracks = [self._track(curve) for curve in panel.curves]
-        faint = [curve for curve in panel.curves if curve.kind == "faint" and curve.name.symbol]
-        wanted = [Label(symbol(one.name, look), complex(self.place(one.x[-1], one.y[-1]))) for one in faint]
-        wanted += self._names(panel, tracks) if named else []
-        points = [complex(self.place(mark.x, mark.y)) for mark in panel.marks]
-        marks = [Label(figure_text(one.figure, look), point, led=True) for one, point in zip(panel.marks, points)]
-        wanted += marks[:_MOST_MARKED]
-        wanted += self._works(panel.shades)
+        panel, (wide, tall), dot = self.panel.at_moment(0), self.medium.grain, self.medium.dot
+        # places along each curve, no farther apart than a quarter of a cell
+        tracks = []
+        for curve in panel.curves:
+            places = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps()) if len(piece[0])]
+            steps = [dense(one.real / wide * 4, one.imag / tall * 4) for one in places]
+            tracks.append(np.concatenate([x * wide / 4 + 1j * y * tall / 4 for x, y in steps]))
+        wanted = list(self._wanted(panel, tracks, named))
+        reach = np.add.outer(np.array([-1.0, 0.0, 1.0]), np.array([-1j, 0j, 1j])).ravel() * dot
+        marks = [self.place(mark.x, mark.y) + reach for mark in panel.marks]
 
         # on a grid: which cells curves cross, and which labels and marks have
-        wide, tall = medium.grain
-        shape = math.ceil((self.tall - medium.dot) / tall), math.ceil((self.wide - medium.dot) / wide)
+        shape = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)
         crossed, taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
-        reach = np.add.outer(_AROUND, 1j * _AROUND).ravel() * medium.dot
-        for grid, places in ((crossed, tracks), (taken, [point + reach for point in points])):
+        for grid, places in ((crossed, tracks), (taken, marks)):
             for one in places:
                 row, column = np.floor(one.imag / tall).astype(int), np.floor(one.real / wide).astype(int)
                 inside = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
@@ -232,35 +218,33 @@ class PanelFrame:
         placed = [self._on_free_ground(label, crossed, taken) for label in wanted]
         return [label for label in placed if label]
 
-    def _track(self, curve: Curve) -> ComplexArray:
-        """Return places along a curve, no farther apart than a quarter of a cell."""
-        across, down = (size / 4 for size in self.medium.grain)
-        pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
-        found = [dense(one.real / across, one.imag / down) for one in pieces if one.size]
-        return np.concatenate([x * across + 1j * y * down for x, y in found])
-
-    def _names(self, panel: Panel, tracks: list[ComplexArray]) -> Iterator[Label]:
-        """Yield the symbol of each force, and of each of several curves where it is farthest from the others."""
+    def _wanted(self, panel: Panel, tracks: list[ComplexArray], named: bool) -> Iterator[Label]:
+        """Yield the labels of faint lines, of forces and curves, marks and shades, not placed yet."""
+        look = self.look
         for curve in panel.curves:
-            if curve.kind == "arrow":
-                yield Label(symbol(curve.name, self.look), complex(self.place(curve.x[1], curve.y[1])))
-        tracks = [track[::4] for track in tracks]
-        lines = [one for one in zip(panel.curves, looks_of(panel), tracks) if one[0].kind in ("line", "dots")]
-        for curve, look, own in lines if len(lines) > 1 else ():
+            if curve.kind == "faint" and curve.name.symbol:
+                yield Label(symbol(curve.name, look), complex(self.place(curve.x[-1], curve.y[-1])))
+            if curve.kind == "arrow" and named:
+                yield Label(symbol(curve.name, look), complex(self.place(curve.x[1], curve.y[1])))
+
+        # of several curves each where it is farthest from the others
+        thin = [track[::4] for track in tracks]
+        lines = [one for one in zip(panel.curves, looks_of(panel), thin) if one[0].kind in ("line", "dots")]
+        for curve, number, own in lines if named and len(lines) > 1 else ():
             others = np.concatenate([track for other, _, track in lines if other is not curve])
             farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
-            yield Label(symbol(curve.name, self.look), complex(own[farthest]), look)
+            yield Label(symbol(curve.name, look), complex(own[farthest]), number)
 
-    def _works(self, shades: Sequence[Shade]) -> Iterator[Label]:
-        """Yield what is written into shades: their figures, or the names alone where not each figure has the room."""
-        written = [(shade, shade.figure) for shade in shades if shade.figure]
-        texts = [figure_text(figure, self.look) for _, figure in written]
-        rooms = [np.ptp(self.x.place(shade.x)) for shade, _ in written]
-        if any(width(text) * self.medium.letter > room for text, room in zip(texts, rooms)):
-            texts = [symbol(figure.name, self.look) for _, figure in written]
-        for (shade, _), text in zip(written, texts):
+        for mark in panel.marks[:_MOST_MARKED]:
+            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=True)
+
+        # the figures of shades, or their names alone where not each figure has the room
+        written = [(shade, shade.figure, figure_text(shade.figure, look)) for shade in panel.shades if shade.figure]
+        roomy = all(width(text) * self.medium.letter <= np.ptp(self.x.place(one.x)) for one, _, text in written)
+        for shade, figure, text in written:
             widest = int(np.argmax(np.abs(shade.high - shade.low)))
-            yield Label(text, complex(self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)))
+            middle = self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)
+            yield Label(text if roomy else symbol(figure.name, look), complex(middle))
 
     def _on_free_ground(self, label: Label, crossed: Indices, taken: Indices) -> Label | None:
         """Return a label in its place, whose cells are then taken, or None where labels leave no room for it.

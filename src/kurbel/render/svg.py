@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.arrays import ComplexArray
 from kurbel.render import Look
-from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol
+from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol, ticks
 from kurbel.render.text import folded, width
 from kurbel.report.picture import Curve, Picture
 
@@ -62,7 +62,6 @@ SHAPES: tuple[tuple[complex, ...], ...] = (
 
 def css(dark: bool = True) -> str:
     """Return the style sheet of pictures; dark: also for dark screens, and for readers who want nothing to move."""
-    still = "svg .moving{display:none}svg .still{display:inline}"
     always = (
         'text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}'
         ".m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}"
@@ -71,39 +70,34 @@ def css(dark: bool = True) -> str:
     for number, stroke in enumerate(STROKES):
         dashes = f";stroke-dasharray:{stroke.dashes}" if stroke.dashes else ""
         always += f".k{number}{{stroke-width:1.6;fill:none{dashes}}}.j{number}{{stroke-width:1.2;fill:none}}"
+    light, at_night = (
+        f".s{{background:{PAPER[mode]}}}text{{fill:{INK[mode]}}}.halo{{stroke:{PAPER[mode]}}}.f{{stroke:{FAINT[mode]}}}"
+        f".g{{stroke:{GRID[mode]}}}.x,.m,.o,.b,.i{{stroke:{INK[mode]}}}.o{{fill:{PAPER[mode]}}}.b{{fill:{GRID[mode]}}}"
+        f".i{{fill:{INK[mode]}}}.p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
+        + "".join(f".k{k},.j{k}{{stroke:{one[mode]}}}.c{k}{{fill:{one[mode]}}}" for k, one in enumerate(STROKES))
+        for mode in (0, 1)
+    )
     if not dark:
-        return f"{always}{_colours(0)}"
+        return f"{always}{light}"
+    still = "svg .moving{display:none}svg .still{display:inline}"
     return (
-        f"{always}{_colours(0)}svg .still{{display:none}}@media (prefers-reduced-motion:reduce){{{still}}}"
-        f"@media print{{{still}}}@media screen and (prefers-color-scheme:dark){{{_colours(1)}}}"
+        f"{always}{light}svg .still{{display:none}}@media (prefers-reduced-motion:reduce){{{still}}}"
+        f"@media print{{{still}}}@media screen and (prefers-color-scheme:dark){{{at_night}}}"
     )
-
-
-def _colours(mode: int) -> str:
-    ink, paper, faint, grid = INK[mode], PAPER[mode], FAINT[mode], GRID[mode]
-    rules = (
-        f".s{{background:{paper}}}text{{fill:{ink}}}.halo{{stroke:{paper}}}.f{{stroke:{faint}}}.g{{stroke:{grid}}}"
-        f".x,.m,.o,.b,.i{{stroke:{ink}}}.o{{fill:{paper}}}.b{{fill:{grid}}}.i{{fill:{ink}}}"
-        f".p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
-    )
-    for number, stroke in enumerate(STROKES):
-        colour = (stroke.light, stroke.dark)[mode]
-        rules += f".k{number},.j{number}{{stroke:{colour}}}.c{number}{{fill:{colour}}}"
-    return rules
 
 
 def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> str:
     """Return a file with pictures one below the other; paper: as what can neither be dark nor move."""
-    drawn = [(picture, *_drawn(picture, look, paper)) for picture in pictures]
-    title = escape(" ".join(picture_text(picture, look) for picture, _, _ in drawn))
-    height, parts = 0.0, []
-    for _, tall, items in drawn:
-        parts.append(f'<g transform="translate(0 {height:g})">\n{items}</g>\n')
+    height, parts, texts = 0.0, "", []
+    for picture in pictures:
+        tall, items = _drawn(picture, look, paper)
+        texts.append(picture_text(picture, look))
+        parts += f'<g transform="translate(0 {height:g})">\n{items}</g>\n'
         height += tall
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="s" viewBox="0 0 {WIDTH:g} {height:g}" width="{WIDTH:g}" '
-        f'height="{height:g}" role="img">\n<title>{title}</title>\n'
-        f"<style>{css(not paper)}</style>\n{''.join(parts)}</svg>\n"
+        f'height="{height:g}" role="img">\n<title>{escape(" ".join(texts))}</title>\n'
+        f"<style>{css(not paper)}</style>\n{parts}</svg>\n"
     )
 
 
@@ -120,15 +114,16 @@ def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
     items = "".join(_text(8, 16 + 17 * number, text, "h", plain=True) for number, text in enumerate(heading))
     top, each = 7.0 + 17 * len(heading), WIDTH / picture.across
     tall = _TALL if len(picture.panels) < 3 else _SHORT
-    for first in range(0, len(picture.panels), picture.across):
-        below = top
-        for number, panel in enumerate(picture.panels[first : first + picture.across]):
-            left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
-            frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
-            inside = "".join(_panel(frame, left, paper))
-            items += f'<g transform="translate({number * each + left:g} {top + above:g})">\n{inside}</g>\n'
-            below = max(below, top + above + frame.tall + under)
-        top = below + 4
+    below = top
+    for number, panel in enumerate(picture.panels):
+        if number % picture.across == 0:
+            top, across = below + 4 * (number > 0), 0.0
+        left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
+        frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
+        inside = "".join(_panel(frame, left, paper))
+        items += f'<g transform="translate({across + left:g} {top + above:g})">\n{inside}</g>\n'
+        below, across = max(below, top + above + frame.tall + under), across + each
+    top = below + 4
     for number, (name, mark) in enumerate(picture.legend):
         left, base = 12 + number % 4 * (WIDTH - 12) / 4, top + 14 + number // 4 * 16
         items += _shape(f"c{mark % LOOKS}", _dot(complex(left, base - 4), mark))
@@ -143,8 +138,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     """
     panel = frame.panel
     if not panel.plain:
-        yield from _axes(frame)
-        yield from _head(frame, -left + 12)
+        yield from _around(frame, -left + 12)
     for shade in panel.shades:
         low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
         yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
@@ -152,83 +146,76 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     moving = ""
     for curve, look in zip(panel.curves, looks_of(panel)):
         if curve.x.ndim == 1 or paper:
-            yield _curve(frame, curve, look, moving=False)
+            yield _curve(frame, [curve.at_moment(0)], look)
         else:
-            moving += _curve(frame, curve, look, moving=True)
-            resting += _curve(frame, curve, look, moving=False)
+            moving += _curve(frame, [curve.at_moment(moment) for moment in range(len(curve.x))], look)
+            resting += _curve(frame, [curve.at_moment(0)], look)
     yield f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n' if moving else resting
     labels = frame.labels(named=False)
     yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
-    yield "".join(_shape("o", _circle(complex(frame.place(mark.x, mark.y)), 2.6)) for mark in panel.marks)
+    yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
 
 
-def _axes(frame: PanelFrame) -> Iterator[str]:
-    """Yield thin lines with their values, and what runs along the lower axis."""
-    wide, tall = frame.wide, frame.tall
-    across, up = frame.ticks_across(max(3, int(wide / 64)), -50.0, wide + 14), frame.ticks_up(int(tall / 30))
+def _around(frame: PanelFrame, left: float) -> Iterator[str]:
+    """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
+    panel, look, wide, tall = frame.panel, frame.look, frame.wide, frame.tall
+    across = frame.ticks_across(max(3, int(wide / 64)), -50.0, wide + 14)
+    up = ticks(panel.y, frame.y, int(tall / 30), look)
     lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
     lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
     yield _shape("g", "".join(lines)) + _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))
     yield "".join(_text(start, tall + 14, text, plain=True) for _, start, text in across if text)
     yield "".join(_text(-6, place + 3.5, text, anchor="end") for place, text in up)
-    yield _text(wide, tall + 26, axis_text(frame.panel.x, frame.look), anchor="end")
+    yield _text(wide, tall + 26, axis_text(panel.x, look), anchor="end")
 
-
-def _head(frame: PanelFrame, left: float) -> Iterator[str]:
-    """Yield what is above a panel: its title, what runs upward, and which stroke is which quantity."""
-    panel, look = frame.panel, frame.look
     for text, plain in ((look.text(panel.title), True), (axis_text(panel.y, look), False)):
         if text:
             yield _text(left, -10, text, plain=plain)
             left += PAPER_SIZES.letter * width(text) + 20
-    lines = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
-    for curve, number in lines if len(lines) > 1 else ():
+    named = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
+    for curve, number in named if len(named) > 1 else ():
         name = symbol(curve.name, look)
-        wide = 46 + PAPER_SIZES.letter * width(name)
-        if left + wide > frame.wide + 16:
+        right = left + 46 + PAPER_SIZES.letter * width(name)
+        if right > wide + 16:
             break
         yield _shape(f"k{number}", _path(np.array([left - 14j, left + 26 - 14j]))) + _text(left + 30, -10, name)
-        left += wide
+        left = right
 
 
-def _curve(frame: PanelFrame, curve: Curve, look: int, moving: bool) -> str:
-    """Return a curve, or a force with its name; moving: through all its moments, else as it is at rest."""
-    moments = [curve.at_moment(moment) for moment in range(len(curve.x) if moving else 1)]
-    outlines = zip(*(_outlines(frame, one, look) for one in moments))
-    shapes = "".join(_shape(look_, path, [one for _, one in loop]) for (look_, path), *loop in outlines)
-    if curve.kind == "arrow":
-        tips = [_arrow(frame.place(one.x, one.y))[1] for one in moments]
-        shapes += _text(tips[0].real, tips[0].imag, symbol(curve.name, frame.look), "halo", "middle", loop=tips[1:])
+def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
+    """Return a curve, or a force with its name, through all moments of its movement, or at its only one."""
+    kind, shape = moments[0].kind, look if moments[0].look is None else moments[0].look
+    outlines: list[list[tuple[str, str]]] = []
+    names: list[complex] = []
+    for curve in moments:
+        pieces = [frame.place(x, y) for x, y in curve.pieces()]
+        lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
+        if kind == "line":
+            jumps = "".join(_path(frame.place(x, y)) for x, y in curve.jumps())
+            outlines.append([(f"k{look}", lines), (f"j{look}", jumps)] if jumps else [(f"k{look}", lines)])
+        elif kind == "dots":
+            dots = "".join(_dot(point, shape) for piece in pieces for point in piece)
+            outlines.append([(f"j{look}", lines), (f"c{look}", dots)])
+        elif kind in ("joint", "fixed"):
+            dots = "".join(_dot(point, 0, 4.0) for point in pieces[0])
+            outlines.append([("o" if kind == "joint" else "i", dots)])
+        elif kind == "arrow":
+            tail, tip = pieces[0]
+            length = abs(tip - tail)
+            along = (tip - tail) / length if length else 0.0
+            neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
+            side = np.array([tail, neck, neck])
+            outlines.append([("c1", _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z")])
+            names.append(tip + 9.0 * along + 3.5j)
+        else:
+            outlines.append([({"member": "m", "block": "b"}.get(kind, "f"), lines)])
+    shapes = "".join(_shape(name, path, [one for _, one in loop]) for (name, path), *loop in zip(*outlines))
+    if names:
+        shapes += _text(
+            names[0].real, names[0].imag, symbol(moments[0].name, frame.look), "halo", "middle", False, names
+        )
     return shapes
-
-
-def _outlines(frame: PanelFrame, curve: Curve, look: int) -> list[tuple[str, str]]:
-    """Return classes of the style with the paths in which a curve is drawn."""
-    pieces = [frame.place(x, y) for x, y in curve.pieces()]
-    lines = "".join(map(_path, map(thinned, pieces) if curve.kind in ("line", "faint") else pieces))
-    if curve.kind == "line":
-        jumps = "".join(_path(frame.place(x, y)) for x, y in curve.jumps())
-        return [(f"k{look}", lines), (f"j{look}", jumps)] if jumps else [(f"k{look}", lines)]
-    if curve.kind == "dots":
-        shape = look if curve.look is None else curve.look
-        return [(f"j{look}", lines), (f"c{look}", "".join(_dot(point, shape) for piece in pieces for point in piece))]
-    if curve.kind in ("joint", "fixed"):
-        return [("o" if curve.kind == "joint" else "i", "".join(_circle(point, 4.0) for point in pieces[0]))]
-    if curve.kind == "arrow":
-        return [("c1", _path(_arrow(pieces[0])[0]) + "Z")]
-    return [({"member": "m", "block": "b"}.get(curve.kind, "f"), lines)]
-
-
-def _arrow(ends: ComplexArray) -> tuple[ComplexArray, complex]:
-    """Return the corners of an arrow from one place to another, and the place of its name."""
-    tail, tip = ends
-    length = abs(tip - tail)
-    along = (tip - tail) / length if length else 0.0
-    size = min(9.0, length)
-    half = np.array([0.8, 0.8, 3.6]) * 1j * along
-    side = np.array([tail, tip - size * along, tip - size * along])
-    return np.concatenate((side + half, [tip], (side - half)[::-1])), tip + 9.0 * along + 3.5j
 
 
 def thinned(places: ComplexArray) -> ComplexArray:
@@ -252,19 +239,17 @@ def _path(places: ComplexArray) -> str:
     return f"{start}l{' '.join([f'{one.real:g} {one.imag:g}' for one in steps])}" if steps else start
 
 
-def _circle(middle: complex, radius: float) -> str:
+def _dot(middle: complex, shape: int, radius: float = 2.4) -> str:
+    """Return the path of a point, as a circle or another figure."""
+    if corners := SHAPES[shape % len(SHAPES)]:
+        return _path(np.array([middle + radius * one for one in corners])) + "Z"
     x, y, r = _number(middle.real - radius), _number(middle.imag), f"{radius:g}"
     return f"M{x} {y}a{r} {r} 0 1 0 {2 * radius:g} 0a{r} {r} 0 1 0-{2 * radius:g} 0Z"
 
 
-def _dot(middle: complex, shape: int) -> str:
-    corners = SHAPES[shape % len(SHAPES)]
-    return _path(np.array([middle + 2.4 * one for one in corners])) + "Z" if corners else _circle(middle, 2.4)
-
-
 def _shape(look: str, path: str, loop: Sequence[str] = ()) -> str:
     """Return a path; loop: the paths through which it moves."""
-    moves = _animated("d", loop)
+    moves = _animated("d", (path, *loop))
     return f'<path class="{look}" d="{path}"{f">{moves}</path>" if moves else "/>"}\n'
 
 
@@ -298,9 +283,11 @@ def subscripts(text: str) -> list[str]:
 
 
 def _animated(attribute: str, values: Sequence[str]) -> str:
-    if len(set(values)) < 2:
+    """Return the movement of an attribute through these values and back, the first of which is at rest."""
+    loop = values[1:]
+    if len(set(loop)) < 2:
         return ""
-    around = ";".join((*values, values[0]))
+    around = ";".join((*loop, loop[0]))
     return f'<animate attributeName="{attribute}" dur="{_SECONDS:g}s" repeatCount="indefinite" values="{around}"/>'
 
 

@@ -8,10 +8,9 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine, firings
 from kurbel.machine.several import intervals
-from kurbel.mechanisms import Mechanism
 from kurbel.report.alike import grouped, together
 from kurbel.report.frame import provenance
-from kurbel.report.left_out import balance_left_out, left_out, missing, stages, strength_left_out, turning_stages
+from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.limits import Entry, Unjudged, judged
 from kurbel.report.tables import LeftOut, Provenance
 from kurbel.report.turning import torsion_left_out, torsion_warnings
@@ -47,43 +46,42 @@ class Checked(NamedTuple):
     @property
     def shown_once(self) -> list[Topic]:
         """The sections, equal cylinders in one."""
-        groups = grouped(self.sections, _content)
+
+        def content(section: Topic) -> Hashable:
+            return section.cylinder or section.title, tuple(one[:3] for one in section.entries)
+
+        groups = grouped(self.sections, content)
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
-
-
-def _content(section: Topic) -> Hashable:
-    """Return what the sections of equal cylinders have in common."""
-    entries = tuple((one.what, one.text, one.severity) for one in section.entries)
-    return section.cylinder or section.title, entries
 
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases, computed only as far as it needs."""
     machine = case.machine
-    found, entries = [], []
+    unjudged: list[Unjudged] = []
+    figures: dict[str, list[Entry]] = {"limits": [], "expect": []}
     for one in (case, *cases):
-        own = list(judged(one))
         of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
-        found += own
-        entries += [entry._replace(what=entry.what + of_case) for entry in own if isinstance(entry, Entry)]
+        for verdict in judged(one):
+            if isinstance(verdict, Unjudged):
+                unjudged.append(verdict)
+            else:
+                figures[str(verdict.path[0])].append(verdict._replace(what=verdict.what + of_case))
     notes = machine_notes(case)
+    of_whole = [Entry("note", text, "warning") for name, text in notes if name is None]
     sections = (
         Topic("Machine", tuple(_machine_entries(machine))),
         *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
         Topic("Cranks", tuple(_crank_entries(machine))),
-        Topic("Whole machine", (*_turning_entries(machine), *_notes(notes, None))),
+        Topic("Whole machine", (*_turning_entries(machine), *of_whole)),
         Topic("Crankshaft", tuple(_crankshaft_entries(case))),
         Topic("Balance", tuple(_balance_entries(case))),
         Topic("Shaft line", tuple(_shaft_entries(case))),
-        Topic("Limits", tuple(one for one in entries if one.path[0] == "limits")),
-        Topic("Expected", tuple(one for one in entries if one.path[0] == "expect")),
+        Topic("Limits", tuple(figures["limits"])),
+        Topic("Expected", tuple(figures["expect"])),
     )
-    return Checked(
-        f"{machine.name}: a valid machine",
-        tuple(one for one in sections if one.entries),
-        any(one.severity == "error" for one in entries),
-        tuple(one for one in found if isinstance(one, Unjudged)),
-    )
+    broken = any(one.severity == "error" for entries in figures.values() for one in entries)
+    sections = tuple(one for one in sections if one.entries)
+    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(unjudged))
 
 
 def _machine_entries(machine: Machine) -> Iterator[Entry]:
@@ -91,60 +89,45 @@ def _machine_entries(machine: Machine) -> Iterator[Entry]:
     yield Entry("cylinders", str(len(machine.cylinders)) if machine.cylinders else none)
     yield Entry("cycle", f"{machine.cycle}, {360 * machine.revolutions} deg")
     yield Entry("speed", "not given" if machine.speed is None else show(machine.speed, "speed"))
-    found = firings(machine)
-    if not found:
-        return
-    path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
-    angles = [angle for angle, _ in found]
-    between = intervals(angles, 360.0 * machine.revolutions)
-    least, most = min(between), max(between)
-    uneven = most - least > _EVEN
-    listed = _listed(between) if uneven else f"{most:g}"
-    order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
-    yield Entry("firing", f"{order}at {_listed(angles)} deg, intervals {listed} deg", "info", path)
-    if uneven:
-        yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
+    if found := firings(machine):
+        path: Path = ("cylinders",) if len(machine.cylinders) > 1 else ()
+        angles = [angle for angle, _ in found]
+        between = intervals(angles, 360.0 * machine.revolutions)
+        least, most = min(between), max(between)
+        uneven = most - least > _EVEN
+        at, listed = (", ".join(f"{angle:g}" for angle in some) for some in (angles, between if uneven else [most]))
+        order = f"order {'-'.join(str(number) for _, number in found)}, " if path else ""
+        yield Entry("firing", f"{order}at {at} deg, intervals {listed} deg", "info", path)
+        if uneven:
+            yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
 
 
-def _listed(angles: Iterable[float]) -> str:
-    return ", ".join(f"{angle:g}" for angle in angles)
-
-
-def _cylinder_section(machine: Machine, cylinder: Cylinder, found: Sequence[Note]) -> Topic:
-    several = len(machine.cylinders) > 1
+def _cylinder_section(machine: Machine, cylinder: Cylinder, notes: Sequence[Note]) -> Topic:
+    mechanism, several = cylinder.mechanism, len(machine.cylinders) > 1
     path: Path = ("cylinders", machine.cylinders.index(cylinder)) if several else ()
-    entries = [
-        Entry("mechanism", _described(cylinder.mechanism)),
-        *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
-        _computed(stages(machine, cylinder)),
-        *_without(left_out(machine, cylinder), path),
-        *_notes(found, cylinder.name, path),
-        *(Entry("note", note, "info", path) for note in cylinder.mechanism.notes),
-    ]
-    return Topic(cylinder.name, tuple(entries), cylinder=True)
-
-
-def _described(mechanism: Mechanism) -> str:
-    """Return the kind of a mechanism and its lengths."""
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
         if key.form.kind != "ratio" and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
-    return f"{mechanism.name}: {', '.join(lengths)}"
+    entries = [
+        Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}"),
+        *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
+        *_stages(stages(machine, cylinder), path),
+        *(Entry("note", text, "warning", path) for name, text in notes if name == cylinder.name),
+        *(Entry("note", note, "info", path) for note in mechanism.notes),
+    ]
+    return Topic(cylinder.name, tuple(entries), cylinder=True)
 
 
-def _computed(stages: dict[str, str]) -> Entry:
-    return Entry("computed", ", ".join(what for what, why in stages.items() if not why))
+def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[Entry]:
+    """Yield what is computed, and what is left out and why."""
+    yield Entry("computed", ", ".join(what for what, why in stages.items() if not why))
+    yield from _left_out(missing(stages), path)
 
 
-def _without(found: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
+def _left_out(found: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
     return (Entry("left out", f"{what}: {why}", "info", path) for what, why in found)
-
-
-def _notes(found: Sequence[Note], cylinder: str | None, path: Path = ()) -> Iterator[Entry]:
-    """Yield the warnings on a cylinder, or on the whole machine."""
-    return (Entry("note", text, "warning", path) for name, text in found if name == cylinder)
 
 
 def _crank_entries(machine: Machine) -> Iterator[Entry]:
@@ -159,24 +142,18 @@ def _crank_entries(machine: Machine) -> Iterator[Entry]:
 
 def _turning_entries(machine: Machine) -> Iterator[Entry]:
     """Yield what kurbel flywheel has of a machine, if that is more than its only cylinder has."""
-    if not machine.cylinders and not machine.effort:
+    given, load = (machine.flywheel, machine.load, machine.effort, machine.coupling), machine.load
+    alone = len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given)
+    if alone or not (machine.cylinders or machine.effort):
         return
-    given = (machine.flywheel, machine.load, machine.effort, machine.coupling)
-    if len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given):
-        return
-    stages = turning_stages(machine)
-    yield _computed(stages)
-    yield from _without(missing(stages))
-    yield Entry("load", _load(machine))
-
-
-def _load(machine: Machine) -> str:
-    load = machine.load
+    yield from _stages(turning_stages(machine))
     if load is None:
-        return "constant"
-    if load.diagram:
-        return f"a diagram of {len(load.diagram.angles)} points"
-    return f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
+        text = "constant"
+    elif load.diagram:
+        text = f"a diagram of {len(load.diagram.angles)} points"
+    else:
+        text = f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
+    yield Entry("load", text)
 
 
 def _crankshaft_entries(case: Case) -> Iterator[Entry]:
@@ -191,7 +168,7 @@ def _crankshaft_entries(case: Case) -> Iterator[Entry]:
         yield Entry("left out", f"strength: {machine.strength_obstacle}", "info", path)
         return
     yield Entry("computed", "forces on the bearings, stresses in pin and webs")
-    yield from _without(strength_left_out(machine), path)
+    yield from _left_out(strength_left_out(machine), path)
 
 
 def _balance_entries(case: Case) -> Iterator[Entry]:
@@ -206,7 +183,7 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
         yield Entry("left out", str(error), "info")
         return
     yield Entry("computed", "free forces and moments, their orders, best counterweights")
-    yield from _without(lacking)
+    yield from _left_out(lacking)
 
 
 def _shaft_entries(case: Case) -> Iterator[Entry]:
@@ -226,7 +203,7 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
         return
     forced = "" if found.obstacle else ", torques and stresses"
     yield Entry("computed", f"natural frequencies, critical speeds{forced}")
-    yield from _without(torsion_left_out(found), path)
+    yield from _left_out(torsion_left_out(found), path)
 
 
 # for programs: each finding with its place in the machine file
@@ -259,9 +236,11 @@ def faults_found(file: str, error: KurbelError) -> Findings:
     """Return what is wrong with a machine file that cannot be read."""
     if not isinstance(error, MachineFileError):
         return Findings(None, (Finding(file, None, None, None, str(error), "error"),))
-    return Findings(
-        None, tuple(_finding(error.file_name, fault.path, fault, fault.message, "error") for fault in error.faults)
-    )
+    file = error.file_name
+    found = [
+        Finding(file, one.line, one.column, path_text(one.path) or None, one.message, "error") for one in error.faults
+    ]
+    return Findings(None, tuple(found))
 
 
 Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
@@ -269,20 +248,18 @@ Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 
 def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
     """Return what was found of a machine; locate: returns faults with their places in the text of the file."""
-    several = len(machine.cylinders) > 1
+    several, origin = len(machine.cylinders) > 1, machine.origin
     found: list[tuple[Path, str, str]] = []
     for section in checked.sections:
         head = f"{section.title}: " if several and section.cylinder else ""
         found += [(one.path, f"{head}{one.what}: {one.text}", one.severity) for one in section.entries if one.severity]
     found += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
-    origin, paths = machine.origin, {path for path, _, _ in found if path}
-    placed = locate(origin.text, [Fault(path, "", at_key=True) for path in paths]) if origin and paths else []
-    places = {fault.path: fault for fault in placed}
-    file = origin.name if origin else machine.name
-    listed = tuple(_finding(file, path, places.get(path), text, severity) for path, text, severity in found)
-    return Findings(machine.name, listed, provenance(machine))
 
-
-def _finding(file: str, path: Path, place: Fault | None, message: str, severity: str) -> Finding:
-    line, column = (place.line, place.column) if place else (None, None)
-    return Finding(file, line, column, path_text(path) or None, message, severity)
+    at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
+    places = {fault.path: fault for fault in (locate(origin.text, at_keys) if origin and at_keys else ())}
+    listed = []
+    for path, text, severity in found:
+        line, column = (places[path].line, places[path].column) if path in places else (None, None)
+        name = origin.name if origin else machine.name
+        listed.append(Finding(name, line, column, path_text(path) or None, text, severity))
+    return Findings(machine.name, tuple(listed), provenance(machine))

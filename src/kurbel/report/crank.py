@@ -1,97 +1,107 @@
-"""The reports of `kurbel motion` and `kurbel forces`: every cylinder on its own."""
+"""The reports of `kurbel motion`, `forces`, `stress` and `bearings`: each cylinder, and the shaft that it loads."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.report.frame import Frame, Row, Subject, place_table, refuse_without_cylinder, report_on
-from kurbel.report.left_out import forces_left_out, motion_left_out
+from kurbel.quantity import PHI, Quantity, by_id
+from kurbel.report.alike import equal_loads, grouped
+from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values, subjects_of
+from kurbel.report.left_out import (
+    bearing_left_out,
+    bearings_left_out,
+    forces_left_out,
+    left_out,
+    motion_left_out,
+    strength_left_out,
+)
 from kurbel.report.tables import PlaceTable, Report
-from kurbel.report.warnings import by_cylinder, guide_notes
+from kurbel.report.warnings import (
+    as_far_as_solved,
+    bearing_warnings,
+    by_cylinder,
+    guide_notes,
+    of_machine,
+    shell_verdict,
+)
+from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import CYCLE_ROWS
 from kurbel.solver.trace import TracePressure
 
-_TITLE = "Forces in the crank train"
+STRESSES = by_id(
+    Quantity("compression", "σ_c", "stress", "Compression of a web by the force along it, negative where it is pulled"),
+    Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw"),
+    Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending square to the plane of the throw"),
+    Quantity("torsion", "τ", "stress", "Torsion"),
+    Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)"),
+    Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)"),
+)
+"""Stresses at one place of a crankshaft, by id."""
+
+
+# motion and forces of every cylinder
 
 
 def motion_report(case: Case, frame: Frame) -> Report:
     """Return the motion of every cylinder's mechanism; raises UsageError without a cylinder."""
-    machine = case.machine
-    refuse_without_cylinder(machine, "motion")
+    notes = _mechanism_notes(case.machine, "motion")
     cylinders = [
-        replace(one, left_out=tuple(motion_left_out(machine, cylinder)))
-        for one, cylinder in zip(motion_subjects(case), machine.cylinders)
+        replace(one, left_out=motion_left_out(case.machine, cylinder))
+        for one, cylinder in zip(subjects_of(case, "motion"), case.machine.cylinders)
     ]
-    return report_on(frame, machine, "Motion of the crank train", cylinders, notes=_mechanism_notes(machine))
-
-
-def motion_subjects(case: Case) -> list[Subject]:
-    """Return every cylinder, with its motion."""
-    return [Subject(one.drive.name, (one.motion,), one.at, one.lists, source=one) for one in case.cylinders]
+    return report_on(frame, case.machine, "Motion of the crank train", cylinders, notes=notes)
 
 
 @np.errstate(all="ignore")
-def forces_report(case: Case, frame: Frame) -> Report:
-    """Return the forces of every cylinder.
+def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
+    """Return the forces of every cylinder; each_cycle: its measured cycles, one to a line, instead of the table.
 
-    Raises UsageError without a cylinder, NoSolutionError if its friction locks one.
+    Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    refuse_without_cylinder(case.machine, "forces")
-    for forces in case.cylinders:
-        forces.refuse_locking()
-    if not frame.prose:
-        return report_on(frame, case.machine, _TITLE, forces_subjects(case))
-    return report_on(frame, case.machine, _TITLE, _with_sentences(case), notes=_forces_notes(case))
+    notes: list[str] = _mechanism_notes(case.machine, "forces")
+    cylinders = subjects_of(case, "forces")
+    if each_cycle:
+        tables = [_cycle_table(forces, frame.system) for forces in case.cylinders]
+        if not any(tables):
+            raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+        cylinders = [replace(one, at=None, tables=of) for one, of in zip(cylinders, tables)]
+    else:
+        for forces in case.cylinders:
+            forces.refuse_locking()
+    if frame.prose:
+        warnings = by_cylinder(case)
+        cylinders = [
+            replace(one, left_out=forces_left_out(case.machine, forces), warnings=warnings[one.name])
+            for one, forces in zip(cylinders, case.cylinders)
+        ]
+        notes = [] if each_cycle else [*notes, *_forces_notes(case)]
+    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
 
 
-def forces_subjects(case: Case) -> list[Subject]:
-    """Return every cylinder, with its forces and its motion."""
-    return [Subject(one.drive.name, (one,), one.at, one.lists, source=one) for one in case.cylinders]
+def _mechanism_notes(machine: Machine, command: str) -> list[str]:
+    """Return what a reader should know about the mechanisms, each sentence once; raises UsageError without any."""
+    if not machine.cylinders:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
+    return list(dict.fromkeys(note for cylinder in machine.cylinders for note in cylinder.mechanism.notes))
 
 
-def _with_sentences(case: Case) -> list[Subject]:
-    warnings = by_cylinder(case)
-    return [
-        replace(one, left_out=tuple(forces_left_out(case.machine, forces)), warnings=tuple(warnings[one.name]))
-        for one, forces in zip(forces_subjects(case), case.cylinders)
-    ]
-
-
-@np.errstate(all="ignore")
-def cycles_report(case: Case, system: str) -> Report:
-    """Return the measured cycles of every cylinder, one to a line, with the key values of their mean.
-
-    Raises UsageError if no cylinder has several.
-    """
-    tables = [tuple(_cycle_table(forces, system)) for forces in case.cylinders]
-    if not any(tables):
-        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-    cylinders = [replace(one, at=None, tables=of) for one, of in zip(_with_sentences(case), tables)]
-    return report_on(Frame("forces", (), None, system), case.machine, _TITLE, cylinders)
-
-
-def _cycle_table(forces: CylinderForces, system: str) -> Iterable[PlaceTable]:
+def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
-    if cycles:
-        quantities = (row.quantity for row in CYCLE_ROWS)
-        declared = {one.id: one.absolute() if gas and gas.absolute else one for one in quantities}
-        columns = zip(*(row.of(cycles).tolist() for row in CYCLE_ROWS))
-        rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
-        yield place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)
+    if not cycles:
+        return []
+    quantities = (row.quantity for row in CYCLE_ROWS)
+    declared = {one.id: one.absolute() if gas and gas.absolute else one for one in quantities}
+    columns = zip(*(row.of(cycles).tolist() for row in CYCLE_ROWS))
+    rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
+    return [place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)]
 
 
-def _mechanism_notes(machine: Machine) -> tuple[str, ...]:
-    """Return what a reader should know about the mechanisms of a machine, each sentence once."""
-    return tuple(dict.fromkeys(note for cylinder in machine.cylinders for note in cylinder.mechanism.notes))
-
-
-def _forces_notes(case: Case) -> Iterable[str]:
-    yield from _mechanism_notes(case.machine)
+def _forces_notes(case: Case) -> Iterator[str]:
     yield from guide_notes(case)
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
@@ -116,3 +126,103 @@ def _forces_notes(case: Case) -> Iterable[str]:
             "ΔA/A of a trace at equal angles is no rounding: the indicated work is that of the trapezoid rule on the "
             "samples, the quadrature follows straight lines between them; it shows what their spacing leaves open."
         )
+
+
+# pins and bearings
+
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def bearings_report(case: Case, frame: Frame) -> Report:
+    """Return the loads on pins and main bearings over the angle of crank 1, each as a part.
+
+    Raises UsageError if nothing loads them.
+    """
+    parts = [
+        replace(one, left_out=bearing_left_out(*part.size, part.omega))
+        for one, part in zip(subjects_of(case, "bearings"), case.bearings.parts)
+    ]
+    whole = Subject("whole machine")
+    if frame.prose:
+        warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
+        whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings)
+    report = report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
+    return report._replace(group="bearings")
+
+
+def equal_bearings(case: Case) -> list[list[Bearing]]:
+    """Return the pins and main bearings, those together that carry equal loads."""
+
+    def load(pair: tuple[Subject, Bearing]) -> Hashable:
+        one = pair[0]
+        return equal_loads(one.name, one.of, shown_key_values(one.key_values("bearings"), "si"))
+
+    pairs = zip(subjects_of(case, "bearings"), case.bearings.parts)
+    return [[part for _, part in group] for group in grouped(pairs, load)]
+
+
+def _bearing_notes(case: Case) -> Iterator[str]:
+    machine, line = case.machine, case.bearings.line
+    yield (
+        "Loads are those of a rod on its pin and of the shaft on its bearings. Directions count in the sense of "
+        "rotation: ε_K from the throw outward (of a main bearing from that of crank 1), ε_M from the stroke line of "
+        "cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to either "
+        "side of where it is pressed; crank pins and journals turn with the throw, crosshead pins and main shells "
+        "stand in the engine."
+    )
+    if len(machine.cylinders) > 1:
+        yield "φ is the angle of crank 1."
+    if line and len(line.throws) > 1:
+        yield (
+            "Statically determinate, throw by throw: the shaft counts as hinged in every bearing between two throws, "
+            "and 'crankshaft' as the throw of every cylinder."
+        )
+    if line and any(len(throw.cylinders) > 1 for throw in line.throws):
+        yield "Rods on one pin are side by side, each on an equal part of its length; all load the pin in its middle."
+    if any(one.masses and one.masses.undivided for one in machine.cylinders):
+        yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
+
+
+# stresses in the crankshaft
+
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
+    """Return the stresses of the crankshaft place by place, and its bearing forces over the crank angle.
+
+    places_only: without the crank angle. Raises UsageError if no crankshaft can be examined.
+    """
+    machine, strength = case.machine, case.stress
+    tables = []
+    for id, title, places in (
+        ("dead_centre", "Dead centre, full piston force without inertia", strength.at_dead_centre),
+        ("largest_torque", "Position of the largest torque", strength.at_largest_torque),
+        ("largest_stress", "Whole cycle: each place where its combined stress is largest", strength.at_worst),
+    ):
+        rows: list[Row] = []
+        for one in places:
+            stresses = (one.compression, one.bending_in_plane, one.bending_out_of_plane, one.torsion)
+            values = (one.degrees, *stresses, one.combined, one.von_mises)
+            rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), values))))
+        declared = {"phi": PHI, **STRESSES}
+        tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
+
+    cool, verdict = shell_verdict(strength.pressure_velocity("pin"))
+    notes = [
+        "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
+        "D toward the shaft, T in the sense of rotation.",
+        "The dead centre is loaded as in starting (R p. 608); columns, largest stresses and pressures are those of the "
+        "running machine.",
+    ]
+    if strength.C_rod:
+        notes.append(
+            "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and "
+            "bearings carry D less C_rod."
+        )
+    if cool and verdict:
+        notes.append(verdict)
+    (whole,) = subjects_of(case, "stress")
+    whole = replace(whole, tables=tables, at=None if places_only else whole.at)
+    if frame.prose:
+        lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
+        whole = replace(whole, left_out=lacking, warnings=of_machine(case))
+    return report_on(frame, machine, "Strength of the crankshaft", (), whole, notes)

@@ -1,7 +1,6 @@
 """From results and their declared quantities to the tables of a report: what all commands on a machine share."""
 
 import math
-import sys
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -20,7 +19,10 @@ from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
+from kurbel.solver.balance import MachineBalance
+from kurbel.solver.case import Case
 from kurbel.solver.figures import Results
+from kurbel.solver.flywheel import DeadCentre
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
@@ -28,36 +30,47 @@ _EVERYWHERE = np.arange(0.0, 720.0, 7.5)
 """Crank angles in degrees over the longest cycle, which show how large a curve is."""
 _ROUNDING = 1e-12
 """Values no larger than this, relative to the largest of their curve, are the rounding of a zero."""
+_UNCOMPARED = (
+    "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
+    "piston with pressures; this machine has neither."
+)
+
+
+# what a command has results of
 
 
 @dataclass(frozen=True, eq=False)
 class Subject:
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
-    results: the objects that have its key values, searched in this order; at: takes crank angles (n,) in degrees and
-    returns a state with its columns, None without columns; lists: the quantities that there may be; source: has
-    `angles_where`, None for what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: what
-    a report shows besides, empty where only figures are wanted.
+    results: the object that has its key values, if any; at: takes crank angles (n,) in degrees and returns a state with
+    its columns, None without columns; lists: the quantities that there may be; source: has `angles_where`, None for
+    what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: what a report shows besides,
+    empty where only figures are wanted.
     """
 
     name: str
-    results: tuple[Any, ...] = ()
+    results: Results | None = None
     at: Callable[[Any], Any] | None = None
     lists: Lists = field(default_factory=every_quantity)
-    left_out: tuple[LeftOut, ...] = ()
-    warnings: tuple[str, ...] = ()
-    tables: tuple[PlaceTable, ...] = ()
+    left_out: Sequence[LeftOut] = ()
+    warnings: Sequence[str] = ()
+    tables: Sequence[PlaceTable] = ()
     source: Any = None
     of: str = ""
 
     def says(self, quantity: Quantity) -> bool:
         """Whether a quantity adds something here: a time ratio does not if both strokes take equally long."""
-        return not any(_says_nothing(one, quantity) for one in self.results)
+        if self.results is None:
+            return True
+        rows = self.results.rows
+        row = rows.key_values.get(quantity.id) or rows.columns.get(quantity.id)
+        return not (row and row.unless and row.unless(self.results))
 
     def answer(self, quantity: Quantity) -> Any:
         """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
-        found = (_value(one, quantity) for one in self.results)
-        return next((value for value in found if value is not None), None)
+        row = self.results.rows.key_values.get(quantity.id) if self.results else None
+        return row and row.of(self.results)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
         """Yield the key values of a command that it has, in SI."""
@@ -67,21 +80,47 @@ class Subject:
                 yield quantity, value
 
 
-def _value(results: Results, quantity: Quantity) -> Any:
-    """Return a key value of results, in SI; None where they have none."""
-    row = results.rows.key_values.get(quantity.id)
-    return None if row is None else row.of(results)
+def subjects_of(case: Case, command: str, compare: bool = False) -> list[Subject]:
+    """Return what a command has results of: each cylinder or bearing, and the whole machine last.
+
+    compare: the balance with what the acceleration of first order gives, next to the true figures. Raises UsageError
+    where the machine has nothing of that, NoSolutionError where it locks itself, stalls, or swings without limit.
+    """
+    if command in ("motion", "forces"):
+        return [
+            Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
+            for one in case.cylinders
+        ]
+    if command == "flywheel":
+        turning = case.flywheel
+        cylinders = [Subject(one.drive.name, DeadCentre(one, turning.effort.cycle)) for one in case.cylinders]
+        return [*cylinders, Subject("whole machine", turning, turning.at, source=turning)]
+    if command == "stress":
+        return [Subject("crankshaft", case.stress, case.stress.at)]
+    if command == "bearings":
+        for forces in case.cylinders:
+            forces.refuse_locking()
+        return [
+            Subject(one.name, one, one.at, of=one.followed[0].cylinder.name if one.of_rod else "")
+            for one in case.bearings.parts
+        ]
+    if command == "balance":
+        balance = MachineBalance(case.effort, compare=True) if compare else case.balance
+        return [Subject("whole machine", balance, balance.at)]
+    if command == "harmonics":
+        return [Subject("whole machine", case.harmonics())]
+    if case.torsion.vibration is not None and case.torsion.vibration.endless.any():
+        raise NoSolutionError(ENDLESS)
+    return [Subject("shaft line", case.torsion)]
 
 
-def _says_nothing(results: Results, quantity: Quantity) -> bool:
-    """Return whether a quantity says nothing new of results."""
-    row = results.rows.key_values.get(quantity.id) or results.rows.columns.get(quantity.id)
-    return bool(row and row.unless and row.unless(results))
+ENDLESS = (
+    "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of the shaft "
+    "are too unequal to compute with: check the units of their stiffnesses"
+)
 
 
-def column_of(state: Any, quantity: Quantity) -> Any:
-    """Return a column (n,) of a state in SI, None if the machine does not have it."""
-    return state.phi if quantity.id == "phi" else state[quantity.id]
+# what is requested, and the report
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,12 +142,6 @@ class Frame:
     prose: bool = True
 
 
-def refuse_without_cylinder(machine: Machine, command: str) -> None:
-    """Raise UsageError if the machine has no cylinder."""
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
-
-
 @np.errstate(all="ignore")
 def report_on(
     frame: Frame,
@@ -123,60 +156,46 @@ def report_on(
     Raises UsageError for what overflows and for a column that no subject has, NoSolutionError if no row is found.
     """
     every = (*subjects, *((whole,) if whole else ()))
-    rows = [_rows(frame, one) for one in every]
-    printed = {column.id for columns, _ in rows for column in columns}
+    found: list[tuple[Subject, tuple[Column, ...], str]] = []
+    for one in every:
+        try:
+            found.append((one, _columns(frame, one), ""))
+        except Nowhere as error:
+            found.append((one, (), str(error)))
+    printed = {column.id for _, columns, _ in found for column in columns}
+    nowhere = [why for _, _, why in found if why]
     for name in frame.columns or ():
         if name not in printed:
             raise UsageError(f"--columns: {_absent(name, frame.command, every)}")
-    nowhere = [why for _, why in rows if why]
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
+
     with_values = frame.prose or not (printed or any(one.tables for one in every))
-    parts = [
-        Part(
-            one.name,
-            columns,
-            tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
-            one.left_out,
-            one.warnings,
-            one.tables,
-            why,
-            one.of,
-        )
-        for one, (columns, why) in zip(every, rows)
-    ]
-    last = parts.pop() if whole else None
-    # the balance says itself what it leaves out
+    parts = []
+    for one, columns, why in found:
+        values = shown_key_values(one.key_values(frame.command), frame.system) if with_values else ()
+        sentences = tuple(one.left_out), tuple(one.warnings)
+        parts.append(Part(one.name, columns, tuple(values), *sentences, tuple(one.tables), why, one.of))
+    # the balance reports by itself what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
-    said = (*notes, *((_UNCOMPARED,) if uncompared else ()), *(f"{why}." for why in nowhere))
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
         "cylinders",
-        tuple(parts),
-        last,
-        notes=said,
+        whole=parts.pop() if whole else None,
+        parts=tuple(parts),
+        notes=(*notes, *((_UNCOMPARED,) if uncompared else ()), *(f"{why}." for why in nowhere)),
         provenance=provenance(machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
 
 
-_UNCOMPARED = (
-    "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
-    "piston with pressures; this machine has neither."
-)
-_Rows = tuple[tuple[Column, ...], str]
-"""The columns of a subject, and why it has no row."""
-
-
-def _rows(frame: Frame, subject: Subject) -> _Rows:
+def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
+    """Return the columns of a subject that are requested, or the usual ones; raises Nowhere where it has no row."""
     if subject.at is None:
-        return (), ""
-    try:
-        angles = frame.angles(subject) if callable(frame.angles) else frame.angles
-    except Nowhere as error:
-        return (), str(error)
+        return ()
+    angles = frame.angles(subject) if callable(frame.angles) else frame.angles
     known = subject.lists.columns(frame.command)
     added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
     if frame.columns:
@@ -184,19 +203,17 @@ def _rows(frame: Frame, subject: Subject) -> _Rows:
     else:
         usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
         chosen = [one for one in usual if subject.says(one)]
-    wanted = tuple(dict.fromkeys((known["phi"], *chosen)))
-    return shown_columns(subject.at, wanted, angles, frame.system), ""
+    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     """Return why there is no such column, and which there are."""
-    every = every_quantity()
-    known, key_values = every.columns(command), every.key_values(command)
+    known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
     there: dict[str, Quantity] = {}
     for subject in subjects:
         if subject.at is not None:
-            state, own = subject.at(np.zeros(1)), subject.lists.columns(command)
-            there |= {id: known[id] for id, quantity in own.items() if column_of(state, quantity) is not None}
+            state = subject.at(np.zeros(1))
+            there |= {id: known[id] for id in subject.lists.columns(command) if state[id] is not None}
     symbols = [one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there.values()]
     has = f"has {', '.join(symbols)}" if there else ""
     if name in known:
@@ -204,13 +221,12 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     if found := called(name, key_values.values()):
         symbol = key_values[found[0]].symbol
         return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
+    near = ""
+    for some in (there, known):
+        near = near or did_you_mean(name, tuple(word for one in some.values() for word in (one.id, one.symbol)))
     others = ", ".join(id for id in known if id not in there)
-    near = [
-        did_you_mean(name, tuple(word for one in some for word in (one.id, one.symbol)))
-        for some in (there.values(), known.values())
-    ]
     listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
-    return f"'{shown(name)}' is no column of kurbel {command}{near[0] or near[1]} ({'; '.join(filter(None, listed))})"
+    return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, listed))})"
 
 
 def provenance(machine: Machine) -> Provenance:
@@ -223,8 +239,7 @@ def provenance(machine: Machine) -> Provenance:
         with suppress(OSError), open(name, "rb") as file:
             digest = sha256(file.read()).hexdigest()
         inputs.append(InputFile(name, digest))
-    numpy = sys.modules.get("numpy")
-    return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": numpy.__version__} if numpy else {})
+    return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": np.__version__})
 
 
 # from values in SI to columns and key values in the unit in which they are shown
@@ -248,7 +263,7 @@ def shown_columns(
         degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
         state = at(degrees)
         for quantity in quantities:
-            values = degrees if quantity.id == "phi" else column_of(state, quantity)
+            values = degrees if quantity.id == "phi" else state[quantity.id]
             if values is not None:
                 rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
                 found.setdefault(quantity, array("d")).frombytes(rows.tobytes())
@@ -263,22 +278,19 @@ def shown_column(
 
     beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
     """
-    given = (
-        np.frombuffer(values)
-        if isinstance(values, array)
-        else np.array([v for v in values if v is not None], dtype=float)
-    )
+    known = values if isinstance(values, array) else array("d", [v for v in values if v is not None])
+    given = np.frombuffer(known)
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
-    largest = max(given.max(initial=0.0), -given.min(initial=0.0))
+    largest = float(max(given.max(initial=0.0), -given.min(initial=0.0)))
     size = size if largest <= _ROUNDING * size else 0.0
     unit = shown_unit(quantity.kind, system, max(size or largest, beside))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
-    numbers = map(float, given)
-    texts = values if isinstance(values, array) else tuple(None if v is None else next(numbers) for v in values)
-    size = convert(size, quantity.kind, unit)
+    numbers = iter(known)
+    texts = values if known is values else tuple(None if v is None else next(numbers) for v in values)
     symbols = quantity.symbol, quantity.ascii_symbol
+    size = convert(size, quantity.kind, unit)
     return Column(quantity.id, *symbols, quantity.marked(unit), texts, quantity.text, size=size)
 
 
@@ -301,14 +313,17 @@ def place_table(
     Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths. alone: the digits of
     values of which each has a scale of its own, with one unit for each kind of quantity.
     """
-    values = {quantity: [of.get(id) for _, of in rows] for id, quantity in declared.items()}
+    largest: dict[str, float] = {}
+    for of_row in (values for _, values in rows if alone):
+        for name, value in of_row.items():
+            kind = declared[name].kind
+            largest[kind] = max(largest.get(kind, 0.0), abs(value or 0.0))
+
     columns = []
-    for quantity, each in values.items():
-        if any(quantity.id in of for _, of in rows):
-            alike = [
-                abs(v) for other, some in values.items() if other.kind == quantity.kind for v in some if v is not None
-            ]
-            column = shown_column(quantity, each, system, beside=max(alike, default=0.0) if alone else 0.0)
+    for quantity in declared.values():
+        if any(quantity.id in values for _, values in rows):
+            each = [values.get(quantity.id) for _, values in rows]
+            column = shown_column(quantity, each, system, beside=largest.get(quantity.kind, 0.0))
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
                 decimals = int(any(value and value % 1 for value in each))
@@ -318,19 +333,23 @@ def place_table(
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
-    """Return key values with the largest and the smallest of a column in one unit; found: as `Subject.key_values`."""
+    """Return key values with the largest and the smallest of a column in one unit; found: as `Subject.key_values`.
+
+    Raises UsageError if one is not finite.
+    """
     given = tuple(found)
     units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
-    return [_key_value(*one, unit) for one, unit in zip(given, units)]
-
-
-def _key_value(quantity: Quantity, value: Any, unit: str) -> KeyValue:
-    at, raw = (value.degrees, value.value) if isinstance(value, Extreme) else (None, value)
-    each: tuple[float, ...] = raw if isinstance(raw, tuple) else (raw,)
-    if not all(math.isfinite(one) for one in each):
-        raise too_large(quantity)
-    numbers = [float(convert(one, quantity.kind, unit)) + 0.0 for one in each]
-    number = tuple(numbers) if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]  # a count
-    noise = any(map(quantity.is_noise, numbers))
-    symbols = (quantity.symbol, quantity.ascii_symbol)
-    return KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise)
+    shown_values = []
+    for (quantity, value), unit in zip(given, units):
+        raw, at = value if isinstance(value, Extreme) else (value, None)
+        each = raw if isinstance(raw, tuple) else (raw,)
+        if not all(map(math.isfinite, each)):
+            raise too_large(quantity)
+        numbers = tuple(float(convert(one, quantity.kind, unit)) + 0.0 for one in each)
+        number = numbers if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]  # a count
+        noise = any(map(quantity.is_noise, numbers))
+        symbols = quantity.symbol, quantity.ascii_symbol
+        shown_values.append(
+            KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise),
+        )
+    return shown_values

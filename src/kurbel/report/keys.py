@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurbel.declared.forms import Inline, Keyed, Listing, RecordForm
-from kurbel.declared.forms.structures import records
+from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, records
 from kurbel.declared.forms.values import Form
 from kurbel.declared.keys import Key, required
 from kurbel.declared.reading import shown
@@ -118,5 +117,5 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
     if isinstance(form, Keyed):
         yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single.items())
     if not form.inline:
-        for name, inner in form.parts():
+        for name, inner in form.parts:
             yield from _below(inner, f"{path}.{name}" if name else path)

@@ -1,7 +1,5 @@
 """What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
-from collections.abc import Iterable, Iterator
-
 from kurbel.machine import Cylinder, Machine
 from kurbel.report.tables import LeftOut
 from kurbel.solver.case import Case
@@ -16,12 +14,10 @@ def missing(reasons: dict[str, str]) -> list[LeftOut]:
     return [LeftOut(what, why) for what, why in reasons.items() if why]
 
 
-def _without_speed(machine: Machine) -> str:
-    return "no speed given" if machine.speed is None else ""
-
-
-def _without_power(machine: Machine) -> str:
-    return _without_speed(machine) or ("" if machine.speed else "not defined at rest")
+def _speeds(machine: Machine) -> tuple[str, str]:
+    """Return why there is nothing that takes a speed, and why there is no power; "" where there is."""
+    no_speed = "no speed given" if machine.speed is None else ""
+    return no_speed, no_speed or ("" if machine.speed else "not defined at rest")
 
 
 # one cylinder, from its description alone
@@ -30,32 +26,30 @@ def _without_power(machine: Machine) -> str:
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     """Return all that motion and forces of a cylinder can consist of, with the reason why it is left out, or ""."""
     mechanism, motion = cylinder.mechanism, _motion_stages(machine, cylinder)
-    turning = {"moment at the output": "" if cylinder.moment else "no moment given"}
-    acting = _sliding_forces(machine, cylinder) if mechanism.slides else turning
+    if not mechanism.slides:
+        acting = {"moment at the output": "" if cylinder.moment else "no moment given"}
+    else:
+        acting = _sliding_forces(machine, cylinder)
     if all(why for what, why in acting.items() if what != "friction"):
         idle = {"friction": "no force acts"} if cylinder.friction else {}
         return {**motion, **acting, "forces in the crank train": "no force acts", **idle}
-    of_rod = {}
+
+    of_rod, works = {}, {}
     if mechanism.slides and not mechanism.has_rod:
         known = mechanism.known_across and cylinder.inclination is not None and cylinder.masses
         of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
-    of_crank = {"forces in the crank train": "", **of_rod, **dict(mechanism.lacks)}
-    return {**motion, **acting, **of_crank, **_works(machine, cylinder, acting)}
-
-
-def left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
-    """Return everything that motion and forces of this cylinder leave out."""
-    return missing(stages(machine, cylinder))
-
-
-def motion_left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
-    """Return what the motion of this cylinder leaves out."""
-    return missing(_motion_stages(machine, cylinder))
+    # of a ram without a piston nobody expects an indicator
+    if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):
+        no_gas = acting["gas force"]
+        works = {"work": no_gas, "power": no_gas or _speeds(machine)[1]}
+        if machine.brake_power is not None:
+            works["comparison with brake_power"] = works["power"]
+    return {**motion, **acting, "forces in the crank train": "", **of_rod, **dict(mechanism.lacks), **works}
 
 
 def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     position = "displacement" if cylinder.mechanism.slides else "angle of the output"
-    return {position: "", "velocity, acceleration": _without_speed(machine)}
+    return {position: "", "velocity, acceleration": _speeds(machine)[0]}
 
 
 def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
@@ -74,31 +68,34 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
         "gas force": no_gas,
         **rods,
         **ram,
-        "inertia": no_masses or _without_speed(machine),
+        "inertia": no_masses or _speeds(machine)[0],
         "weight": "no inclination given" if cylinder.inclination is None else no_masses,
         "friction": "no friction given" if cylinder.friction is None else "",
     }
 
 
-def _works(machine: Machine, cylinder: Cylinder, acting: dict[str, str]) -> dict[str, str]:
-    if "gas force" not in acting or (not cylinder.pistons and cylinder.ram_force):
-        return {}  # of a ram without a piston nobody expects an indicator
-    power = acting["gas force"] or _without_power(machine)
-    brake = {} if machine.brake_power is None else {"comparison with brake_power": power}
-    return {"work": acting["gas force"], "power": power, **brake}
+def left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
+    """Return everything that motion and forces of this cylinder leave out."""
+    return missing(stages(machine, cylinder))
 
 
-def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOut]:
-    """Yield everything that the computed forces of a cylinder leave out."""
-    cylinder = forces.drive.cylinder
-    yield from left_out(machine, cylinder)
-    if forces.friction_work is not None and not forces.work_driving:
-        yield LeftOut("friction loss as a share", "no piston drives")
-    if not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None:
-        yield LeftOut("load on the piston rod", "no mass of the crosshead given")
-    if forces.reversals_in_noise:
-        why = "are within the noise of the trace and no force reversal"
-        yield LeftOut(f"{forces.reversals_in_noise} changes of the sign of P", why)
+def motion_left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
+    """Return what the motion of this cylinder leaves out."""
+    return missing(_motion_stages(machine, cylinder))
+
+
+def forces_left_out(machine: Machine, forces: CylinderForces) -> list[LeftOut]:
+    """Return everything that the computed forces of a cylinder leave out."""
+    cylinder, in_noise = forces.drive.cylinder, forces.reversals_in_noise
+    no_crosshead = not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None
+    no_share = forces.friction_work is not None and not forces.work_driving
+    computed = {
+        "friction loss as a share": "no piston drives" if no_share else "",
+        "load on the piston rod": "no mass of the crosshead given" if no_crosshead else "",
+        f"{in_noise} changes of the sign of P": "are within the noise of the trace and no force reversal",
+    }
+    found = [*left_out(machine, cylinder), *missing(computed)]
+    return found if in_noise else found[:-1]
 
 
 # the whole machine
@@ -106,7 +103,7 @@ def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOu
 
 def turning_stages(machine: Machine) -> dict[str, str]:
     """Return all that `kurbel flywheel` can have of the whole machine, with the reason why it is left out, or ""."""
-    speed = _without_power(machine)
+    speed = _speeds(machine)[1]
     wheel = speed or ("" if machine.flywheel else "no flywheel given")
     wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
     varies = machine.load is not None and machine.load.diagram is None
@@ -127,13 +124,11 @@ def flywheel_left_out(machine: Machine) -> list[LeftOut]:
         [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
         for cylinder in machine.cylinders
     ]
-    found = [
-        LeftOut(f"{one.what} of {cylinder.name}", one.why)
-        for cylinder, of_one in zip(machine.cylinders, of_each)
-        for one in of_one
-    ]
     if of_each and all(of_one == of_each[0] for of_one in of_each):
         found = of_each[0]
+    else:
+        each = zip(machine.cylinders, of_each)
+        found = [LeftOut(f"{one.what} of {cylinder.name}", one.why) for cylinder, of_one in each for one in of_one]
     if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
         found = [*found, LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")]
     return [*found, *missing(turning_stages(machine))]
@@ -151,7 +146,7 @@ def strength_left_out(machine: Machine) -> list[LeftOut]:
             "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
             "journals": journals,
             "pressure on the journals": journals or ("" if shaft.journal_length else "no journal_length given"),
-            "p_m v": _without_speed(machine),
+            "p_m v": _speeds(machine)[0],
             "safety": "" if shaft.allowable_bending else "no allowable_bending given",
             "α₀ of the webs": "" if shaft.allowable_bending and shaft.allowable_torsion else "1 without k_b and k_d",
         }
@@ -177,7 +172,7 @@ def bearings_left_out(case: Case) -> list[LeftOut]:
         {
             "main bearings": case.bearings.obstacle or "",
             "flywheel weight": "no inclination given" if heavy else "",
-            "inertia": _without_speed(machine),
+            "inertia": _speeds(machine)[0],
         }
     )
 
@@ -187,9 +182,14 @@ def balance_left_out(case: Case, compare: bool = False) -> list[LeftOut]:
     balance = case.balance
     moving = {throw.name for throw in balance.throws}
     still = [cylinder.name for cylinder in balance.machine.cylinders if cylinder.name not in moving]
+    placeless = [throw.name for throw in balance.throws if throw.place is None]
+    if any(one.place is None for one in balance.counterweights):
+        placeless.append("counterweights of the machine")
+    if any(one.axial_position is None for one in balance.machine.balance_shafts):
+        placeless.append("balance_shafts")
     no_speed = "no speed given; the weights against them do not depend on it"
     no_book = "the book has no such formula for a stroke line beside the shaft"
-    no_place = f"no axial_position given of {', '.join(_without_place(case))}"
+    no_place = f"no axial_position given of {', '.join(placeless)}"
     return missing(
         {
             **{f"inertia of {name}": "no masses given" for name in still},
@@ -198,12 +198,3 @@ def balance_left_out(case: Case, compare: bool = False) -> list[LeftOut]:
             "figures of first order": no_book if compare and balance.book is None else "",
         }
     )
-
-
-def _without_place(case: Case) -> Iterable[str]:
-    balance = case.balance
-    yield from (throw.name for throw in balance.throws if throw.place is None)
-    if any(one.place is None for one in balance.counterweights):
-        yield "counterweights of the machine"
-    if any(one.axial_position is None for one in balance.machine.balance_shafts):
-        yield "balance_shafts"

@@ -15,7 +15,7 @@ from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
-from kurbel.report.loads import equal_bearings
+from kurbel.report.crank import equal_bearings
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
@@ -28,6 +28,7 @@ _REVERSAL = Words("force reversal")
 _CROSSING = 1e-9
 """Of the largest distance between two lines: where they cross, rounding alone is between them."""
 _MOST_NUMBERED = 24
+_MOST_SHADES = 100
 _HIGHEST = 12
 """Order up to which bars are drawn: beyond it they are too small to be seen."""
 _MODES = 4
@@ -69,11 +70,15 @@ def _remaining_force(source: Source, samples: Sampled, over: str) -> Panel:
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
-    """Yield what is between two lines, cut where they cross."""
+    """Yield what is between two lines, cut where they cross; where they cross all over, what is above and below."""
     apart = line - base
     above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
     # a point on the base belongs to the area before it, and to the next one, too
     crossings = np.flatnonzero((above[1:-1] == 0) | (above[1:-1] * above[2:] < 0)) + 1
+    if len(crossings) > _MOST_SHADES:
+        yield Shade(x, base, np.maximum(line, base))
+        yield Shade(x, base, np.minimum(line, base), gain=False)
+        return
     for start, end in pairwise((0, *crossings.tolist(), len(x) - 1)):
         part = slice(start, end + 1)
         if end > start and (above[part] != 0).any():

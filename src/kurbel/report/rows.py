@@ -15,8 +15,8 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called
-from kurbel.report.angles import stepped
 from kurbel.report.frame import Subject
+from kurbel.report.tables import stepped
 
 _SAME = 1e-9
 """Degrees by which angles differ by rounding only."""

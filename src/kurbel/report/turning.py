@@ -1,9 +1,8 @@
 """The reports of `kurbel flywheel`, `harmonics` and `torsion`: what turns the shaft, and how it twists."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -13,14 +12,13 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
+from kurbel.report.frame import ENDLESS, Frame, Row, Subject, place_table, report_on, subjects_of
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.harmonics import MachineOrders, Orders
-from kurbel.solver.torsion import RUN_UP, Critical, ShaftVibration, stress
+from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),
@@ -90,41 +88,34 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
 
     Raises UsageError if nothing turns the shaft, NoSolutionError if the machine stalls.
     """
-    *cylinders, whole = flywheel_subjects(case)
+    machine = case.machine
+    *cylinders, whole = subjects_of(case, "flywheel")
     having = [one for one in cylinders if any(one.key_values("flywheel"))]
     if frame.prose:
-        whole = replace(whole, left_out=tuple(flywheel_left_out(case.machine)), warnings=of_machine(case))
-    notes = _flywheel_notes(case.machine, case.flywheel)
-    return report_on(frame, case.machine, "Turning effort and flywheel", having, whole, notes)
+        whole = replace(whole, left_out=flywheel_left_out(machine), warnings=of_machine(case))
 
-
-def flywheel_subjects(case: Case) -> list[Subject]:
-    """Return every cylinder, and the whole machine last."""
-    turning = case.flywheel
-    cylinders = [Subject(one.drive.name, (DeadCentre(one, turning.effort.cycle),)) for one in case.cylinders]
-    return [*cylinders, Subject("whole machine", (turning,), turning.at, source=turning)]
-
-
-def _flywheel_notes(machine: Machine, turning: MachineTurning) -> Iterator[str]:
-    effort = turning.effort
+    turning, effort, notes = case.flywheel, case.flywheel.effort, []
     if turning.crank is not None:
         over = "over" if any(term.factor > 1 for term in effort.terms) else "with"
         eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
-        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
+        notes.append(
+            f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
+        )
     if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        yield "Such a load determines no speed: the mean of ω over time is taken as the nominal speed."
+        notes.append("Such a load determines no speed: the mean of ω over time is taken as the nominal speed.")
     if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
-        yield (
+        notes.append(
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
             "driven pistons, inertia, weight and friction count in full (R p. 613)."
         )
     if machine.efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
-        yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
+        notes.append("As in the book the efficiency applies to all of T; in ω the moving masses count in full.")
     if turning.rigid:
-        yield (
+        notes.append(
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
             "the driven inertia turns with the flywheel."
         )
+    return report_on(frame, machine, "Turning effort and flywheel", having, whole, notes)
 
 
 # orders of the torque
@@ -142,31 +133,34 @@ def harmonics_report(
     nothing turns the shaft.
     """
     machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
-    cylinders = []
+    cylinders, torques = [], []
     for one in found.cylinders:
         cylinder = one.forces.drive.cylinder
+        torques.append((f"The torque of {cylinder.name}", one.own))
         title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
         table = _orders_table(title, one.own, frame.system, one.area)
-        cylinders.append(Subject(cylinder.name, left_out=tuple(left_out(machine, cylinder)), tables=(table,)))
+        cylinders.append(Subject(cylinder.name, left_out=left_out(machine, cylinder), tables=(table,)))
+    torques.append(("The turning effort", found.machine))
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
     tables = [_orders_table(title, found.machine, frame.system, major=found.major_orders or ())]
     if speeds is not None:
         tables.append(_speeds_of_orders(machine, found, speeds, frame.system))
+
+    uniform = [what for what, torque in torques if _uniform(torque)]
+    notes = [f"{what} has none of these orders: they are all zero." for what in uniform]
+    if len(uniform) < len(torques):
+        notes.append(
+            "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
+        )
+        if found.machine.inertia is not None:
+            notes.append(
+                "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
+            )
     no_masses = "no masses, or no speed given" if found.cylinders else "the effort is given as a torque"
-    apart = {"gas and inertia apart": "" if found.machine.inertia else no_masses}
-    whole = Subject(
-        "whole machine",
-        (found,),
-        left_out=(*flywheel_left_out(machine), *missing(apart)),
-        warnings=of_machine(case) if frame.prose else (),
-        tables=tuple(tables),
-    )
-    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, _orders_notes(found))
-
-
-def harmonics_subjects(case: Case) -> list[Subject]:
-    """Return the whole machine."""
-    return [Subject("whole machine", (case.harmonics(),))]
+    apart = missing({"gas and inertia apart": "" if found.machine.inertia else no_masses})
+    lacking, warnings = (*flywheel_left_out(machine), *apart), of_machine(case) if frame.prose else ()
+    whole = Subject("whole machine", found, left_out=lacking, warnings=warnings, tables=tables)
+    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, notes)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -193,17 +187,16 @@ def _orders_table(
 ) -> PlaceTable:
     """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
     rows: list[Row] = []
-    inertia = repeat(None) if orders.inertia is None else orders.inertia.amplitudes.tolist()
-    whole, gas = orders.whole.amplitudes.tolist(), orders.gas.amplitudes.tolist()
-    for order, amplitude, of_gas, of_inertia in zip(orders.whole.orders.tolist(), whole, gas, inertia):
+    for index, order in enumerate(orders.whole.orders.tolist()):
+        amplitude = complex(orders.whole.amplitudes[index])
         values = _of_order(order, amplitude)
-        if of_inertia is not None:
-            values |= {"M_gas": abs(of_gas), "M_inertia": abs(of_inertia)}
+        if orders.inertia is not None:
+            values["M_gas"] = float(abs(orders.gas.amplitudes[index]))
+            values["M_inertia"] = float(abs(orders.inertia.amplitudes[index]))
         if area:
             values["t_order"] = abs(amplitude) / area
         rows.append((("major" if order in major else "",), values))
-    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
-    return table._replace(said=_uniform(orders))
+    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(said=_uniform(orders))
 
 
 def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
@@ -231,26 +224,12 @@ def _uniform(found: Orders) -> bool:
     return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
 
 
-def _orders_notes(found: MachineOrders) -> Iterator[str]:
-    torques = [(f"The torque of {one.forces.drive.cylinder.name}", one.own) for one in found.cylinders]
-    torques.append(("The turning effort", found.machine))
-    uniform = [what for what, orders in torques if _uniform(orders)]
-    yield from (f"{what} has none of these orders: they are all zero." for what in uniform)
-    if len(uniform) == len(torques):
-        return
-    yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
-    if found.machine.inertia is not None:
-        yield "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
-
-
 # torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
 
 _HIGHEST_CRITICAL = 12
 """Order up to which critical speeds are listed unless orders are requested."""
 _MODES = 3
 """Modes whose critical speeds are listed unless others are requested."""
-_Amplitude = tuple[float | None, float | None]
-"""Largest vibratory torque in N m and stress in Pa of any piece, None if not known."""
 
 
 class Wanted(NamedTuple):
@@ -270,63 +249,58 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     """
     found, system = case.torsion_of(_orders(case.machine, wanted.orders)), frame.system
     critical = found.critical_speeds(wanted.modes, _HIGHEST_CRITICAL if wanted.orders is None else math.inf)
-    _refuse_endless(found)
-    amplitudes = _at_critical(found, critical)
-    tables = [
-        _modes_table(found, system),
-        _holzer_table(found, wanted.mode, system),
-        _critical_table(critical, amplitudes, system),
-        *([_pieces_table(found, system)] if found.pieces else []),
-        *([] if wanted.speeds is None or found.obstacle else [_speeds_table(found, wanted.speeds, system)]),
-    ]
+    if found.vibration is not None and found.vibration.endless.any():
+        raise NoSolutionError(ENDLESS)
+    tables = [_modes_table(found, system), _holzer_table(found, wanted.mode, system)]
+
+    # what is not reached, or hardly damped, has no amplitude
+    reached = [one for one in critical if found.met(one)]
+    of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
+    rows: list[Row] = []
+    for one in critical:
+        values: dict[str, float | None] = {"order": one.order, "mode": float(one.mode), "speed": one.speed}
+        values |= {"phase_sum": one.phase_sum, "distance": one.distance}
+        for amplitudes in of_reached.get(one, ()):
+            for id, amplitude in amplitudes.items():
+                values[id] = max(values.get(id) or 0.0, amplitude)
+        known = {id: value for id, value in values.items() if value is not None}
+        rows.append((("near" if one.near else "",), known))
+    tables.append(place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system))
+    hidden = bool(reached) and any("M_vibratory" not in values for _, values in rows)
+
+    if found.pieces:
+        rows = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
+        title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
+        tables.append(place_table("pieces", title, ("piece",), PIECES, rows, system))
+    if wanted.speeds is not None and not found.obstacle:
+        rows = [
+            ((found.piece_name(number),), {"speed": speed, **amplitudes})
+            for number, piece in enumerate(zip(*_at_speeds(found, wanted.speeds)))
+            for speed, amplitudes in zip(wanted.speeds, piece)
+        ]
+        title = "Vibratory torque over the speed, all these orders together"
+        tables.append(place_table("speeds", title, ("piece",), SPEEDS, rows, system))
+
     warnings = (*_near_speeds(found, critical), *of_machine(case)) if frame.prose else ()
-    lacking = tuple(torsion_left_out(found))
-    whole = Subject("shaft line", (found,), left_out=lacking, warnings=warnings, tables=tuple(tables))
-    pieces = [Subject(one.name, (), one.at) for one in found.pieces] if frame.columns else []
-    notes = _torsion_notes(found, wanted, critical, amplitudes)
+    whole = Subject("shaft line", found, left_out=torsion_left_out(found), warnings=warnings, tables=tables)
+    pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
+    notes = _torsion_notes(found, wanted.orders is None, hidden)
     return report_on(frame, case.machine, "Torsional vibration", pieces, whole, notes)
 
 
-def torsion_subjects(case: Case) -> list[Subject]:
-    """Return the shaft line; raises NoSolutionError if an undamped resonance has no limit."""
-    _refuse_endless(case.torsion)
-    return [Subject("shaft line", (case.torsion,))]
-
-
-def torsion_warnings(case: Case) -> Iterator[str]:
-    """Yield which of the usual critical speeds are near the working speed; raises as `torsion_subjects` does."""
-    _refuse_endless(case.torsion)
-    yield from _near_speeds(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
-
-
-def _refuse_endless(found: ShaftVibration) -> None:
-    if found.vibration is not None and found.vibration.endless.any():
-        raise NoSolutionError(
-            "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of "
-            "the shaft are too unequal to compute with: check the units of their stiffnesses"
-        )
-
-
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
-    """Return the natural frequencies, with the nodes of each mode."""
+    """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
     rows: list[Row] = []
-    for index, omega in enumerate(found.modes.omegas.tolist()):
-        mode = float(found.first + index)
-        values = {"mode": mode, "frequency": omega / (2 * math.pi), "omega_natural": omega}
-        rows.append(((_nodes(found, index),), values))
-    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
-
-
-def _nodes(found: ShaftVibration, index: int) -> str:
-    """Return how many nodes a mode has, and where if they are few."""
-    if found.first + index == 0:
-        return "rotation"
     names = [mass.name for mass in found.line.masses]
-    held = ["at the ground"] if found.chain.ground else []
-    nodes = found.modes.nodes(index)
-    where = held + [f"{names[mass]} + {share:.2f}" if share else names[mass] for mass, share in nodes]
-    count = f"{len(where)} node{'s' if len(where) > 1 else ''}"
-    return f"{count}: {', '.join(where)}" if len(where) <= 2 else count
+    for index, omega in enumerate(found.modes.omegas.tolist()):
+        mode, where = found.first + index, ["at the ground"] if found.chain.ground else []
+        for mass, share in found.modes.nodes(index) if mode else ():
+            where.append(f"{names[mass]} + {share:.2f}" if share else names[mass])
+        nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}" if mode else "rotation"
+        nodes = f"{nodes}: {', '.join(where)}" if mode and len(where) <= 2 else nodes
+        values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
+        rows.append(((nodes,), values))
+    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
 
 
 def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
@@ -348,78 +322,41 @@ def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
     return place_table("holzer", title, ("mass",), HOLZER, rows, system)
 
 
-def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[_Amplitude]]:
-    """Yield for each speed torque and stress of every piece, nothing at an undamped resonance."""
-    vibration = found.forced(speeds)
+def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:
+    """Yield for each speed vibratory torque and stress of every piece, nothing at an undamped resonance."""
+    vibration = found.forced(speeds) if speeds else None
     factors = [stress(found.line, piece) for piece in range(len(found.line.pieces))]
-    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
-        yield [
-            (None, None) if endless else (torque, None if factor is None else factor * torque)
-            for torque, factor in zip(torques, factors)
-        ]
+    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless) if vibration else ():
+        of_pieces: list[dict[str, float]] = []
+        for torque, factor in zip(torques, factors):
+            tension = {} if factor is None else {"tau_vibratory": factor * torque}
+            of_pieces.append({} if endless else {"M_vibratory": torque, **tension})
+        yield of_pieces
 
 
-def _at_critical(found: ShaftVibration, critical: Sequence[Critical]) -> list[_Amplitude]:
-    """Return the largest torque and stress of any piece at critical speeds, nothing at those that are not reached."""
-    reached = _at_speeds(found, [one.speed for one in critical if found.met(one)])
-    amplitudes: list[_Amplitude] = []
-    for one in critical:
-        torques, stresses = zip(*next(reached)) if found.met(one) else ((), ())
-        amplitudes.append((_largest(torques), _largest(stresses)))
-    return amplitudes
-
-
-def _known(values: Mapping[str, float | None]) -> dict[str, float]:
+def _of_piece(piece: SegmentTorque) -> dict[str, float]:
+    torques = piece.M_shaft_mean, piece.M_shaft_max, piece.M_shaft_min, piece.M_vibratory
+    values = dict(zip(PIECES, (*torques, piece.tau_mean, piece.tau_vibratory)))
     return {id: value for id, value in values.items() if value is not None}
 
 
-def _largest(values: Iterable[float | None]) -> float | None:
-    return max((value for value in values if value is not None), default=None)
-
-
-def _critical_table(critical: Sequence[Critical], amplitudes: Sequence[_Amplitude], system: str) -> PlaceTable:
-    rows: list[Row] = []
-    for one, (torque, tension) in zip(critical, amplitudes):
-        values = {
-            "order": one.order,
-            "mode": float(one.mode),
-            "speed": one.speed,
-            "phase_sum": one.phase_sum,
-            "distance": one.distance,
-            "M_vibratory": torque,
-            "tau_vibratory": tension,
-        }
-        rows.append((("near" if one.near else "",), _known(values)))
-    return place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system)
-
-
-def _pieces_table(found: ShaftVibration, system: str) -> PlaceTable:
-    """Return torques and stresses in the pieces at the working speed."""
-    rows: list[Row] = [((piece.name,), _known({id: getattr(piece, id) for id in PIECES})) for piece in found.pieces]
-    title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-    return place_table("pieces", title, ("piece",), PIECES, rows, system)
-
-
-def _speeds_table(found: ShaftVibration, speeds: Sequence[float], system: str) -> PlaceTable:
-    """Return the vibratory torque in every piece over the speed."""
-    rows: list[Row] = []
-    for piece, amplitudes in enumerate(zip(*_at_speeds(found, speeds))):
-        for speed, (torque, tension) in zip(speeds, amplitudes):
-            values = {"speed": speed, "M_vibratory": torque, "tau_vibratory": tension}
-            rows.append(((found.piece_name(piece),), _known(values)))
-    title = "Vibratory torque over the speed, all these orders together"
-    return place_table("speeds", title, ("piece",), SPEEDS, rows, system)
-
-
-def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
-    """Yield what torsional vibration leaves out."""
+def torsion_left_out(found: ShaftVibration) -> list[LeftOut]:
+    """Return what torsional vibration leaves out."""
     bare = [found.piece_name(index) for index, piece in enumerate(found.line.pieces) if not piece.sections]
-    if found.obstacle:
-        yield LeftOut("forced vibration, torques and stresses", found.obstacle)
-    elif bare:
-        yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
-    if found.machine.cylinders:
-        yield LeftOut("change of the inertia over the turn", "the mean counts; what its change excites is not computed")
+    mean = "the mean counts; what its change excites is not computed"
+    return missing(
+        {
+            "forced vibration, torques and stresses": found.obstacle,
+            f"stress in {', '.join(bare)}": "no diameter given" if bare and not found.obstacle else "",
+            "change of the inertia over the turn": mean if found.machine.cylinders else "",
+        }
+    )
+
+
+def torsion_warnings(case: Case) -> Iterator[str]:
+    """Yield which of the usual critical speeds are near the working speed; raises as `subjects_of` does."""
+    subjects_of(case, "torsion")
+    yield from _near_speeds(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
 
 
 def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:
@@ -435,34 +372,30 @@ def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterato
             )
 
 
-def _torsion_notes(
-    found: ShaftVibration, wanted: Wanted, critical: Sequence[Critical], amplitudes: Sequence[_Amplitude]
-) -> Iterator[str]:
-    if wanted.orders is None:
+def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator[str]:
+    """Yield the notes; usual: no orders are requested; hidden: some critical speeds have no amplitude, others have."""
+    line = found.line
+    if usual:
         yield f"Critical speeds of orders up to {_HIGHEST_CRITICAL}; --orders lists others, --modes more modes."
-    if any(map(found.met, critical)) and any(torque is None for torque, _ in amplitudes):
+    if hidden:
         yield (
             "Torques and stresses at a critical speed include all orders, when running there; – marks a speed that the "
             f"machine does not reach, beyond {RUN_UP:g} times the working speed, and a mode that is hardly damped."
         )
-    if any(piece.ratio != 1 for piece in found.line.pieces):
+    if any(piece.ratio != 1 for piece in line.pieces):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
     if not found.machine.cylinders and found.machine.effort:
-        yield f"The effort acts on {found.line.masses[0].name}, the first mass."
-    if found.pieces:
-        higher = ""
-        if found.remainder is not None:
-            higher = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
-        taker = "what holds it" if found.chain.ground else found.line.masses[found.line.load].name
-        orders = _listed(found.summed)
-        yield f"Forced vibration: {orders} together{higher}, about uniform rotation; the mean torque goes to {taker}."
-
-
-def _listed(orders: Array | None) -> str:
-    """Return orders in words: few of them one by one, many by the first and the last."""
-    if orders is None:
-        return "all orders"
-    names = [f"{order:g}" for order in orders]
-    if len(names) > 4:
-        return f"{len(names)} orders from {names[0]} to {names[-1]}"
-    return f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
+        yield f"The effort acts on {line.masses[0].name}, the first mass."
+    if not found.pieces:
+        return
+    orders = "all orders"
+    if found.summed is not None:
+        names = [f"{order:g}" for order in found.summed]
+        orders = f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
+        orders = orders if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
+    if found.remainder is not None:
+        orders += f" together (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
+    else:
+        orders += " together"
+    taker = "what holds it" if found.chain.ground else line.masses[line.load].name
+    yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."

@@ -13,23 +13,42 @@ from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
-from kurbel.report.angles import stepped
-from kurbel.report.check import Checked, checked
-from kurbel.report.commands import REPORTS, Command, report_of, subjects_of
+from kurbel.report.balance import balance_report
+from kurbel.report.check import checked
+from kurbel.report.commands import REPORTS, Command
+from kurbel.report.crank import bearings_report, forces_report, motion_report, stress_report
 from kurbel.report.document import Document, Grid, Item, Pair, Section
-from kurbel.report.frame import Frame, Subject, provenance
+from kurbel.report.frame import Frame, Subject, provenance, subjects_of
 from kurbel.report.keys import every_place, meaning
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
-from kurbel.report.tables import LeftOut
+from kurbel.report.tables import Report, stepped
+from kurbel.report.turning import flywheel_report, harmonics_report, torsion_report
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
+Thing = TypeVar("Thing")
 Given = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
 Progress = Callable[[str], None]
 """Called with what is computed next."""
-Thing = TypeVar("Thing")
+_VERDICTS = "Limits", "Expected"
+_NONE = "–"
+_REPORTS: dict[str, Callable[[Case, Frame], Report]] = {
+    "motion": motion_report,
+    "forces": forces_report,
+    "flywheel": flywheel_report,
+    "stress": stress_report,
+    "bearings": bearings_report,
+    "balance": balance_report,
+    "harmonics": harmonics_report,
+    "torsion": torsion_report,
+}
+
+
+def report_of(case: Case, frame: Frame) -> Report:
+    """Return the report of the command that the frame is of."""
+    return _REPORTS[frame.command](case, frame)
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
@@ -39,30 +58,35 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
     given: the keys of its file; step: of the tables in degrees.
     """
     stepped(step, 360.0)  # a step that is none is refused at once
-    found = checked(case)
-    sections: list[Section | None] = [_input(given, found)]
-    left_out: list[LeftOut] = []
-    for command in REPORTS.values():
-        progress(command.title.lower())
-        try:
-            sections.append(Section(command.word, command.title, tuple(_items(case, command, system, step))))
-        except UsageError as error:
-            left_out.append(LeftOut(command.title, str(error).removeprefix(f"{case.machine.name}: ")))
-    sections += [_verdicts(found), _energy(case, system)]
-    if left_out:
-        grid = Grid("", ("Part", "Why"), tuple((one.what, one.why) for one in left_out))
-        sections.append(Section("left-out", "Left out", (grid,)))
-    return Document(case.machine.name, (provenance(case.machine),), tuple(one for one in sections if one))
-
-
-def _input(given: Given, found: Checked) -> Section:
-    places = every_place()
+    found, places = checked(case), every_place()
     rows = tuple((path, value, meaning(path, places)) for path, value in given)
     items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), rows)] if rows else []
     for part in found.shown_once:
         if part.title not in _VERDICTS:
             items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
-    return Section("input", "Input as understood", tuple(items))
+    sections = [Section("input", "Input as understood", tuple(items))]
+
+    left_out: list[tuple[str, str]] = []
+    for command in REPORTS.values():
+        progress(command.title.lower())
+        try:
+            sections.append(Section(command.word, command.title, tuple(_items(case, command, system, step))))
+        except UsageError as error:
+            left_out.append((command.title, str(error).removeprefix(f"{case.machine.name}: ")))
+
+    verdicts: list[Item] = []
+    for part in found.sections:
+        if part.title in _VERDICTS:
+            listed = tuple((one.what, one.text) for one in part.entries)
+            colours = tuple("bad" if one.severity == "error" else "good" for one in part.entries)
+            verdicts.append(Grid(part.title, ("Key value", "Verdict"), listed, verdicts=colours))
+    verdicts += [str(error) for error in found.errors]
+    sections += [
+        Section("verdicts", "Limits and expectations", tuple(verdicts)),
+        Section("energy", "Energy balance", tuple(_energy(case, system))),
+        Section("left-out", "Left out", (Grid("", ("Part", "Why"), tuple(left_out)),) if left_out else ()),
+    ]
+    return Document(case.machine.name, (provenance(case.machine),), tuple(one for one in sections if one.items))
 
 
 def _items(case: Case, command: Command, system: str, step: float) -> list[Item]:
@@ -87,41 +111,26 @@ def _items(case: Case, command: Command, system: str, step: float) -> list[Item]
     return [*found, table]
 
 
-_VERDICTS = "Limits", "Expected"
+def _energy(case: Case, system: str) -> Iterator[Grid]:
+    """Yield for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open.
 
-
-def _verdicts(found: Checked) -> Section | None:
-    """Return how the limits and the expectations of the machine file compare."""
-    items: list[Item] = []
-    for part in found.sections:
-        if part.title in _VERDICTS:
-            rows = tuple((one.what, one.text) for one in part.entries)
-            verdicts = tuple("bad" if one.severity == "error" else "good" for one in part.entries)
-            items.append(Grid(part.title, ("Key value", "Verdict"), rows, verdicts=verdicts))
-    items += [str(error) for error in found.errors]
-    return Section("verdicts", "Limits and expectations", tuple(items)) if items else None
-
-
-def _energy(case: Case, system: str) -> Section | None:
-    """Return for every cylinder where the energy of a cycle goes, equal ones once."""
+    Equal ones are there once, those without a solution not at all.
+    """
     found = [(forces.drive.name, _energy_rows(forces, system)) for forces in case.cylinders]
-    items = []
     for equal in grouped((one for one in found if one[1]), itemgetter(1)):
         name = together([name for name, _ in equal])
-        items.append(Grid(name, ("Per cycle", "Energy", "Unit"), equal[0][1], numbers=(1,), units=(2,)))
-    return Section("energy", "Energy balance", tuple(items)) if items else None
+        yield Grid(name, ("Per cycle", "Energy", "Unit"), equal[0][1], numbers=(1,), units=(2,))
 
 
 def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[str, str, str], ...]:
-    """Return the works of a cycle, and what an independent quadrature leaves open; nothing without a solution."""
     try:
-        left, residual = forces.work_left, forces.energy_residual
+        left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            ("Friction of the crosshead", _lost(forces.friction_works.get("crosshead"))),
-            ("Friction of the piston rings", _lost(forces.friction_works.get("rings"))),
-            ("Friction given as a force", _lost(forces.friction_works.get("constant"))),
+            ("Friction of the crosshead", -(friction.get("crosshead") or 0.0)),
+            ("Friction of the piston rings", -(friction.get("rings") or 0.0)),
+            ("Friction given as a force", -(friction.get("constant") or 0.0)),
             ("What the output works against", forces.resistance_work),
         ]
     except KurbelError:
@@ -136,61 +145,36 @@ def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[str, str, s
     return (*rows, ("Left open by an independent quadrature, over the turnover", open_, ""))
 
 
-def _lost(work: float | None) -> float | None:
-    return None if work is None else -work
-
-
 # two machines side by side
-
-_NONE = "–"
 
 
 @np.errstate(all="ignore")
 def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
     """Return two machines side by side: input that differs, key values with their differences, pictures in pairs."""
-    first, second = (case.machine.name for case in cases)
-    names = (first, second) if first != second else (f"{first} (A)", f"{second} (B)")
-    sections = [Section("input", "What was given differently", (*_files(cases, names), _given(given, names)))]
-    for command in REPORTS.values():
-        progress(command.title.lower())
-        items: tuple[Item, ...] = (*_key_values(cases, names, command, system), *_pairs(cases, names, command, system))
-        sections.append(Section(command.word, command.title, items))
-    sources = tuple(provenance(case.machine) for case in cases)
-    return Document(" and ".join(names), sources, tuple(one for one in sections if one.items))
-
-
-def _files(cases: Sequence[Case], names: Sequence[str]) -> Iterator[str]:
+    names = [case.machine.name for case in cases]
+    names = names if names[0] != names[1] else [f"{names[0]} (A)", f"{names[1]} (B)"]
     files = [case.machine.origin.name for case in cases if case.machine.origin]
+    items: list[Item] = []
     if len(files) == len(names):
-        yield "; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + "."
-
-
-def _given(given: Sequence[Given], names: Sequence[str]) -> Grid | str:
+        items.append("; ".join(f"{name} is that of {file}" for name, file in zip(names, files)) + ".")
     one, other = map(dict, given)
     keys = dict.fromkeys((*one, *other))
-    rows = [(key, one.get(key, _NONE), other.get(key, _NONE)) for key in keys if one.get(key) != other.get(key)]
-    return Grid("Keys", ("Key", *names), tuple(rows)) if rows else "Nothing: both files give the same."
+    rows = tuple((key, one.get(key, _NONE), other.get(key, _NONE)) for key in keys if one.get(key) != other.get(key))
+    items.append(Grid("Keys", ("Key", *names), rows) if rows else "Nothing: both files give the same.")
+    sections = [Section("input", "What was given differently", tuple(items))]
 
-
-def _key_values(cases: Sequence[Case], names: Sequence[str], command: Command, system: str) -> Iterator[Grid]:
-    """Yield the key values of both machines, cylinder next to cylinder, equal ones once."""
-    both = [_if_any(partial(subjects_of, case, command.word)) for case in cases]
-    heads = ("Symbol", *names, "Unit", "Difference", "Meaning")
-    found = [(one or other, one, other) for one, other in zip_longest(*both)]
-    compared = [(some.name, tuple(_rows(one, other, command.word, system))) for some, one, other in found]
-    for equal in grouped(compared, itemgetter(1)):
-        if rows := equal[0][1]:
-            title = together([name for name, _ in equal]) if len(compared) > 1 else "Key values"
-            yield Grid(title, heads, rows, (1, 2, 4), (3,))
-
-
-def _pairs(cases: Sequence[Case], names: Sequence[str], command: Command, system: str) -> Iterator[Pair]:
-    for declared in PICTURES:
-        if declared.command == command.word:
-            drawn = [_if_any(partial(pictures_if_any, case, declared, PictureOptions(system))) for case in cases]
-            # each picture is named as its machine is here
-            drawn = [[one._replace(machine=name) for one in some] for some, name in zip(drawn, names)]
-            yield from (Pair(left, right) for left, right in zip_longest(*drawn))
+    for command in REPORTS.values():
+        progress(command.title.lower())
+        items = [*_key_values(cases, names, command.word, system)]
+        for kind in PICTURES:
+            if kind.command == command.word:
+                drawn = [_if_any(partial(pictures_if_any, case, kind, PictureOptions(system))) for case in cases]
+                # each picture is named as its machine is here
+                drawn = [[one._replace(machine=name) for one in some] for some, name in zip(drawn, names)]
+                items += [Pair(left, right) for left, right in zip_longest(*drawn)]
+        sections.append(Section(command.word, command.title, tuple(items)))
+    sources = tuple(provenance(case.machine) for case in cases)
+    return Document(" and ".join(names), sources, tuple(one for one in sections if one.items))
 
 
 def _if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
@@ -201,25 +185,31 @@ def _if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
         return []
 
 
-def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> Iterator[tuple[str, ...]]:
-    found = [_numbers(one, command) for one in (left, right)]
-    both = {quantity: [one.get(quantity) for one in found] for quantity in (*found[0], *found[1])}
+def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, system: str) -> Iterator[Grid]:
+    """Yield the key values of both machines, cylinder next to cylinder, equal ones once."""
+    both = [_if_any(partial(subjects_of, case, command)) for case in cases]
+    compared = [((one or other).name, _rows(one, other, command, system)) for one, other in zip_longest(*both)]
+    for equal in grouped(compared, itemgetter(1)):
+        if rows := equal[0][1]:
+            title = together([name for name, _ in equal]) if len(compared) > 1 else "Key values"
+            yield Grid(title, ("Symbol", *names, "Unit", "Difference", "Meaning"), rows, (1, 2, 4), (3,))
+
+
+def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> tuple[tuple[str, ...], ...]:
+    """Return the single key values of two subjects with their difference; no lists, and no residuals of rounding."""
+    both: dict[Quantity, list[float | None]] = {}
+    for place, subject in enumerate((left, right)):
+        for quantity, value in _if_any(partial(subject.key_values, command)) if subject else ():
+            number = number_of(value)
+            if isinstance(number, (int, float)) and not quantity.residual:
+                both.setdefault(quantity, [None, None])[place] = number
     units = units_of([(one.kind, one.family, max(map(size_of, values))) for one, values in both.items()], system)
-    for (quantity, values), unit in zip(both.items(), units):
-        texts = [_NONE if value is None else f"{convert(value, quantity.kind, unit):.5g}" for value in values]
-        yield quantity.symbol, *texts, quantity.marked(unit), _difference(*values), quantity.text
-
-
-def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
-    """Return the single key values of a subject in SI; lists are not compared, nor is rounding."""
-    values = _if_any(partial(subject.key_values, command)) if subject else []
-    numbers = {quantity: number_of(value) for quantity, value in values if not quantity.residual}
-    return {quantity: value for quantity, value in numbers.items() if isinstance(value, (int, float))}
-
-
-def _difference(first: float | None, second: float | None) -> str:
-    """Return by how many percent of the first the second is larger, if that is defined."""
-    if first is None or second is None or (not first and second):
-        return _NONE
-    percent = 100 * (second - first) / abs(first) if first else 0.0
-    return f"{percent:+.{2 if abs(percent) < 100 else 0}f} %" if percent else "0 %"
+    rows = []
+    for (quantity, (first, second)), unit in zip(both.items(), units):
+        texts = [_NONE if one is None else f"{convert(one, quantity.kind, unit):.5g}" for one in (first, second)]
+        difference = _NONE
+        if first is not None and second is not None and (first or not second):
+            percent = 100 * (second - first) / abs(first) if first else 0.0
+            difference = f"{percent:+.{2 if abs(percent) < 100 else 0}f} %" if percent else "0 %"
+        rows.append((quantity.symbol, *texts, quantity.marked(unit), difference, quantity.text))
+    return tuple(rows)

@@ -97,17 +97,16 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
     sin, cos, lam = angle.sin, angle.cos, 1 / ratio
     # ρ = 1 − (R/L)² without its cancellation
     rho = 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio)
-    kappa = formulas.cos_rod_angle(sin, cos, rho)
-    known = sin, cos, kappa, lam, rho
+    kappa = math.sqrt(cos * cos + rho * (sin * sin))
     guide = lam * sin / kappa  # N/P = tan ψ, R 301
     factors = {
-        "acceleration_factor": formulas.acceleration_factor(*known),
-        "velocity_factor": formulas.velocity_factor(*known),
-        "displacement_factor": formulas.displacement_factor(*known),
+        "acceleration_factor": cos - sin * guide + lam * cos * cos / kappa**3,
+        "velocity_factor": sin + cos * guide,
+        "displacement_factor": angle.versine + lam * sin * sin / (1 + kappa),
         "psi": math.degrees(math.atan(guide)),
         "rod_force_factor": 1 / kappa,
         "guide_force_factor": guide,
-        "radial_force_factor": formulas.radial_factor(*known),
+        "radial_force_factor": cos - sin * guide,
     }
     if formula != "exact":
         factors["acceleration_factor"] = formulas.first_order_acceleration(sin, cos, lam)

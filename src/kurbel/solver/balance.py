@@ -28,7 +28,6 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.machine.batch import values_of
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
 from kurbel.numerics.enclosing import ClosedCurve
@@ -97,20 +96,17 @@ def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
 def waves_of(throws: Sequence[OwnThrow], curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
     """Return m x″(φ − β) e^{iγ} of each throw in kg m by orders from −k to k, (throws, 2k + 1, count).
 
-    Of equal mechanisms the orders are found once.
+    Of a mechanism that several cylinders share the orders are found once.
     """
-    orders: dict[object, ComplexArray] = {}
-    keys: list[object] = []
+    orders: dict[int, ComplexArray] = {}
     for throw in throws:
-        lengths = values_of(throw.mechanism).values()
-        said = tuple(one.tobytes() if isinstance(one, np.ndarray) else one for one in lengths)
-        keys.append((type(throw.mechanism), *said))
-        if keys[-1] not in orders:
-            orders[keys[-1]] = orders_of(throw, curvature, count)
+        if id(throw.mechanism) not in orders:
+            orders[id(throw.mechanism)] = orders_of(throw, curvature, count)
 
     k, found = max(_FEWEST, *map(len, orders.values())), []
-    for key, throw in zip(keys, throws):
-        forward = np.concatenate((orders[key], np.zeros((k - len(orders[key]), count))))
+    for throw in throws:
+        own = orders[id(throw.mechanism)]
+        forward = np.concatenate((own, np.zeros((k - len(own), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
         late = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.late, count))
         found.append(waves * throw.mass * unit_vector(throw.bank - late))

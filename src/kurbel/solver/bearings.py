@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -151,12 +151,11 @@ class Bearing(Results):
         """Return the load on the common pieces of journal and of shell, two parts each, (4, nodes, pieces)."""
 
     @abstractmethod
-    def _rate(self) -> tuple[Extreme, Any]:
-        """By how much its surfaces turn on one another, over that of the crank: the largest, and the mean over time."""
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+        """By how much its surfaces turn on one another over the crank, the largest and the mean; its friction's work.
 
-    @abstractmethod
-    def _work(self) -> Any:
-        """Return the work of its friction in J per cycle of the machine; None without a coefficient."""
+        The work is in J per cycle of the machine, None without a coefficient.
+        """
 
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
         return BearingColumns(phi, self._frames(phi, within))
@@ -192,17 +191,17 @@ class Bearing(Results):
             found[f"unloaded_arc{ending}"] = None if self.count is None and math.isnan(arc) else arc
             found[f"unloaded_middle{ending}"] = None if self.count is None and math.isnan(middle) else middle
 
-        diameter, length = self.size
+        (diameter, length), (fastest, rate, work) = self.size, self._rubbing()
         if diameter is not None and length is not None:
             found["pressure_max"] = Extreme(loads.largest.value / (diameter * length), loads.largest.degrees)
             found["pressure_mean"] = mean / (diameter * length)
         if diameter is not None and self.omega is not None:
-            surface_speed, (fastest, rate) = self.omega * diameter / 2, self._rate()
+            surface_speed = self.omega * diameter / 2
             found["rubbing_speed_max"] = Extreme(fastest.value * surface_speed, fastest.degrees)
             found["rubbing_speed_mean"] = rate * surface_speed
             if length is not None:
                 found["pressure_velocity"] = found["pressure_mean"] * found["rubbing_speed_mean"]
-        return {**found, "work_rubbing": self._work()}
+        return {**found, "work_rubbing": work}
 
 
 class RodPin(Bearing):
@@ -239,18 +238,16 @@ class RodPin(Bearing):
         journal, shell = frames[self.journal], frames[self.shell]
         return self._own.carried(self._common, journal.real, journal.imag, shell.real, shell.imag)
 
-    def _rate(self) -> tuple[Extreme, Any]:
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
-        state = self._own.forces.samples
+        forces = self._own.forces
+        state, work = forces.samples, forces.pin_work_of(self._pin)
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
         rate = self._own.carried(self._common, 1 + slope if self._pin == "crank_pin" else slope)
-        return self._common.extremes(rate).each(self._told)[0].peak, self._told(self._common.mean(np.abs(rate[0])))
-
-    def _work(self) -> Any:
-        forces = self._own.forces
-        work = forces.pin_work_of(self._pin)
-        return None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
+        fastest = self._common.extremes(rate).each(self._told)[0].peak
+        whole = None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
+        return fastest, self._told(self._common.mean(np.abs(rate[0]))), whole
 
 
 class MainBearing(Bearing):
@@ -304,17 +301,15 @@ class MainBearing(Bearing):
         engine = force * (angle.cos + 1j * angle.sin)
         return np.stack((force.real, force.imag, engine.real, engine.imag))
 
-    def _rate(self) -> tuple[Extreme, Any]:
-        return Extreme(1.0, self._told(np.zeros(self.count or 1))), 1.0
-
-    def _work(self) -> Any:
+    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+        fastest = Extreme(1.0, self._told(np.zeros(self.count or 1)))
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size[0] is None:
-            return None
+            return fastest, 1.0, None
         force = self._sampled(rubbed=False)
         pieces, load, _ = with_magnitude(self._common, np.stack((force.real, force.imag)))
-        return self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
+        return fastest, 1.0, self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
 def _pin_load(state: State) -> Vector:
@@ -380,38 +375,40 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array,
     strongest = np.take_along_axis(towards, size.argmax(axis=0)[None], axis=0)
     direction = np.degrees(np.angle(towards * np.conj(strongest))) + np.degrees(np.angle(strongest))
     low, high = pieces.ranges(direction)
-    return unreached(pieces.machine, low + contact - HALF_CONTACT, high + contact + HALF_CONTACT, pieces.count)
+    starts, widths = low + contact - HALF_CONTACT, high - low + 2 * HALF_CONTACT
+    # every machine has pieces here, but one that nothing presses
+    arcs = np.split(np.stack((starts, widths), axis=1), np.searchsorted(pieces.machine, np.arange(1, pieces.count)))
+    free = np.array([unreached(one.tolist()) for one in arcs])
+    return free[:, 0], free[:, 1]
 
 
-def unreached(machine: Indices, start: Array, end: Array, count: int) -> tuple[Array, Array]:
-    """Return in degrees what of a circle arcs (n,) leave free, and the middle of its widest stretch, (count,).
+def unreached(arcs: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Return in degrees what of a circle arcs leave free, and the middle of its widest stretch.
 
-    machine: whose each arc is, ascending. Of stretches equally wide it is the first from 0° on; nan where there is
-    none, and for both where there is no arc.
+    arcs: where each starts, and how wide it is. Of stretches equally wide it is the first from 0° on; nan where there
+    is none, and for both where there is no arc.
     """
-    each = np.bincount(machine, minlength=count)
-    place = np.arange(len(machine)) - (np.cumsum(each) - each)[machine]
-    begins, ends = np.full((count, each.max(initial=1)), math.inf), np.full((count, each.max(initial=1)), -math.inf)
-    begins[machine, place] = np.mod(start, 360.0)
-    ends[machine, place] = begins[machine, place] + (end - start)
-    order = np.argsort(begins, axis=1)
-    begins, ends = (np.take_along_axis(one, order, axis=1) for one in (begins, ends))
-    begins, ends = (np.concatenate([one + turn for turn in (-360.0, 0.0, 360.0)], axis=1) for one in (begins, ends))
-    begins = np.where(np.isfinite(begins), begins, 0.0)  # beyond the last arc, which no longer count
-    gaps = begins[:, 1:] - np.maximum.accumulate(ends, axis=1)[:, :-1]
-    gaps[(begins[:, 1:] <= 0) | (begins[:, 1:] > 360.0) | (gaps < 0)] = 0.0
-    widest = np.argmax((gaps > 0) & (gaps > gaps.max(axis=1, keepdims=True) - _EQUAL), axis=1)
-    row = np.arange(count)
-    middle = begins[row, 1 + widest] - gaps[row, widest] / 2
-    middle = _axial(middle - 360.0 * np.rint(middle / 360.0), _EQUAL)
-    arc = np.where(each > 0, gaps.sum(axis=1), math.nan)
-    return arc, np.where(arc > 0, middle, math.nan)
+    if not arcs:
+        return math.nan, math.nan
+    ordered = sorted((360.0 - (-start) % 360.0, width) for start, width in arcs)
+    reached, gaps = max(start + width for start, width in ordered) - 360.0, []
+    for start, width in ordered:
+        gaps.append((max(start - reached, 0.0), start))
+        reached = max(reached, start + width)
+    widest, end = max(gaps)
+    if widest == 0:
+        return 0.0, math.nan
+    widest, end = next(one for one in gaps if one[0] > widest - _EQUAL)
+    return sum(gap for gap, _ in gaps), float(_axial(np.asarray(math.remainder(end - widest / 2, 360.0)), _EQUAL))
 
 
 def _axial(directions: Array, rounding: float) -> Array:
-    """Return directions (n,) in degrees, those along their axis but for this rounding as 0 or 180."""
+    """Return directions in degrees, those along their axis but for this rounding as 0 or 180."""
     along = np.rint(directions / 180.0) * 180.0
     return np.where(np.abs(directions - along) <= rounding, np.abs(along), directions)
+
+
+# all of them
 
 
 class ShaftBearings:

@@ -15,7 +15,7 @@ from kurbel.machine.batch import taken
 from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
-from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, refined
 from kurbel.quantity import column, key_value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
@@ -262,14 +262,14 @@ class Motion(Results):
         """Of the velocity; None where nothing slides, or at no known speed."""
         if not self.mechanism.slides or self.omega is None:
             return None
-        return self._times_omega(_ends(self.mechanism.velocity_extremes()) or self._searched[0], 1)
+        return self._times_omega(self._searched[0], 1)
 
     @cached_property
     def _acceleration(self) -> Extremes | None:
         """Of the acceleration."""
         if not self.mechanism.slides or self.omega is None:
             return None
-        return self._times_omega(_ends(self.mechanism.acceleration_extremes()) or self._searched[1], 2)
+        return self._times_omega(self._searched[1], 2)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
@@ -316,10 +316,6 @@ class Motion(Results):
         """Crank angles at which the acceleration passes zero."""
         if not self.mechanism.slides:
             return None
-        closed = self.mechanism.velocity_extremes()
-        if closed:
-            angles = np.sort(np.stack([extreme.degrees for extreme in closed], axis=-1))
-            return tuple(angles.tolist() if angles.ndim == 1 else map(tuple, angles.tolist()))
         pieces, (_, curvature, *_) = self._turn
         found = pieces.zeros(curvature)
         if self._count is None:
@@ -334,10 +330,6 @@ def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
     turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)
-
-
-def _ends(found: tuple[Extreme, ...]) -> Extremes | None:
-    return Extremes(largest(*found), smallest(*found)) if found else None
 
 
 def _within_turn(degrees: Any) -> Any:

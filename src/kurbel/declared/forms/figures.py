@@ -1,12 +1,11 @@
 """Forms of what is put on key values, or on keys by their dotted names: bounds, expected figures, uncertainties."""
 
 import re
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kurbel.declared.forms.values import Form, Number, Schema, reference
+from kurbel.declared.forms.values import Form, Number
 from kurbel.declared.numerals import NUMBER, familiar, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
@@ -63,37 +62,13 @@ class Figures(Form):
     shape = dict
 
     def __init__(self, expected: str, written: str, what: str, tolerated: bool = False) -> None:
-        super().__init__(expected, written=written)
+        super().__init__(expected, written=written, schema={"type": "object"})  # see `schema` for the key values
         self.what, self.tolerated = what, tolerated
 
-    def _figure_of(self, quantity: Quantity) -> Form:
+    def figure_of(self, quantity: Quantity) -> Form:
+        """Return the form of a figure for a quantity."""
         number = Number(quantity.kind)
-        return _Figure(number) if self.tolerated else number
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": "object"}  # what reads machine files knows the key values: see `schema_of`
-
-    def schema_of(self, known: Mapping[str, Quantity], definitions: Schema) -> Schema:
-        """Return the schema of a mapping from these key values, by id."""
-        # a symbol of several, or of one and the id of another, names none
-        named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
-        properties: Schema = {}
-        names: dict[str, list[str]] = {}  # of those of one form, which have one pattern below a scope
-        forms: dict[str, Schema] = {}
-        for id, quantity in known.items():
-            for name in (id, quantity.symbol, quantity.ascii_symbol):
-                if not quantity.listed and (name == id or named[name] == 1) and name not in properties:
-                    form = self._figure_of(quantity).schema(definitions)
-                    properties[name] = {**form, "description": quantity.text}
-                    forms[repr(form)] = form
-                    names.setdefault(repr(form), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
-        patterns = {f"^.+\\.({'|'.join(names[form])})$": schema for form, schema in forms.items()}
-        return {
-            "type": "object",
-            "additionalProperties": False,
-            "properties": properties,
-            "patternProperties": patterns,
-        }
+        return Figure(number) if self.tolerated else number
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
@@ -108,7 +83,7 @@ class Figures(Form):
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
                 continue
-            figure = self._figure_of(known[scoped(id)[1]]).read(reading, written, (*path, name))
+            figure = self.figure_of(known[scoped(id)[1]]).read(reading, written, (*path, name))
             if isinstance(figure, Expected):
                 figure = replace(figure, name=name)
             found[id] = Bound(figure, written_unit(written), name) if isinstance(figure, float) else figure
@@ -141,27 +116,15 @@ _PLUS_MINUS = r"\s*(?:±|\+\s*/?\s*-)\s*"
 _PERCENT = rf"({NUMBER.pattern})\s*%"
 
 
-class _Figure(Form):
+class Figure(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
     def __init__(self, size: Number) -> None:
         self.size = size
-        self._absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
+        self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"
-        either = f"a figure and its tolerance, such as '{sample}' or '{self._absolute}'"
+        either = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
         super().__init__(f"{either}, or two bounds in a list", sample)
-
-    def schema(self, definitions: Schema) -> Schema:
-        name = f"figure_{self.size.kind}"
-        definitions[name] = {
-            "anyOf": [
-                {"type": "string", "pattern": r"^[^±]*[0-9][^±]*(±|\+\s*/?\s*-)\s*[0-9.][^±]*$"},
-                {"type": "array", "items": self.size.schema(definitions), "minItems": 2, "maxItems": 2},
-            ],
-            "errorMessage": f"write {self.expected}",
-            "examples": [self.example, self._absolute],
-        }
-        return reference(name)
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a figure with its tolerance, or two bounds."""
@@ -199,12 +162,9 @@ class ByKey(Form):
     shape = dict
 
     def __init__(self, expected: str, spreads: bool = False) -> None:
-        super().__init__(expected)
+        values = {"additionalProperties": {"type": ["string", "number"]}} if spreads else {}
+        super().__init__(expected, schema={"type": "object", "minProperties": 1, **values})
         self.spreads = spreads
-
-    def schema(self, definitions: Schema) -> Schema:
-        values = {"additionalProperties": {"type": ["string", "number"]}} if self.spreads else {}
-        return {"type": "object", "minProperties": 1, **values}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read uncertainties; values that stand instead of others are read with their load case."""

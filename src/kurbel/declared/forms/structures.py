@@ -4,6 +4,7 @@ A file is read in two passes: forms turn texts into numbers, words and lists, on
 makes records of them.
 """
 
+import functools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,11 +13,23 @@ from typing import Any, NoReturn
 import numpy as np
 
 from kurbel.arrays import Indivisible
-from kurbel.declared.forms.values import TEXT, Choice, Form, Number, Schema, Truth, reference
+from kurbel.declared.forms.values import TEXT, Choice, Form, Number
 from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, Tree, glued_hint, is_nothing, kind_of, shown
+from kurbel.declared.numerals import NUMBER
+from kurbel.declared.reading import (
+    REFUSED,
+    Given,
+    Plain,
+    Reading,
+    Tree,
+    glued_hint,
+    has_refused,
+    is_nothing,
+    kind_of,
+    shown,
+)
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Fault, Path, RuleError, refused
+from kurbel.errors import Path, RuleError, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -28,10 +41,9 @@ class RecordForm(Form):
 
     def __init__(self, record: type[Record], inline_too: bool = False) -> None:
         self.record, self.inline_too, self.keys = record, inline_too, record.KEYS
-        super().__init__(f"a mapping with the keys {', '.join(self.keys)}")
-
-    def parts(self) -> Iterable[tuple[str, Form]]:
-        return [(name, key.form) for name, key in self.keys.items()]
+        parts = ((name, key.form) for name, key in self.keys.items())
+        super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
+        self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
 
     def every_key(self) -> Iterator[tuple[str, Key]]:
         """Yield all keys that such a mapping can have, with those of inline records after the key that brings them."""
@@ -122,39 +134,37 @@ class RecordForm(Form):
 
     def _moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that do not stand in this mapping but below one of its keys, each with where to move it."""
-        moved: dict[str, str] = {}
-        for name, key in self.keys.items():
-            form = key.form
-            if isinstance(form, Inline) and form.unless in mapping:
-                each = isinstance(mapping[form.unless], dict)
-                there = f"'{form.unless}.each'" if each else f"the items of '{form.unless}'"
-                moved |= dict.fromkeys(form.names(mapping), f"belongs {form.item}; move it into {there}")
-            elif isinstance(form, RecordForm) and form.inline_too:
-                moved |= dict.fromkeys(form.names({}), f"move it below '{name}'")
+        moved = {
+            inner: f"move it below '{name}'"
+            for name, form in self.parts
+            if isinstance(form, RecordForm) and form.inline_too
+            for inner in form.names({})
+        }
+        if self.listed and self.listed.unless in mapping:
+            unless = self.listed.unless
+            there = f"'{unless}.each'" if isinstance(mapping[unless], dict) else f"the items of '{unless}'"
+            moved |= dict.fromkeys(self.listed.names(mapping), f"belongs {self.listed.item}; move it into {there}")
         return moved
 
     def _as_here(self, words: str, mapping: Tree) -> str:
         """Return words for places as they are called from this mapping: those of a cylinder in an item of the list."""
-        forms = (key.form for key in self.keys.values())
-        for form in (one for one in forms if isinstance(one, Inline) and one.unless in mapping):
-            item, own = f"{form.unless}.{'each' if isinstance(mapping[form.unless], dict) else 0}", form.names(mapping)
+        if self.listed and self.listed.unless in mapping:
+            own, listed = self.listed.names(mapping), mapping[self.listed.unless]
+            item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
             for name in re.findall(r"under '(\w+)", words):
                 words = words.replace(f"under '{name}", f"under '{item}.{name}") if name in own else words
         return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the faults of the record as those of its mapping, whatever list the record has made of it."""
-        listed = {key.form.unless for key in self.keys.values() if isinstance(key.form, Inline)}
-
-        def flat(fault: Fault) -> Fault:
-            name, *inner = fault.path or ("",)
-            if name not in listed or not inner or not isinstance(inner[0], int):
-                return fault
-            given = mapping.get(str(name))
-            head = () if given is None else (name, "each") if isinstance(given, dict) else fault.path[:2]
-            return fault._replace(path=(*head, *inner[1:]))
-
-        return RuleError(*map(flat, error.faults))
+        faults = list(error.faults)
+        for place, fault in enumerate(faults):
+            if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
+                name, item, *inner = fault.path
+                listed = mapping.get(self.listed.unless)
+                head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
+                faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
+        return RuleError(*faults)
 
     def born(self, values: Tree) -> Any:
         """Return the record of these values of its keys; raises RuleError."""
@@ -163,53 +173,6 @@ class RecordForm(Form):
         except ArithmeticError:
             refused(TOO_EXTREME)
         return refused(TOO_EXTREME) if too_extreme(born, values) else born
-
-    def schema(self, definitions: Schema) -> Schema:
-        name = self.record.__name__
-        if name not in definitions:
-            definitions[name] = self.object_schema(definitions)
-        return reference(name)
-
-    def object_schema(self, definitions: Schema) -> Schema:
-        """Return the schema of the mapping itself."""
-        properties: Schema = {}
-        rules: list[Schema] = []
-        self.describe(properties, rules, definitions)
-        schema = {"type": "object", "additionalProperties": False, "properties": properties}
-        return schema | self._demands() | ({"allOf": rules} if rules else {})
-
-    def _demands(self) -> Schema:
-        """Return the schema of the keys that must be given."""
-        return {"required": needed} if (needed := required(self.keys)) else {}
-
-    def describe(self, properties: Schema, rules: list[Schema], definitions: Schema) -> None:
-        """Add all keys to the schema of a mapping, those of inline records after its own."""
-        for name, key in sorted(self.keys.items(), key=lambda item: isinstance(item[1].form, Inline)):
-            form = key.form
-            if isinstance(form, Inline):
-                before = set(properties)
-                form.describe(properties, rules, definitions)
-                added = [[inner] for inner in properties if inner not in before]
-                if demands := form._demands():
-                    rules.append({"if": {"anyOf": [{"required": group} for group in added]}, "then": demands})
-                if form.unless:
-                    rules.append({"if": {"required": [form.unless]}, "then": _none_of(added)})
-                continue
-            properties.setdefault(name, {**form.schema(definitions), "description": key.description})
-            if key.instead:
-                rules.append(_none_of([[name, key.instead]]))
-            if key.needs:
-                rules.append({"dependencies": {name: [key.needs]}})
-            if not isinstance(form, Variant):
-                continue
-            for word, case in form.cases.items():
-                case.describe(properties, rules, definitions)
-                chosen: Schema = {"properties": {name: {"const": word}}}
-                if word != form.default:
-                    chosen["required"] = [name]
-                others = dict.fromkeys(inner for one in form.cases.values() for inner in one.keys)
-                foreign = [[inner] for inner in others if inner not in case.keys]
-                rules.append({"if": chosen, "then": (_none_of(foreign) if foreign else {}) | case._demands()})
 
 
 class Inline(RecordForm):
@@ -224,11 +187,6 @@ class Inline(RecordForm):
         self.unless, self.item, self.inline = unless, f"to a {unless.removesuffix('s')}", (self,)
 
 
-def _none_of(groups: list[list[str]]) -> Schema:
-    """Return a schema that forbids each of these groups of keys together."""
-    return {"not": {"anyOf": [{"required": group} for group in groups]}}
-
-
 def no_mapping(form: Form, value: Any) -> NoReturn:
     """Raise RuleError for a value that is no mapping."""
     if isinstance(value, Plain) and not value:
@@ -240,7 +198,7 @@ def places(form: Form, path: str = "", words: str = "at the top of the file") ->
     """Yield every key that may stand in a mapping of this form, each after the words for that mapping; path: of it."""
     if isinstance(form, RecordForm) and form.inline_too:
         return
-    for name, inner in form.parts():
+    for name, inner in form.parts:
         if isinstance(inner, Inline):
             yield from places(inner, path, inner.item if inner.unless else words)
             continue
@@ -258,21 +216,23 @@ def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
         yield word, form
     elif isinstance(form, Variant):
         yield from ((f"{word}: {name}", case) for name, case in form.cases.items())
-    for name, inner in () if isinstance(form, RecordForm) else form.parts():
+    for name, inner in () if isinstance(form, RecordForm) else form.parts:
         yield from records(inner, name or ("card" if isinstance(form, Keyed) else word))
 
 
 def too_extreme(born: Any, values: Tree) -> Any:
     """Return whether, or where, a number of a record is not finite, nor infinite by a word or by default."""
-    meant: Any = False
-    for value in values.values():
-        if is_number(value) or isinstance(value, np.ndarray):
-            meant = meant | (value == math.inf)
+
+    def numbers(of: Tree) -> dict[str, Any]:
+        return {name: one for name, one in of.items() if is_number(one) or isinstance(one, np.ndarray)}
+
+    meant: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
     broken: Any = False
-    for name, value in vars(born).items():
-        if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(born, Indivisible)):
-            endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
-            broken = broken | ~np.asarray(np.isfinite(value) | endless)
+    for name, value in numbers(vars(born)).items():
+        if isinstance(value, np.ndarray) and isinstance(born, Indivisible):
+            continue
+        endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
+        broken = broken | ~np.asarray(np.isfinite(value) | endless)
     return broken
 
 
@@ -282,36 +242,26 @@ class Maker:
     def __init__(self, reading: Reading) -> None:
         self.reading = reading
 
-    def made(self, value: Any, path: Path = ()) -> Any:
+    def made(self, value: Any) -> Any:
         """Return what a value that was read becomes; REFUSED after noting what is wrong with it."""
         if isinstance(value, Given):
             value.made = self._record(value)
             return value.made
         if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
-            items = tuple(self.made(one, (*path, index)) for index, one in enumerate(value))
-            if not any(one is REFUSED for one in items):
-                return items
-            self.reading.partly[path] = items
-            return REFUSED
+            return tuple(map(self.made, value))
         return value
 
     def _record(self, given: Given) -> Any:
         path, form = given.path, given.form
-        values = {name: self.made(one, (*path, name)) for name, one in given.values.items()}
+        values = {name: self.made(one) for name, one in given.values.items()}
         try:
-            if not any(one is REFUSED for one in values.values()):
+            if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
                 return form.born(values)
             # what is there contradicts the rest whether it could be read or not
-            known = {name: self._partly(self.reading.partly.get((*path, name), one)) for name, one in values.items()}
-            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(known))
+            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(values))
             return self.reading.refuse(path, RuleError(*faults))
         except RuleError as error:
             return self.reading.refuse(path, form.flattened(error, given.mapping))
-
-    def _partly(self, value: Any) -> Any:
-        """Return a list of which some items could not be read, the others made."""
-        items = value if isinstance(value, tuple) else ()
-        return tuple(self.made(one) if isinstance(one, Given) else one for one in items) or value
 
 
 class Variant(Choice):
@@ -338,23 +288,12 @@ class Listing(Form):
     shape = list
 
     def __init__(self, item: Form, called: str = "") -> None:
-        super().__init__("a list, each item after '- '", written=f"a list; each {item.written}")
+        item_text = f"a list; each {item.written}"
+        super().__init__("a list, each item after '- '", written=item_text, parts=[("", item)])
         self.item, self.kind, self.called = item, item.kind, called
 
-    def parts(self) -> Iterable[tuple[str, Form]]:
-        return (("", self.item),)
-
-    def schema(self, definitions: Schema) -> Schema:
-        item = self.item.schema(definitions)
-        if self.called and isinstance(self.item, RecordForm):  # one that is like another need not say everything
-            properties: Schema = {}
-            self.item.describe(properties, [], definitions)
-            short = {"type": "object", "additionalProperties": False, "properties": properties}
-            item = {"if": {"required": ["like"]}, "then": short, "else": item}
-        return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
-
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Read a list into a tuple."""
+        """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
             refused("nothing stands here; write a list below it, each item after '- '")
         if not isinstance(value, list):
@@ -364,11 +303,7 @@ class Listing(Form):
         if len(value) > MOST_ITEMS:
             refused(f"{len(value)} items; no machine has more than {MOST_ITEMS} of them")
         whole = self._completed(reading, value, path) if self.called else value
-        items = tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
-        if any(item is REFUSED for item in items):
-            reading.partly[path] = items
-            return REFUSED
-        return items
+        return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
 
     def _completed(self, reading: Reading, items: Sequence[Any], path: Path) -> list[Any]:
         """Return items with what they take over; their faults are those of the other one where they are the same."""
@@ -402,13 +337,11 @@ class OneOf(Form):
 
     def __init__(self, *forms: Form) -> None:
         expected = ", or ".join(form.expected for form in forms)
-        super().__init__(expected, forms[0].example, " or ".join(form.written for form in forms))
+        written = " or ".join(form.written for form in forms)
+        super().__init__(expected, forms[0].example, written, parts=[("", form) for form in forms])
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
-        self.numeric = any(form.numeric for form in forms)
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"anyOf": [form.schema(definitions) for form in self.forms]}
+        self.number = next((form.number for form in forms if form.number), None)
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
@@ -419,17 +352,9 @@ class OneOf(Form):
             return reading.fault((*path, found[0]), f"takes no value; write '{alone}'", at_key=True)
         alike = [form for form in self.forms if form.shape is shape]
         if alike:  # of a word and a number, the one that it looks like
-            return next((form for form in alike if form.suits(value)), alike[0]).read(reading, value, path)
+            suiting = (form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value))))
+            return next(suiting, alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
-
-    def of_numbers(self, numbers: Any) -> Any:
-        return next(form for form in self.forms if form.numeric).of_numbers(numbers)
-
-    def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        return next((form.numbers(texts) for form in self.forms if form.shape is str and form.suits(texts[0])), None)
-
-    def parts(self) -> Iterable[tuple[str, Form]]:
-        return [("", form) for form in self.forms]
 
 
 class Keyed(Form):
@@ -441,20 +366,10 @@ class Keyed(Form):
     shape = dict
 
     def __init__(self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str]) -> None:
-        super().__init__(f"{otherwise.expected}; or with one of {', '.join(cases)}")
+        expected = f"{otherwise.expected}; or with one of {', '.join(cases)}"
+        super().__init__(expected, parts=(*cases.items(), ("", otherwise)))
         self.cases, self.otherwise = cases, otherwise
         self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
-
-    def parts(self) -> Iterable[tuple[str, Form]]:
-        return (*self.cases.items(), ("", self.otherwise))
-
-    def schema(self, definitions: Schema) -> Schema:
-        one = {"type": "object", "additionalProperties": False}
-        cases = [
-            {**one, "required": [name], "properties": {name: form.schema(definitions)}}
-            for name, form in self.cases.items()
-        ]
-        return {"anyOf": [*cases, self.otherwise.schema(definitions)]}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a mapping by its telling key."""
@@ -495,7 +410,7 @@ def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     if form is int:
         return Number(whole=True, **{"least": 1, **bounds})
     if form is bool:
-        return Truth()
+        return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:
         return TEXT
     return RecordForm(form) if isinstance(form, type) else form

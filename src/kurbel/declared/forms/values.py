@@ -6,11 +6,12 @@ import os
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from kurbel.declared.numerals import NUMBER, RATIO, WRITTEN, parse_number, parse_ratio, plain
+from kurbel.declared.numerals import NUMBER, parse_number, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import (
@@ -22,10 +23,8 @@ from kurbel.declared.units import (
     example,
     parse_quantity,
     plain_quantities,
-    range_of,
     unit_example,
     unit_factor,
-    unit_names,
     written_unit,
 )
 from kurbel.errors import Fault, Path, RuleError, UnitError, refused
@@ -40,27 +39,31 @@ class Form(ABC):
 
     expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: what
     stands there in a few words, for pages. kind: of the number that stands there, or of each one of a list, '' where
-    none does; numeric: it becomes a number, so that many machines have an array there; inline: records whose keys stand
-    in the same mapping.
+    none does; number: the form of the number that it becomes, which many machines have as an array; inline: records
+    whose keys stand in the same mapping. schema: the JSON Schema of a value, as far as it does not depend on parts and
+    units; parts: the forms that it is made of, each after the key that it stands under, '' for none.
     """
 
     shape: ClassVar[type] = str
     """Of the tree: str, list or dict."""
     kind: str = ""
-    numeric: bool = False
+    number: "Number | None" = None
     inline: tuple[Any, ...] = ()
 
-    def __init__(self, expected: str, example: str = "…", written: str = "") -> None:
-        self.expected, self.example = expected, example
+    def __init__(
+        self,
+        expected: str,
+        example: str = "…",
+        written: str = "",
+        schema: Schema | None = None,
+        parts: "Iterable[tuple[str, Form]]" = (),
+    ) -> None:
+        self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
         self.written = written or (expected if self.shape is str else "a mapping")
 
     @abstractmethod
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes; faults are noted, or raised as RuleError."""
-
-    @abstractmethod
-    def schema(self, definitions: Schema) -> Schema:
-        """Return the JSON Schema of a value of this form; what is used more than once goes into the definitions."""
 
     def read(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
@@ -70,26 +73,6 @@ class Form(ABC):
             return self.take(reading, value, path)
         except RuleError as error:
             return reading.refuse(path, error)
-
-    def suits(self, value: Any) -> bool:
-        """Return whether a value of the right shape looks like one of this form."""
-        return True
-
-    def out_of_bounds(self, value: Any) -> str:
-        """Return in what way a value is too small or too large, with the bound; '' when it is not."""
-        return ""
-
-    def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        """Return what texts become that are plain numbers, all of them; None where each must be read by itself."""
-        return None
-
-    def of_numbers(self, numbers: Any) -> Any:
-        """Return what a number in the base of its kind, or those of many machines, becomes."""
-        return numbers
-
-    def parts(self) -> "Iterable[tuple[str, Form]]":
-        """Return the forms that this one is made of, each after the key that it stands under, '' for none."""
-        return ()
 
 
 def one_line(value: Any, expected: str) -> str:
@@ -128,6 +111,7 @@ def size_faults(points: list[Point], unit: Factor, kind: str, path: Path) -> lis
     return []
 
 
+@dataclass(eq=False)
 class Number(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
@@ -138,34 +122,32 @@ class Number(Form):
     apart: each value by itself.
     """
 
-    def __init__(
-        self,
-        kind: str = "ratio",
-        *,
-        above: float | None = None,
-        least: float | None = None,
-        below: float | None = None,
-        most: float | None = None,
-        words: tuple[tuple[str, float], ...] = (),
-        zero: bool = False,
-        whole: bool = False,
-        share_of: str = "",
-        or_else: str = "",
-        becomes: Callable[[Any, str], Any] | None = None,
-        apart: bool = False,
-    ) -> None:
-        self.kind, self.words, self.zero, self.whole = kind, words, zero, whole
-        self.above, self.least, self.below, self.most = above, least, below, most
-        self.share_of, self.or_else, self.becomes = share_of, or_else, becomes
-        self.numeric = not whole and not apart
-        if whole:
-            super().__init__("a whole number", str(max(least or 0, 3) if most is None else least))
-            return
-        bare, instead = kind == "ratio", [word for word, _ in words]
-        sample = ("5" if (above or 0) >= 1 else "0.1") if bare else example(kind)
-        expected = "a number" if bare else f"a number with its unit, such as '{sample}'"
+    kind: str = "ratio"
+    _: KW_ONLY
+    above: float | None = None
+    least: float | None = None
+    below: float | None = None
+    most: float | None = None
+    words: tuple[tuple[str, float], ...] = ()
+    zero: bool = False
+    whole: bool = False
+    share_of: str = ""
+    or_else: str = ""
+    becomes: Callable[[Any, str], Any] | None = None
+    apart: bool = False
+
+    def __post_init__(self) -> None:
+        instead, bare = [word for word, _ in self.words], self.kind == "ratio"
+        if self.whole:
+            sample, expected = str(max(self.least or 0, 3) if self.most is None else self.least), "a whole number"
+        elif bare:
+            sample, expected = "5" if (self.above or 0) >= 1 else "0.1", "a number"
+        else:
+            sample = example(self.kind)
+            expected = f"a number with its unit, such as '{sample}'"
         written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in instead)
         super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
+        self.number = None if self.whole or self.apart else self
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read the number, and hold it against its bounds."""
@@ -208,6 +190,7 @@ class Number(Form):
         return found
 
     def of_numbers(self, numbers: Any) -> Any:
+        """Return what a number in the base of its kind, or those of many machines, becomes."""
         return self.becomes(numbers, "") if self.becomes else numbers
 
     def out_of_bounds(self, value: Any) -> str:
@@ -230,137 +213,70 @@ class Number(Form):
                 return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
         return ""
 
-    def schema(self, definitions: Schema) -> Schema:
-        if self.whole:
-            return {"type": "integer", "minimum": self.least} | ({} if self.most is None else {"maximum": self.most})
-        if self.kind == "ratio":
-            largest = KINDS["ratio"].largest
-            bounds = {
-                "exclusiveMinimum": self.above,
-                "minimum": -largest if self.least is None else self.least,
-                "exclusiveMaximum": self.below,
-                "maximum": largest if self.most is None else self.most,
-            }
-            given = {name: bound for name, bound in bounds.items() if bound is not None}
-            number: Schema = {"type": ["number", "string"], **given, "pattern": f"^\\s*{RATIO}\\s*$"}
-        else:
-            name, units = f"quantity_{self.kind}", ", ".join(unit_names(self.kind))
-            definitions[name] = {
-                "type": "string",
-                "pattern": f"^\\s*{WRITTEN}\\s*{_unit_pattern(self.kind)}\\s*$",
-                "description": f"{self.expected}; in size {range_of(self.kind)}; units: {units}",
-                # draft-07 has no words for a fault; editors (YAML and JSON language servers, ajv) take them from these
-                "errorMessage": f"write {self.expected}",
-                "patternErrorMessage": f"write {self.expected}; units: {units}",
-                "examples": [self.example],
-            }
-            number = reference(name)
-        others: list[Any] = [word for word, _ in self.words] + [0] * self.zero
-        return {"anyOf": [number, {"enum": others}]} if others else number
-
-
-def reference(name: str) -> Schema:
-    """Return a reference to a definition of the schema."""
-    # draft-07 overlooks whatever stands beside a $ref, so it goes into a list of its own
-    return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
-
-
-def _unit_pattern(kind: str) -> str:
-    """Return a pattern of the units of a kind in every spelling that is read: `kgf m2` is also `kgf·m²`, `kgf*m^2`."""
-    patterns = []
-    for unit in unit_names(kind):
-        letters = re.escape(re.sub(r"(?<=[a-z])2", "²", unit)).replace("\\ ", "[ ·*]+").replace("/", "\\s*/\\s*")
-        patterns.append(re.sub("^u(?=m)", "[uµμ]", letters).replace("²", "(?:\\^?2|²)"))
-    return f"(?:{'|'.join(patterns)})"
-
 
 class Choice(Form):
-    """One of these words; also: other words that people try, each with the one that is meant."""
+    """One of these words; also: other words that people try, each with the one that is meant.
 
-    def __init__(self, words: tuple[str, ...], also: dict[str, str] | None = None) -> None:
-        self.words, self.also = words, also or {}
-        every = (f"'{word}'" for word in words)
-        super().__init__(" or ".join(every), words[0], ", ".join(f"`{word}`" for word in words))
+    means: what the words become, if not themselves.
+    """
 
-    def suits(self, value: Any) -> bool:
-        return not NUMBER.match(str(value))
+    def __init__(
+        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, bool] | None = None
+    ) -> None:
+        self.words, self.also, self.means = words, also or {}, means or {}
+        every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
+        schema: Schema = {"type": "boolean"} if means else {"enum": list(words)}
+        super().__init__(" or ".join(every), words[0], written, schema)
 
-    def take(self, reading: Reading, value: Any, path: Path) -> str:
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Take one of the words, of which one may be a blank or a tab."""
         if isinstance(value, str) and value in self.words:
-            return str(value)
+            return self.means.get(value, str(value))
         text = one_line(value, self.expected)
         meant = self.also.get(text.strip().lower())
         hint = f"; write '{meant}'" if meant else did_you_mean(text, self.words) or f"; write {self.expected}"
         return refused(f"unknown word '{shown(text)}'{hint}")
 
-    def schema(self, definitions: Schema) -> Schema:
-        return {"enum": list(self.words)}
-
-
-class Truth(Choice):
-    """`true` or `false`; becomes a bool."""
-
-    def __init__(self) -> None:
-        super().__init__(("true", "false"))
-
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Take one of the two words."""
-        return super().take(reading, value, path) == "true"
-
-    def schema(self, definitions: Schema) -> Schema:
-        return {"type": "boolean"}
-
 
 class Text(Form):
-    """Any other text of one line; become: takes it with the folder of the file, and raises RuleError if it is none."""
+    """Any other text of one line; become: takes it with the folder of the file, and raises RuleError if it is none.
+
+    pattern: that the text has, as a keyboard writes it; unit_of: the kind of which it names a unit.
+    """
 
     def __init__(
         self,
         expected: str,
-        schema: Schema,
         become: Callable[[str, str], Any],
         example: str = "…",
         written: str = "",
+        schema: Schema | None = None,
+        pattern: str = "",
+        unit_of: str = "",
     ) -> None:
-        super().__init__(expected, example, written)
-        self._schema, self._become = schema, become
+        found = {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
+        super().__init__(expected, example, written, found)
+        self.become, self.pattern, self.unit_of = become, pattern, unit_of
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read the text."""
-        return self._become(one_line(value, self.expected), reading.folder)
+        text = one_line(value, self.expected)
+        if self.pattern and not re.fullmatch(self.pattern, plain(text)):
+            refused(f"expected {self.expected}, got '{text}'")
+        return self.become(plain(text) if self.pattern else text, reading.folder)
 
-    def schema(self, definitions: Schema) -> Schema:
-        return dict(self._schema)
 
-
-TEXT = Text("a text", {"type": ["string", "number"]}, lambda text, folder: text.strip())
+TEXT = Text("a text", lambda text, folder: text.strip(), schema={"type": ["string", "number"]})
 
 
 def unit_name(kind: str) -> Text:
     """Return the form of the name of a unit of this kind; becomes the factor pair that turns numbers into its base."""
-    return Text(
-        f"a unit of {kind}, such as '{unit_example(kind)}'",
-        {"type": "string", "pattern": f"^\\s*{_unit_pattern(kind)}\\s*$"},
-        lambda text, folder: unit_factor(text, kind),
-        unit_example(kind),
-    )
+    sample = unit_example(kind)
+    expected = f"a unit of {kind}, such as '{sample}'"
+    return Text(expected, lambda text, folder: unit_factor(text, kind), sample, unit_of=kind)
 
 
-def _patterned(
-    pattern: str, expected: str, sample: str, written: str, become: Callable[[str], tuple[int, ...]]
-) -> Text:
-    """Return the form of numbers joined by signs, which `become` takes as a keyboard writes them."""
-
-    def read(text: str, folder: str) -> tuple[int, ...]:
-        if not re.fullmatch(pattern, plain(text)):
-            refused(f"expected {expected}, got '{text}'")
-        return become(plain(text))
-
-    return Text(expected, {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"}, read, sample, written)
-
-
-def _firing_order(text: str) -> tuple[int, ...]:
+def _firing_order(text: str, folder: str) -> tuple[int, ...]:
     """Return the numbers of all cylinders from 1 on, each once; raises RuleError for others."""
     order = tuple(map(int, re.findall("[0-9]+", text)))
     twice = next((number for number in order if order.count(number) > 1), None)
@@ -372,19 +288,19 @@ def _firing_order(text: str) -> tuple[int, ...]:
     return order
 
 
-FIRING_ORDER = _patterned(
-    r"[1-9][0-9]{0,2}(\s*[-, ]\s*[1-9][0-9]{0,2})*",
+FIRING_ORDER = Text(
     "the numbers of the cylinders, such as '1-3-4-2'",
+    _firing_order,
     "1-3-4-2",
     "`1-3-4-2`",
-    _firing_order,
+    pattern=r"[1-9][0-9]{0,2}(\s*[-, ]\s*[1-9][0-9]{0,2})*",
 )
 """The numbers of all cylinders in the order in which they fire; becomes a tuple of int."""
 
 _MOST_COLUMNS = 5000
 
 
-def _columns(text: str) -> tuple[int, ...]:
+def _columns(text: str, folder: str) -> tuple[int, ...]:
     """Return the numbers of columns, each once; raises RuleError."""
     parts = [[int(one) for one in part.split("-")] for part in text.split(",")]
     found = tuple(number for part in parts for number in range(part[0], part[-1] + 1))
@@ -396,12 +312,12 @@ def _columns(text: str) -> tuple[int, ...]:
 
 
 _COLUMN = r"[1-9][0-9]{0,4}(\s*-\s*[1-9][0-9]{0,4})?"
-COLUMN_RANGE = _patterned(
-    rf"{_COLUMN}(\s*,\s*{_COLUMN})*",
+COLUMN_RANGE = Text(
     "the numbers of columns, such as '2-61', or in quotation marks '2, 5, 7-9'",
+    _columns,
     "2-61",
     "`2-61`, or in quotation marks `'2, 5, 7-9'`",
-    _columns,
+    pattern=rf"{_COLUMN}(\s*,\s*{_COLUMN})*",
 )
 """The numbers of columns; becomes a tuple of int."""
 
@@ -418,7 +334,7 @@ def _existing(text: str, folder: str) -> str:
     return full
 
 
-FILE_PATH = Text("the name of a file", {"type": "string", "minLength": 1}, _existing)
+FILE_PATH = Text("the name of a file", _existing, schema={"type": "string", "minLength": 1})
 """The path of a file, relative to the machine file."""
 
 _FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every pair has a decimal comma
@@ -438,13 +354,10 @@ class Points(Form):
         self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[len(names)]
         self._one = f"[{', '.join(names)}]"
         sample = "[[0, 1], [1, 2]]" if len(names) == 2 else "[[1, 20, -5]]"
-        super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`")
-
-    def schema(self, definitions: Schema) -> Schema:
-        length = len(self.columns)
-        number = {"type": ["number", "string"] if self.ratio else "number"}
+        number, length = {"type": ["number", "string"] if ratio else "number"}, len(names)
         one = {"type": "array", "items": number, "minItems": length, "maxItems": length}
-        return {"type": "array", "items": one, "minItems": self.least, "maxItems": MOST_POINTS}
+        schema = {"type": "array", "items": one, "minItems": least, "maxItems": MOST_POINTS}
+        super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema)
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read the pairs, and tell the first few that are none."""
