@@ -21,10 +21,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 
 from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, asked_answers
-from kurbel.designs.binding import Binder
+from kurbel.designs.binding import Binder, Lot
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
-from kurbel.machine.batch import Lot
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look

@@ -14,30 +14,14 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.mechanisms.slider_crank import SliderCrank
 from representative import case_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 
 
-def test_every_public_name_exists() -> None:
-    for name in kurbel.__all__:
-        assert getattr(kurbel, name).__doc__
-    assert set(kurbel.__all__) <= set(dir(kurbel))
-    with pytest.raises(AttributeError, match="no attribute 'lood'"):
-        _ = kurbel.lood  # type: ignore[attr-defined]
-
-
 def test_import_kurbel_imports_nothing_else() -> None:
     code = "import sys, kurbel; print([m for m in sys.modules if m in ('numpy', 'yaml', 'click', 'rich')])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
-
-
-def test_load_and_solve() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "waterworks.yaml"))
-    state = case.cylinders[0].at(np.arange(0.0, 361.0, 10.0))
-    assert state.T.shape == (37,)
-    assert state.x[18] == 0.8
 
 
 def test_a_machine_built_in_python_is_the_machine_of_the_file() -> None:
@@ -47,11 +31,6 @@ def test_a_machine_built_in_python_is_the_machine_of_the_file() -> None:
         motion = kurbel.solve(machine).cylinders[0].motion
         assert motion.c_max is not None
         assert motion.c_max.value == pytest.approx(1.0198331 * 0.4 * 2 * math.pi * 50 / 60, rel=1e-7)
-
-
-def test_rules_hold_in_python_too() -> None:
-    with pytest.raises(kurbel.KurbelError, match="rod: 300 mm is shorter than the crank"):
-        SliderCrank(crank=0.4, rod=0.3)
 
 
 def test_functions_are_pointwise() -> None:
@@ -78,30 +57,6 @@ PLAIN = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, masses: {piston: 100 kg}%s}"
 PRESSURE = ", bore: 450 mm, indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}"
 
 
-def test_key_values_by_id_or_symbol() -> None:
-    case = kurbel.solve(kurbel.loads(PLAIN % PRESSURE))
-    (cylinder,) = case.cylinders
-    low, high = sorted(cylinder.extremes_of("T") or (), key=lambda one: one.value)
-    assert case["T_max"][:3] == cylinder["T_max"][:3] == (high.value, "N", high.degrees)
-    assert cylinder["T_min"].value == low.value
-    area = case["A_H"]
-    assert area.value == pytest.approx(math.pi * 0.45**2 / 4, rel=1e-15)
-    assert (area.unit, area.degrees, area.quantity.id) == ("m^2", None, "A_head")
-    assert case["phi_b=0"].value == cylinder.motion.phi_b_zero
-    assert case["M_max"].value == pytest.approx(0.4 * high.value, rel=1e-12)
-
-
-def test_a_cylinder_has_its_extremes_as_the_flywheel_has() -> None:
-    case = kurbel.solve(kurbel.loads(PLAIN % PRESSURE))
-    (cylinder,) = case.cylinders
-    assert cylinder.T_max.value == pytest.approx(case.flywheel.T_max.value, rel=1e-12)  # type: ignore[union-attr]
-    assert cylinder.c_max == cylinder.motion.c_max
-    assert kurbel.solve(kurbel.loads("{crank: 1 m, rod: 2 m}")).cylinders[0].T_max is None
-    with pytest.raises(AttributeError, match="no attribute 'T_mx'"):
-        _ = cylinder.T_mx
-    assert copy.copy(cylinder).T_max == cylinder.T_max
-
-
 @pytest.mark.parametrize(
     ("name", "told"), [("T_mx", "no key value 'T_mx'; did you mean 'T_max'"), ("e_K", "this machine has no loss_cross")]
 )
@@ -117,17 +72,6 @@ def test_of_several_cylinders_each_has_its_own() -> None:
     with pytest.raises(kurbel.KurbelError, match="each cylinder has its own P_max"):
         _ = case["P_max"]
     assert case.cylinders[1]["P_max"].value > 0
-
-
-def test_all_columns_as_a_dict_of_arrays() -> None:
-    case = case_of("gas-engine")
-    angles = np.arange(0.0, 720.0, 30.0)
-    for results in (case.cylinders[0], case.flywheel, case.stress):
-        columns = results.columns(angles)
-        assert {column.shape for column in columns.values()} == {(24,)}
-        assert np.array_equal(columns["phi"], angles)
-        assert np.array_equal(columns["T"], results.at(angles).T)
-    assert "theta" not in case.cylinders[0].columns([0])
 
 
 @pytest.mark.parametrize("degrees", ["abc", "", [float("nan")], [0.0, math.inf], None, {"phi": 1}])
@@ -149,18 +93,6 @@ def test_some_columns_by_id_or_symbol() -> None:
         cylinder.columns([0], "P_inertai")
     with pytest.raises(kurbel.KurbelError, match="this machine has no S_crank: Force along an exact rod"):
         cylinder.columns([0], "S_crank")
-
-
-def test_all_key_values_as_a_dict() -> None:
-    case = case_of("gas-engine")
-    for results in (case.cylinders[0], case.flywheel, case.stress):
-        values = results.key_values()
-        assert all(figure == results[id] for id, figure in values.items())
-        assert all(figure.value is not None for figure in values.values())
-        missing = set(results.lists.key_values(results.command)) - set(values)
-        for id in missing:
-            with pytest.raises(kurbel.KurbelError, match=f"this machine has no {id}"):
-                _ = results[id]
 
 
 def test_a_case_says_what_it_is() -> None:
@@ -207,12 +139,6 @@ def test_a_machine_may_be_a_text_or_a_path(take: Any, given: str) -> None:
     assert take(TAKEN[given]).cylinders[0]["T_max"] == kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["T_max"]
 
 
-@pytest.mark.parametrize("given", TAKEN)
-def test_a_sweep_takes_a_text_or_a_path(given: str) -> None:
-    found = kurbel.sweep(TAKEN[given], {"rod_ratio": [4, 5]}, ["stroke"])  # type: ignore[arg-type]
-    assert found["stroke"].tolist() == [0.8, 0.8]
-
-
 @pytest.mark.parametrize("given", [5, None, b"stroke: 1 m"])
 def test_what_is_no_machine_is_refused_by_the_root_class(given: Any) -> None:
     for take in (kurbel.solve, kurbel.Case, lambda one: kurbel.sweep(one, {"rod_ratio": [4]})):
@@ -226,11 +152,6 @@ def test_a_scalar_holds_for_every_row(speed: Any) -> None:
     found = kurbel.sweep(kurbel.loads(FLAT), {"rod_ratio": [4, 5], "speed": speed}, ["b_max"])
     ratios = np.array([1 / 4, 1 / 5])
     assert found["b_max"] == pytest.approx(0.5 * (2 * math.pi * 2) ** 2 * (1 + ratios), rel=1e-12)
-
-
-def test_scalars_alone_are_one_row() -> None:
-    found = kurbel.sweep(kurbel.loads(FLAT), {"rod_ratio": 5, "speed": "120 rpm"}, ["b_max"])
-    assert found["b_max"] == pytest.approx([0.5 * (2 * math.pi * 2) ** 2 * 1.2], rel=1e-12)
 
 
 def test_a_figure_prints_as_people_read_it() -> None:

@@ -5,16 +5,12 @@ from __future__ import annotations
 import json
 import math
 
-import jsonschema
 import pytest
-import yaml
 from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.errors import KurbelError
-from kurbel.quantities import every_quantity
-from schemas import whole_schema
 
 CARD = "{constant: {expansion: 2 bar, compression: 0 bar}}"
 TWO = f"""\
@@ -90,14 +86,6 @@ def test_no_cylinder_is_called_machine() -> None:
     assert kurbel.loads("{name: machine, crank: 1 m, rod: 4 m}").name == "machine"
 
 
-def test_scopes_are_set_from_outside() -> None:
-    bound = ("--set", f"limits.machine.T_max={newton(0.999 * (HP + LP))}")
-    assert run("limits: {machine.T_max: 1 MN}", "check", *bound)[0] == 1
-    assert run("", "check", "--set", "expect.LP.c_m=[1 m/s, 3 m/s]", "--set", "expect.LP.c_m.1=1.9 m/s")[0] == 1
-    named = ("--set", "cylinders.0.name=No. 1", "--set", "cylinders.1.like=No. 1", "--set", "limits.No. 1.T_max=1 N")
-    assert run("", "check", *named)[0] == 1
-
-
 def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     bounds = f"limits: {{LP.T_max: {newton(1.001 * LP)}, machine.T_max: {newton(1.001 * (HP + LP))}}}"
     asked = ("sweep", "--vary", "cylinders.1.bore=400,500,600 mm", "--vary", "speed=50,60 rpm", "--columns", "LP.T_max")
@@ -106,17 +94,3 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     assert (status, [one["broken"] for one in found]) == (0, [None, None, None, None, "LP.T_max", "LP.T_max"])
     told = run(bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN")[1]
     assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + ["machine.T_max"] * 4
-
-
-def test_the_schema_has_scopes() -> None:
-    validator = jsonschema.Draft7Validator(whole_schema())
-    good = "limits: {machine.T_max: 3 kN, No. 1.T_max: 3 N, HP.dA/A: 1.0e-9}, expect: {HP.c_max: 1 m/s ± 3 %}"
-    assert validator.is_valid(yaml.safe_load(f"{{crank: 1 m, rod: 4 m, {good}}}"))
-    for wrong in ("HP.T_max: 3 m", "HP.T_mx: 3 N", ".T_max: 3 N", "HP.phi_reversal: 3 deg"):
-        assert not validator.is_valid(yaml.safe_load(f"{{crank: 1 m, rod: 4 m, limits: {{{wrong}}}}}")), wrong
-
-
-def test_no_name_of_a_key_value_has_a_point() -> None:
-    """It parts whose it is from the name."""
-    known = every_quantity().all_key_values
-    assert not [one.id for one in known if "." in one.id + one.symbol + one.ascii_symbol and not one.listed]

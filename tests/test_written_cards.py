@@ -12,8 +12,6 @@ from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 AREA, STROKE, AT = math.pi / 4 * 0.45**2, 0.8, 98066.5
 LINES = "expansion: [[0, 57], [32.2, 57], [92, 13.2]], compression: [[92, 7.2], [0, 57]]"
@@ -50,12 +48,6 @@ def test_one_pressure_stands_on_every_stroke(end: str, cycle: str) -> None:
     gauge = getattr(state, end.replace("head_end", "p_head").replace("crank_end", "p_crank"))
     assert gauge.tolist() == [1e6] * 5
     assert forces.work == 0
-
-
-def test_one_absolute_pressure() -> None:
-    forces = forces_of("ambient: 1 bar\nindicator: {pressures: absolute, head_end: 10 bar}\n")
-    assert forces.at([90]).P[0] == pytest.approx(AREA * 9e5, rel=1e-14)
-    assert "below the vacuum" in refused("indicator: {head_end: -2 bar}\n")
 
 
 @pytest.mark.parametrize(("cycle", "turns"), [("two-stroke", 1), ("four-stroke", 2)])
@@ -98,14 +90,6 @@ def test_a_spring_in_inches(spring: str) -> None:
     """A spring of 40 psi to the inch: 25.4 mm are 40 psi."""
     text = f"indicator: {{head_end: {{drawn: {{length: 4 in, spring: {spring}}}, mean_height: 25.4 mm}}}}\n"
     assert forces_of(text).mean_pressure == pytest.approx(40 * 6894.757293168361, rel=1e-12)
-
-
-def test_a_card_drawn_in_inches_has_points_in_inches() -> None:
-    """40 psi to the inch: 48 psi to 2/5 of the stroke, straight to 12 psi; back from 4 psi straight to 48 psi."""
-    lines = "expansion: [[0, 1.2], [1.4, 1.2], [3.5, 0.3]], compression: [[3.5, 0.1], [0, 1.2]]"
-    text = f"indicator: {{head_end: {{drawn: {{length: 3.5 in, spring: 1/40 in/psi}}, {lines}}}}}\n"
-    mean = 48 * 0.4 + (48 + 12) / 2 * 0.6 - (4 + 48) / 2
-    assert forces_of(text).mean_pressure == pytest.approx(mean * 6894.757293168361, rel=1e-12)
 
 
 def test_a_point_beside_a_card_drawn_in_inches_is_told_in_inches() -> None:
@@ -187,13 +171,6 @@ def test_a_compressor_without_clearance() -> None:
     assert forces.at([0.001]).p_head == pytest.approx(1e5, rel=1e-9)
 
 
-def test_a_card_that_needs_no_clearance() -> None:
-    card = "unit: at, expansion: [[0, 5], [1, 1]], compression: [[1, 1], [0, 5]], clearance: 0"
-    assert forces_of(f"indicator: {{head_end: {{{card}}}}}\n").work == 0
-    said = refused(f"indicator: {{head_end: {{{card}, interpolate: polytropic}}}}\n")
-    assert "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0" in said
-
-
 @pytest.mark.parametrize(
     ("card", "says"),
     [
@@ -227,17 +204,3 @@ def test_a_fluctuation_is_a_ratio() -> None:
     machine = loads(ENGINE + "efficiency: 85 %\nrod_ratio: 10/3\nflywheel: {fluctuation: 1/80}\n".replace("rod_", "#"))
     assert machine.flywheel is not None
     assert (machine.flywheel.fluctuation, machine.efficiency) == (1 / 80, 0.85)
-
-
-@pytest.mark.parametrize(
-    ("option", "same"),
-    [
-        (["--ratio", "10/3"], ["--ratio", repr(10 / 3)]),
-        (["--ratio", "350 %"], ["--ratio", "3.5"]),
-        (["--step", "45/2"], ["--step", "22.5"]),
-        (["--angles", "0,45/4"], ["--angles", "0,11.25"]),
-    ],
-)
-def test_quotients_on_the_command_line(option: list[str], same: list[str]) -> None:
-    written, plain = (CliRunner().invoke(kurbel, ["table", "-f", "json", *each]) for each in (option, same))
-    assert (written.exit_code, written.stdout) == (0, plain.stdout)

@@ -14,8 +14,6 @@ from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
-pytestmark = pytest.mark.usefixtures("solved_once")
-
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
 GAS = "indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}\n"
 OMEGA = 2 * math.pi
@@ -187,18 +185,6 @@ def test_an_effort_of_one_harmonic(cycle: str, order: float, cos: float, sin: fl
     assert turning.J_needed == pytest.approx(2 * amplitude / order * 50 / (4 * math.pi) ** 2, rel=1e-11)
 
 
-def test_an_effort_of_several_harmonics_is_their_sum() -> None:
-    terms = [[1, 120, -40], [2, -300, 250], [3.0, 10, 90], [6, 35, 0]]
-    turning = solve(loads(f"effort: {{unit: N m, mean: 500, harmonics: {terms}}}\n{WHEEL}")).flywheel
-    phi = np.array([0.0, 17.0, 200.0, 359.0])
-    wanted = 500 + sum(c * np.cos(n * np.radians(phi)) + s * np.sin(n * np.radians(phi)) for n, c, s in terms)
-    assert np.asarray(turning.at(phi).M) == pytest.approx(wanted, rel=1e-13)
-    # ΔE by the antiderivative on a fine mesh, which misses its extremes by no more than their curvature allows
-    fine = np.radians(np.linspace(0, 360, 400_001))
-    energy = sum(c / n * np.sin(n * fine) - s / n * np.cos(n * fine) for n, c, s in terms)
-    assert turning.dE == pytest.approx(np.ptp(energy), rel=1e-9)
-
-
 @pytest.mark.parametrize(
     ("effort", "says"),
     [
@@ -236,18 +222,6 @@ def test_an_effort_from_a_file(tmp_path: Path, first: int) -> None:
     assert read == pytest.approx(written, rel=1e-13, abs=1e-9)
     assert solve(machine).flywheel.dE == pytest.approx(solve(plain).flywheel.dE, rel=1e-13)
     assert machine.trace_files == (str(tmp_path / "effort.csv"),)
-
-
-def test_an_effort_file_between_samples_and_without_the_last(tmp_path: Path) -> None:
-    """Samples at 5, 15, … of 3 sin φ: at 0 stands the middle of those beside it; a missing last one is the first."""
-    rows = "\n".join(f"{angle},{3 * math.sin(math.radians(angle))!r}" for angle in range(5, 365, 10))
-    (tmp_path / "effort.csv").write_text(rows)
-    (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: effort.csv}}\n{WHEEL}")
-    torque = np.asarray(solve(load(tmp_path / "m.yaml")).flywheel.at(np.array([0.0, 10.0])).M)
-    middle = 1.5 * sum(math.sin(math.radians(a)) for a in (5, 15))
-    assert torque == pytest.approx([0.0, middle], abs=1e-14)
-    told = CliRunner().invoke(kurbel, ["flywheel", str(tmp_path / "m.yaml")]).stdout
-    assert "closes the cycle" in " ".join(told.split())
 
 
 def test_a_file_that_does_not_cover_the_cycle(tmp_path: Path) -> None:

@@ -13,15 +13,17 @@ import pytest
 
 from good_machines import ALL
 from kurbel.declared.forms.structures import RecordForm
+from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.binding import Binder
+from kurbel.designs.binding import Binder, _every, _owner
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import values_of
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.given import tree_of
-from kurbel.machine_file.reader import ROOT, read_machine
+from kurbel.machine_file.overrides import path_of
+from kurbel.machine_file.reader import ROOT, read_machine, read_values, reading_of
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
@@ -124,18 +126,6 @@ def test_every_number_of_a_file_is_bound_as_it_is_read(name: str) -> None:
             assert same(found[row], read(file, (key,), rows[row])), (key, rows[row])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("path", sorted(CONFIGS.glob("*.yaml")), ids=lambda path: path.stem)
-def test_every_number_of_every_file_is_bound_as_it_is_read(path: Path) -> None:
-    """Two values of each number, other ones of the next: all numbers of all files meet all values many times."""
-    count = 0
-    for key, rows, found, file in of_each_number(path.name):
-        for row in (5 * count % len(rows), (5 * count + 3) % len(rows)):
-            assert same(found[row], read(file, (key,), rows[row])), (key, rows[row])
-        count += 1
-    assert count > 1
-
-
 TWIN = """\
 cycle: four-stroke
 cylinders: {count: 3, bank_angles: [0 deg, 60 deg, 90 deg], each: {stroke: 80 mm, rod_ratio: 4}}
@@ -205,16 +195,6 @@ def test_rules_take_arrays(text: str, keys: tuple[str, ...], start: str, end: st
         assert same(machines[row], read(file, keys, texts)), texts
 
 
-def test_several_points_of_one_card_vary_together() -> None:
-    """Each was read beside the others as the file has them: the last one alone counted."""
-    keys = [f"indicator.head_end.expansion.{place}.1" for place in (0, 1, 2)]
-    rows = [("9.5", "9.5", "6.7"), ("9.3", "9.2", "6.5"), ("9.3", "9.3", "6.7")]
-    file = source.read(CONFIGS / "waterworks.yaml")
-    found = bound(file, keys, rows[0], rows)
-    for row, texts in enumerate(rows):
-        assert same(found[row], read(file, keys, texts))
-
-
 LIKE = """
 cylinders:
   - {name: a, crank: 1 m, rod: 5 m, bore: 1 m, masses: {piston: 3 kg}}
@@ -232,22 +212,6 @@ def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     assert [one.pistons[0].bore for one in found[1].cylinders] == [3.0, 3.0, 2.0]
     assert [one.masses.parts for one in found[1].cylinders] == [3.0, 6.0, 6.0]
     assert found[2].startswith("cylinders[1].masses.piston: -6 kg is too small")
-
-
-def test_the_word_like_in_a_comment_makes_no_cylinder_like_another() -> None:
-    file = source.decode("m.yaml", b"{crank: 1 m, rod: 5 m, name: like new} # like any other\n")
-    found = Binder(file, ("rod",), ("5 m",)).bound([("4 m",), ("5 m",), ("6 m",)])
-    assert [list(lot.rows) for lot in found.lots] == [[0, 1, 2]]
-
-
-def test_a_row_with_more_faults_than_a_reader_tells_is_told_like_others() -> None:
-    text = "{bore: 1 m, crank: 1 m, rod: 5 m, indicator: {head_end: -0.5 bar}"
-    cylinders = ", ".join(f"{text}, name: c{place}}}" for place in range(100))
-    file = source.decode("m.yaml", f"{{ambient: 1 bar, cylinders: [{cylinders}]}}".encode())
-    found = bound(file, ("ambient",), ("1 bar",), [("0.1 bar",), ("2 bar",), ("0.2 bar",)])
-    assert found[0].startswith("cylinders[0].indicator.head_end: -0.5 bar is below the vacuum")
-    assert found[0].endswith("(reading stopped after 100 faults)")
-    assert same(found[1], read(file, ("ambient",), ("2 bar",)))
 
 
 FURTHER = (
@@ -318,18 +282,16 @@ def test_every_number_of_every_record_may_be_an_array() -> None:
             if re.search(r"\.\d+\.\d+$|^kurbel$|^expect|^limits|uncertainty", key):
                 continue
             text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
-            binder = Binder(file, (key,), (text,))
-            owners = {(slot.given.form.record.__name__, slot.name) for slot in binder._slots.values()}
-            if owners <= met or not all(slot.number for slot in binder._slots.values()):
+            owner, name, inner = _owner(path_of(key), list(_every(read_values(file, reading_of(file)))))
+            one = (owner.form.record.__name__, name)
+            if inner or one in met or not owner.form.keys[name].form.number:
                 continue
-            met |= owners
-            base = parse_quantity(text, binder.kinds[0])
-            values = base * np.array([1.0, 0.999, 1.001])
-            found = binder.of_columns([values], 3)
-            several = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)} | found.failures
-            for row in range(3):
-                alone = binder.of_columns([values[row : row + 1]], 1)
-                one = alone.lots[0].one(0) if alone.lots else alone.failures[0]
-                assert same(several[row], one), (key, row)
+            met.add(one)
+            kind = owner.form.keys[name].form.kind
+            values = parse_quantity(text, kind) * np.array([1.0, 0.999, 1.001])
+            rows = [(f"{value!r} {SI[kind]}".rstrip(),) for value in values.tolist()]
+            several = bound(file, (key,), (text,), rows)
+            for row in (1, 2):
+                assert same(several[row], bound(file, (key,), (text,), rows[row : row + 1])[0]), (key, row)
     traces = ("Known", "Measured", "Motored", "Pegging")  # are made one by one
     assert {one for one in kinds_of_numbers() - met if one[0] not in traces} == set()

@@ -102,12 +102,6 @@ def test_a_summary_is_of_the_rows_that_are_chosen() -> None:
     assert rows(*asked, "--pareto", "N_max")[1]["q100"] == min(chosen)
 
 
-def test_a_column_asked_for_twice_is_one() -> None:
-    assert list(rows("--vary", "rod_ratio=5", "--columns", "N_max,b_max,N_max")[0]) == [
-        "row", "rod_ratio", "N_max_N", "b_max_m/s^2", "failure",
-    ]  # fmt: skip
-
-
 def test_ids_that_are_a_symbol_together_are_two_columns() -> None:
     """`p_max,m` is also the mean of the largest pressures of a trace."""
     assert list(rows("--vary", "rod_ratio=5", "--columns", "p_max,m")[0])[2:4] == ["p_max_Pa", "m_kg"]
@@ -133,23 +127,6 @@ def test_designs_that_fail_at_the_beginning_stay() -> None:
     assert locked[1]["N_max_N"] == pytest.approx(single["N_max"].value, rel=1e-13)
 
 
-@pytest.mark.parametrize("asked", [("--columns", "delta"), ("--columns", "N_max", "--set", "limits.delta=1/50")])
-def test_designs_that_lock_at_the_beginning_stay(asked: tuple[str, ...]) -> None:
-    """Also where the speed line is asked for, of which a machine that locks itself tells nothing, or a bound on it."""
-    locked, turning = rows("--vary", "friction.crosshead=8,0.1", "--set", "flywheel.inertia=5e4 kg m2", *asked)
-    assert "locks itself" in str(locked["failure"])
-    assert turning["failure"] is None
-    alone = run("--vary", "friction.crosshead=8", "--set", "flywheel.inertia=5e4 kg m2", *asked)
-    assert (alone.exit_code, "locks itself" in alone.output) == (3, True)
-
-
-def test_python_may_begin_with_a_design_that_locks() -> None:
-    machine = kurbel.load(WATERWORKS, ["friction.crosshead=8", "flywheel.inertia=5e4 kg m2"])
-    found = kurbel.sweep(machine, {"friction.crosshead": [8.0, 0.1]}, "delta")
-    single = kurbel.solve(kurbel.load(WATERWORKS, ["flywheel.inertia=5e4 kg m2"])).flywheel.delta
-    assert (np.isnan(found["delta"][0]), found["delta"][1]) == (True, pytest.approx(single, rel=1e-13))
-
-
 def test_python_is_told_why_the_only_design_fails() -> None:
     """As an optimiser may ask for one design at a time, and for one key value of it."""
     found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
@@ -157,19 +134,8 @@ def test_python_is_told_why_the_only_design_fails() -> None:
     assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
 
 
-def test_a_key_in_two_spellings_is_one() -> None:
-    result = run("--vary", "tandem.0.bore=280,290 mm", "--vary", "tandem[0].bore=200 mm")
-    assert (result.exit_code, "--vary tandem[0].bore: this key is varied twice" in result.output) == (2, True)
-
-
 def test_limits_do_not_vary() -> None:
     """Every row was judged by the bound of the first one."""
     result = run("--vary", "limits.N_max=16,20 kN", "--columns", "N_max")
     told = "--vary limits.N_max: limits are the same for all rows; --where chooses those within others"
     assert (result.exit_code, told in result.output) == (2, True)
-
-
-def test_the_numbers_of_points_have_an_order() -> None:
-    cut_off = "indicator.head_end.expansion.1.0"
-    asked = ("--vary", f"{cut_off}=0.4,0.3", "--columns", "work", "--sort", cut_off)
-    assert [one[cut_off] for one in rows(*asked)] == [0.3, 0.4]

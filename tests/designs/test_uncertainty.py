@@ -19,7 +19,7 @@ import kurbel
 from kurbel.cli import kurbel as command
 from kurbel.designs import uncertainty
 from kurbel.designs.answers import Answer
-from kurbel.designs.uncertainty import Uncertain, Uncertainty, data_uncertainty
+from kurbel.designs.uncertainty import Uncertain, data_uncertainty, read_inputs, uncertainties
 from kurbel.machine_file import source
 from kurbel.quantities import every_quantity
 from kurbel.traces import read as trace_files
@@ -30,7 +30,7 @@ WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = Uncertainty(source.read(WATERWORKS), spreads).of(asked)
+    found = uncertainties(read_inputs(source.read(WATERWORKS), spreads)[0], asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -82,18 +82,6 @@ def test_what_bends_is_told_by_a_sample() -> None:
     machine = kurbel.load(WATERWORKS)
     drawn = kurbel.sweep(machine, {"rod_ratio": ratios[ratios > 1.01]}, ["c_max"])["c_max"]
     assert one.spread == pytest.approx(np.nanstd(drawn), rel=0.15)
-
-
-def test_shares_of_a_sample_are_told_as_what_they_are() -> None:
-    """m g sin i along the stroke line is largest upright, where it turns back: it does not go with the angle at all."""
-    args = ["forces", "-", "--key-values", "--uncertainty", "inclination=5 deg"]
-    text = "{crank: 400 mm, rod_ratio: 5, inclination: 90 deg, masses: {reciprocating: 100 kg}}"
-    page = CliRunner().invoke(command, args, input=text).stdout
-    (line,) = (line for line in page.splitlines() if line.startswith("P_start_max"))
-    share, count = line.split()[-2:]
-    assert count == "2000"
-    assert float(share) < 10
-    assert "squares of correlations" in " ".join(page.split())
 
 
 @pytest.mark.slow
@@ -181,7 +169,7 @@ def test_what_is_answered_alone_is_sampled_less_and_its_trace_read_once(
     known = every_quantity().key_values("forces")
     asked = [Answer(known[id], "forces", "cylinder 1") for id in ("mean_pressure", "n_expansion", "T_max")]
     spreads = {"indicator.head_end.trace.angle_zero": "0.6 deg"}
-    found = Uncertainty(source.read(_rig(tmp_path)), spreads).of(asked, counted)
+    found = uncertainties(read_inputs(source.read(_rig(tmp_path)), spreads)[0], asked, counted)
     assert {one.answer.quantity.id: one.sample for one in found} == {"mean_pressure": 0, "n_expansion": 25, "T_max": 0}
     assert told == [10, 10, 5]
     assert len(read) == 1
@@ -221,16 +209,6 @@ def test_its_figures_are_numbers_to_programs() -> None:
         assert float(rows[name]["uncertainty"]) == columns["uncertainty"][place] > 0
     assert float(rows["P_min"]["value"]) < 0
     assert table["rows"][0] == {"key_value": "A_head", "symbol": "A_H", "unit": "m^2"}
-
-
-def test_its_lines_are_found_by_symbol() -> None:
-    assert [line.split()[1] for line in _table().splitlines() if line.startswith(("power ", "P_start_max "))] == [
-        "P_0,max",
-        "N_i",
-    ]
-    asked = ["forces", str(WATERWORKS), "--key-values", "--columns", "p_i"]
-    told = " ".join(CliRunner().invoke(command, asked).output.split())
-    assert "a key value is a line, grep 'p_i '" in told
 
 
 @pytest.mark.parametrize(
@@ -282,15 +260,6 @@ uncertainty:
     ]
     assert "did you mean 'rod'" in told[0]
     assert "kg is a unit of mass" in told[1]
-
-
-def test_an_uncertainty_from_outside_is_told_as_such() -> None:
-    asked = ["forces", str(WATERWORKS), "--uncertainty", "bor=1 mm", "--uncertainty", "speed=1 kg"]
-    result = CliRunner().invoke(command, asked)
-    assert result.exit_code == 2
-    assert "--uncertainty bor: no value stands under this key in the file; did you mean 'bore'?" in result.stderr
-    assert "--uncertainty speed: " in result.stderr
-    assert "kg is a unit of mass" in result.stderr
 
 
 @pytest.mark.parametrize("share", [1e-5, 1e-3, 0.02, 0.05])

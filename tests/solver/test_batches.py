@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import is_dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 
+from batches import batch
 from kurbel import loads
 from kurbel.machine import Machine
-from kurbel.machine.batch import record_of, values_of
 from kurbel.numerics.extreme import Extreme
 from kurbel.solver.case import Case
 
@@ -35,19 +34,6 @@ LOCOMOTIVE = (
     "share_allowed",
 )
 DIRECTION = "_angle"
-
-
-def batch(values: Sequence[Any]) -> Any:
-    """Records of one kind as one, in which numbers that differ are arrays (n,)."""
-    first = values[0]
-    if isinstance(first, (float, int)) and not isinstance(first, bool):
-        return first if all(one == first for one in values) else np.array(values, dtype=float)
-    if isinstance(first, tuple) and not hasattr(first, "_fields"):
-        return tuple(map(batch, zip(*values)))
-    if is_dataclass(first):
-        found = {name: batch([vars(one)[name] for one in values]) for name in values_of(first)}
-        return record_of(first, {name: one for name, one in found.items() if one is not vars(first)[name]})
-    return first
 
 
 def alone_and_together(machines: Sequence[Machine]) -> tuple[list[Any], Any]:

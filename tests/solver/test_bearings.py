@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from scipy.integrate import fixed_quad
 
+from batches import batch
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Lot, batch
 from kurbel.machine_file import loads
 from kurbel.solver.bearings import Bearing, unreached
 from kurbel.solver.case import Case
@@ -296,7 +296,7 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
 def test_many_machines_have_what_each_has_alone(name: str) -> None:
     texts = [MACHINES[name].replace("1800 rpm", f"{speed} rpm") for speed in (1500, 1800, 2400)]
     alone = [loads(text.replace("a: 60 mm", f"a: {a} mm")) for text, a in zip(texts, (60, 58, 64))]
-    together = Case(batch([(Lot(machine, (0,)), np.array([0])) for machine in alone]), len(alone))
+    together = Case(batch(alone), len(alone))
     for number, machine in enumerate(alone):
         for part, one in zip(together.bearings.parts, Case(machine).bearings.parts, strict=True):
             found = part.key_values()

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from batches import batch
 from kurbel import load
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Lot, batch
 from kurbel.machine.turning import Flywheel, Load
 from kurbel.solver.case import Case
 
@@ -35,8 +35,7 @@ def value_of(machine: Machine, id: str) -> object:
 
 def differences(machines: Sequence[Machine], answered: Sequence[bool]) -> list[str]:
     """Return the key values of machines of a batch that are not those alone; answered: which have any there."""
-    lots = [(Lot(machine, [row]), np.array([0])) for row, machine in enumerate(machines)]
-    together, found = Case(batch(lots), len(machines)).flywheel, []
+    together, found = Case(batch(machines), len(machines)).flywheel, []
     for id in VALUES:
         try:
             each = together[id].value
@@ -68,4 +67,4 @@ def test_couplings() -> None:
         replace(COUPLED, coupling=replace(COUPLED.coupling, stiffness=stiffness)) for stiffness in (1e4, 3e5, 1e6, 1e10)
     ]
     assert differences(machines, [True, True, True, False]) == []
-    assert np.isnan(Case(batch([(Lot(m, [k]), np.array([0])) for k, m in enumerate(machines)]), 4).flywheel.delta[3])
+    assert np.isnan(Case(batch(machines), 4).flywheel.delta[3])

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from batches import batch
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.batch import Lot, batch
 from kurbel.machine.indicator import Card
 from kurbel.machine.parts import Masses
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -197,8 +197,7 @@ def test_many_shafts_have_what_each_has_alone() -> None:
         strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY | {"a": a, "allowable_bending": 60e6}), "rpm": rpm})
         for a, rpm in ((0.4, 200), (0.45, 120), (0.38, 300))
     ]
-    lots = [(Lot(one.machine, (0,)), np.array([0])) for one in alone]
-    together = Case(batch(lots), len(alone)).stress.key_values()
+    together = Case(batch([one.machine for one in alone]), len(alone)).stress.key_values()
     for number, one in enumerate(alone):
         for id, figure in one.key_values().items():
             value = np.broadcast_to(together[id].value, len(alone))[number]

@@ -1,24 +1,29 @@
 """What each design answers: key values of any command; machines of one structure in batches, the others one by one."""
 
 from collections.abc import Container, Iterator, Sequence
-from itertools import compress
 from typing import Any, NamedTuple, Union
 
 import numpy as np
 
+from kurbel.arrays import Indices
 from kurbel.declared.reading import shown
+from kurbel.designs.binding import Lot
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Lot, Structures, batch
+from kurbel.machine.batch import changed
+from kurbel.machine.indicator import Card
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, joined
 from kurbel.report.frame import subjects_of, too_large
 from kurbel.solver.case import Case
+from kurbel.traces.correct import Trace
 
-_ALONE = ("torsion",)
-"""Commands that answer one machine at a time: they turn matrices of its own size."""
+_IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
+"""Mechanisms whose formulas take parameters that are arrays."""
+_MOST_POINTS = 40
+"""Of a card in a batch."""
 _FEWEST = 3
 """Machines of one structure; fewer are answered as quickly alone."""
 AT_ONCE = 1000
@@ -144,97 +149,65 @@ def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int
     """Return what each of many machines answers, by its row; rows: those that are wanted, all if None.
 
     Where rounding depends on the length of an array, as in older versions of numpy, it depends on the company in which
-    a machine stands: whoever wants the same digits of a row at every time gives all lots of its company each time.
+    a machine is computed: whoever wants the same digits of a row at every time gives all lots of its company each time.
     """
-    in_batches = [one.command not in _ALONE for one in asked]
+    at_once = _AT_ONCE_LARGE if any(one.command in _LARGE for one in asked) else AT_ONCE
+    found: dict[int, Values] = {}
     with np.errstate(all="ignore"):
-        together = _Answers(lots, [one for one, own in zip(asked, in_batches) if own]).found(rows)
-        if all(in_batches):
-            return together
-        alone = _Answers(lots, [one for one, own in zip(asked, in_batches) if not own], True).found(rows)
-    return {row: _merged(first, alone[row], in_batches) for row, first in together.items()}
+        for lot in lots:
+            places = np.arange(len(lot.rows))
+            if not any(is_slow(lot.machine, one) for one in asked):
+                for start in range(0, len(places), at_once):
+                    found |= _together(lot, places[start : start + at_once], asked)
+            for place, row in enumerate(lot.rows):
+                if row not in found and (rows is None or row in rows):
+                    found[row] = _alone(lot.one(place), asked)
+    return found
 
 
 def is_slow(machine: Machine, asked: Answer) -> bool:
-    """Return whether many such machines answer this one after another, and not in batches."""
-    return asked.command in _ALONE or Structures().of(machine) is None
+    """Return whether many such machines answer this one after another, and not in batches.
+
+    Torsion turns matrices of its own size; formulas of some mechanisms take no arrays; long cards and traces have so
+    many pieces that they fill one.
+    """
+    pistons = [piston for one in machine.cylinders for piston in one.pistons]
+    cards = [chamber for piston in pistons for chamber in piston.chambers.values()]
+    return (
+        asked.command == "torsion"
+        or any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders)
+        or any(isinstance(one, Trace) for one in cards)
+        or any(sum(len(line.fractions) for line in one.lines) > _MOST_POINTS for one in cards if isinstance(one, Card))
+    )
 
 
-def _merged(first: Values, second: Values, of_first: Sequence[bool]) -> Values:
-    """Return two lots of values in their order, or why there are none."""
-    if isinstance(first, str) or isinstance(second, str):
-        return first if isinstance(first, str) else second
-    lots = iter(first), iter(second)
-    return [next(lots[0] if own else lots[1]) for own in of_first]
+def _together(lot: Lot, places: Indices, asked: Sequence[Answer]) -> dict[int, Values]:
+    """Return the answers of a batch by its rows; those that fail, or whose numbers are none, are left out."""
+    if len(places) < _FEWEST or not asked:
+        return {}
+    try:
+        machine = changed(lot.machine, lambda numbers: numbers[places])
+        columns = answers_in(Case(machine, len(places)), asked)
+    except (KurbelError, ArithmeticError, RuntimeWarning):
+        half = len(places) // 2
+        return _together(lot, places[:half], asked) | _together(lot, places[half:], asked)
+    fit = np.ones(len(places), dtype=bool)
+    each: list[Sequence[Any]] = []
+    for value in columns:
+        if isinstance(value, tuple) and value and isinstance(value[0], tuple):  # a list of each machine
+            each.append(value)
+        elif value is None or isinstance(value, tuple):
+            each.append([value] * len(places))
+        else:
+            fit &= np.isfinite(value)
+            each.append(np.broadcast_to(value, fit.shape).tolist())
+    return {lot.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
 
 
-class _Answers:
-    def __init__(self, lots: Sequence[Lot], asked: Sequence[Answer], alone: bool = False) -> None:
-        self._lots, self._asked, self._one_by_one = lots, asked, alone
-        self._places = {row: (number, place) for number, lot in enumerate(lots) for place, row in enumerate(lot.rows)}
-        self._found: dict[int, Values] = {}
-
-    def found(self, wanted: Container[int] | None) -> dict[int, Values]:
-        at_once = min(AT_ONCE, _AT_ONCE_LARGE) if any(one.command in _LARGE for one in self._asked) else AT_ONCE
-        for rows in () if self._one_by_one or not self._asked else self._of_one_structure():
-            for start in range(0, len(rows), at_once):
-                self._together(rows[start : start + at_once])
-        return {
-            row: self._found[row] if row in self._found else self._alone(row)
-            for row in self._places
-            if wanted is None or row in wanted
-        }
-
-    def _of_one_structure(self) -> list[list[int]]:
-        """Return the rows of machines of each structure; of those that must be answered alone none."""
-        found: dict[Any, list[int]] = {}
-        structures = Structures()
-        for lot in self._lots:
-            if (structure := structures.of(lot.machine)) is not None:
-                found.setdefault(structure, []).extend(lot.rows)
-        return list(found.values())
-
-    def _together(self, rows: list[int]) -> None:
-        """Answer these rows in a batch; those that fail, or whose numbers are none, are left to be answered alone."""
-        if len(rows) < _FEWEST:
-            return
-        try:
-            found = answers_in(Case(self._batch(rows), len(rows)), self._asked)
-        except (KurbelError, ArithmeticError, RuntimeWarning):
-            self._together(rows[: len(rows) // 2])
-            self._together(rows[len(rows) // 2 :])
-            return
-        fit = np.ones(len(rows), dtype=bool)
-        for value in found:
-            fit &= _is_finite(value)
-        values = zip(rows, zip(*(_listed(value, len(rows)) for value in found)))
-        self._found.update(compress(values, fit.tolist()))
-
-    def _batch(self, rows: list[int]) -> Machine:
-        places: dict[int, list[int]] = {}
-        for number, place in (self._places[row] for row in rows):
-            places.setdefault(number, []).append(place)
-        return batch([(self._lots[number], np.array(own)) for number, own in places.items()])
-
-    def _alone(self, row: int) -> Values:
-        if not self._asked:
-            return []
-        number, place = self._places[row]
-        try:
-            return answered_alone(self._lots[number].one(place), self._asked)
-        except KurbelError as error:
-            return str(error)
-        except ArithmeticError as error:
-            return f"these numbers lead beyond what can be computed with ({error})"
-
-
-def _listed(value: Any, count: int) -> Sequence[Any]:
-    """Return the values of so many machines of a batch, one by one."""
-    if value is None or isinstance(value, tuple):
-        return value if value and isinstance(value[0], tuple) else [value] * count
-    return value.tolist() if np.ndim(value) else [float(value)] * count
-
-
-def _is_finite(value: Any) -> Any:
-    """Return whether a value, or that of every machine, can be told."""
-    return value is None or isinstance(value, tuple) or np.isfinite(value)
+def _alone(machine: Machine, asked: Sequence[Answer]) -> Values:
+    try:
+        return answered_alone(machine, asked)
+    except KurbelError as error:
+        return str(error)
+    except ArithmeticError as error:
+        return f"these numbers lead beyond what can be computed with ({error})"

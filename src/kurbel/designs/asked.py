@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Findings
@@ -100,29 +99,21 @@ def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
     keys = tuple(columns)
     binder = Binder(origin, keys, written_texts(origin, keys))
     for (key, column), kind in zip(columns.items(), binder.kinds):
-        yield Input(key, tuple(_texts(column, SI.get(kind, ""))))
-
-
-def _texts(values: Array, unit: str) -> list[str]:
-    if values.dtype.kind not in "fiu":
-        return [str(one) for one in values.tolist()]
-    return [f"{one!r} {unit}".rstrip() for one in values.tolist()]
+        unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
+        yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
 
 
 def _arrays(found: Sweep, rows: Sequence[Row]) -> dict[str, Any]:
-    columns = list(zip(*(row.values for row in rows)))
-    arrays: dict[str, Any] = {
-        head.id: _array(column) for head, column in zip(found.heads, columns, strict=True) if not head.input
-    }
+    arrays: dict[str, Any] = {}
+    for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
+        if head.input:
+            continue
+        if any(isinstance(one, tuple) for one in values):
+            arrays[head.id] = np.empty(len(values), dtype=object)
+            arrays[head.id][:] = values
+        else:
+            arrays[head.id] = np.array([np.nan if one is None else one for one in values], dtype=float)
     arrays["failure"] = np.array([row.failure for row in rows])
     if found.limited:
         arrays["keeps"] = np.array([bool(row.keeps) for row in rows])
     return arrays
-
-
-def _array(values: Sequence[Any]) -> Any:
-    if any(isinstance(one, tuple) for one in values):
-        found = np.empty(len(values), dtype=object)
-        found[:] = values
-        return found
-    return np.array([np.nan if one is None else one for one in values], dtype=float)

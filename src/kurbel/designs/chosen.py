@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array
 from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
@@ -61,7 +61,11 @@ def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Co
     name, relation, written = (part.strip() for part in found.groups())
     place = name if name in texts else place_of(name, heads, "--where", texts)
     if isinstance(place, str) or not heads[place].kind:
-        _check_word(text, name, relation, written)
+        if relation not in _OF_WORDS:
+            no_order = f"{name} has words, of which none is less than another; write = or !="
+            raise UsageError(f"--where {shown(text)}: {no_order}")
+        if name == "keeps" and written not in KEPT.values():
+            raise UsageError(f"--where {shown(text)}: keeps is yes, no, or nothing where a limit cannot be judged")
         return Condition(place, relation, written)
     head = heads[place]
     try:
@@ -69,14 +73,6 @@ def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Co
     except UnitError as error:
         raise UsageError(f"--where {shown(text)}: {error}") from None
     return Condition(place, relation, convert(value, head.kind, head.unit))
-
-
-def _check_word(text: str, name: str, relation: str, written: str) -> None:
-    """Raise UsageError where words are put in an order, or `keeps` is compared with what it never is."""
-    if relation not in _OF_WORDS:
-        raise UsageError(f"--where {shown(text)}: {name} has words, of which none is less than another; write = or !=")
-    if name == "keeps" and written not in KEPT.values():
-        raise UsageError(f"--where {shown(text)}: keeps is yes, no, or nothing where a limit cannot be judged")
 
 
 def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str] = ()) -> int:
@@ -127,26 +123,14 @@ def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
     found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}
     places = [place for place, each in found.items() if not any(lacking for lacking, _ in each)]
     costs = np.array([[cost for _, cost in found[place]] for place in places]).reshape(len(places), len(aims))
-    order = np.lexsort(costs.T[::-1])
-    front = order[_front(costs[order])]
-    return (given[places[one]] for one in sorted(front.tolist()))
-
-
-def _front(costs: Array) -> Indices:
-    """Return which rows of costs (n, aims), in the order of the first, then the next, no other one betters."""
-    if costs.shape[1] == 2:
-        second = costs[:, 1]
-        before = np.concatenate(([np.inf], np.minimum.accumulate(second)[:-1]))
-        # one as good as the best before it is bettered by that, unless both are equal
-        alike = np.concatenate(([False], (np.diff(costs, axis=0) == 0).all(axis=1)))
-        leads = second < before
-        return np.flatnonzero(leads[np.maximum.accumulate(np.where(alike, 0, np.arange(len(second))))])
-    front: list[int] = []
-    for place, one in enumerate(costs):
-        kept = costs[front]
-        if not ((kept <= one).all(axis=1) & (kept < one).any(axis=1)).any():
-            front.append(place)
-    return np.array(front, dtype=int)
+    order = np.lexsort(costs.T[::-1])  # of these the first is never bettered by a later one
+    front = []
+    while len(order):
+        first, order = order[0], order[1:]
+        front.append(places[first])
+        worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(axis=1)
+        order = order[~worse]
+    return (given[place] for place in sorted(front))
 
 
 class Unit(str):
@@ -163,32 +147,26 @@ def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
 
 
 def summary(rows: Iterable[Row], heads: Sequence[Head]) -> Iterator[Row]:
-    """Yield what is to be told of every column of numbers, over the rows that have a value there."""
-    given = [row.values for row in rows]
-    numbers = [_numbers(given, place) for place in range(len(heads))]
+    """Yield a row for every column of numbers, over the rows that have a value there."""
+    numbers = [
+        np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
+        for column in zip(*(row.values for row in rows))
+    ]
     inputs = [values for values, head in zip(numbers, heads) if head.input]
     for values, head in zip(numbers, heads):
         there = values[np.isfinite(values)]
         if head.kind and len(there):
-            told = (Unit(head.unit), len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
-            yield Row(head.id, (*told, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
+            figures = (Unit(head.unit), len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
+            yield Row(head.id, (*figures, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
 
 
-def _numbers(values: Sequence[tuple[Any, ...]], place: int) -> Any:
-    column = (row[place] for row in values)
-    return np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
-
-
-def _rank_correlation(first: Any, second: Any) -> float | None:
-    """Return the correlation of the ranks (Spearman); None where one of both does not vary."""
+def _rank_correlation(first: Array, second: Array) -> float | None:
+    """Return the correlation of the ranks (Spearman), equal ones sharing theirs; None where one does not vary."""
     there = np.isfinite(first) & np.isfinite(second)
-    ranks = [_ranks(one[there]) for one in (first, second)]
-    spread = [float(np.ptp(one)) if len(one) else 0.0 for one in ranks]
-    return float(np.corrcoef(*ranks)[0, 1]) if min(spread) > 0 else None
-
-
-def _ranks(values: Any) -> Any:
-    """Return the rank of every value, equal ones sharing the mean of theirs."""
-    _, group, counts = np.unique(values, return_inverse=True, return_counts=True)
-    ends = np.cumsum(counts)
-    return (ends - (counts + 1) / 2)[group]
+    ranks = []
+    for values in (first[there], second[there]):
+        _, group, counts = np.unique(values, return_inverse=True, return_counts=True)
+        if len(counts) < 2:
+            return None
+        ranks.append((np.cumsum(counts) - (counts + 1) / 2)[group])
+    return float(np.asarray(np.corrcoef(ranks))[0, 1])

@@ -155,7 +155,7 @@ class _Designs:
         rows = self.numbers(places).tolist()
         texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
         bound = self.binder.bound(texts)
-        found = bound.failures | answers_of(bound.lots, (*self.answers, *(one.answer for one in self.limits)))
+        found = bound.failures | answers_of(bound.lots, (*self.answers, *(one for _, one, _ in self.limits)))
         count = len(self.answers)
         values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
         for number, row in enumerate(rows):
@@ -164,10 +164,8 @@ class _Designs:
                 over[number] = against[number] = own
             else:
                 values[number] = [np.nan if one is None else one for one in own[:count]]
-                judged = ((one, value) for one, value in zip(self.limits, own[count:]) if value is not None)
-                broken = [
-                    f"limits.{one.name}" for one, value in judged if breaks(one.answer.quantity, one.bound, value)
-                ]
+                judged = ((*limit, value) for limit, value in zip(self.limits, own[count:]) if value is not None)
+                broken = [f"limits.{name}" for name, one, bound, value in judged if breaks(one.quantity, bound, value)]
                 over[number] = ", ".join(broken)
                 whole = Row(number, (*row, *own[:count]))
                 against[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))

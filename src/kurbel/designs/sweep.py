@@ -1,8 +1,9 @@
 """A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from functools import cached_property, lru_cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,12 +11,11 @@ import numpy as np
 from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Answer, Values, answers_of, asked_answers, is_slow
-from kurbel.designs.binding import Binder, CasesBinder, written_texts
+from kurbel.designs.answers import Answer, answers_of, asked_answers, is_slow
+from kurbel.designs.binding import Binder, Lot, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.batch import Lot
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
@@ -88,14 +88,6 @@ KEPT = {True: "yes", False: "no", None: ""}
 """What is told of limits that are kept, are not, and cannot be judged."""
 
 
-class _Limit(NamedTuple):
-    """A limit of the file by its name, and the answer that its bound is for."""
-
-    name: str
-    answer: Answer
-    bound: float
-
-
 class Sweep:
     """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
 
@@ -107,63 +99,53 @@ class Sweep:
         self.rows = self.plan.rows
         if spec.most and self.rows > spec.most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
-        self._binder, self.asked, self._limits = self._started()
+        self._keys = [one.key for one in self.plan.inputs]
+        self._binder, self.asked, self._limits = self._started(self._keys)
         self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
-        """Heads of the texts after the values, as `Row.text` tells them."""
+        """Heads of the texts after the values, as `Row.text` has them."""
 
-    def _started(self) -> tuple[Binder | CasesBinder, tuple[Answer, ...], tuple["_Limit", ...]]:
-        """Return what binds texts, starting from the first row whose machine tells what it answers, and who answers.
+    def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[tuple[str, Answer, float]]]:
+        """Return what binds texts, who answers what is wanted, and each limit with who answers that, and its bound.
 
-        That is what is asked for, and what limits are for, with their bounds.
+        Texts that may make a machine are those of the file of one that was read, and rows of the whole plan.
         """
-        keys = [one.key for one in self.plan.inputs]
+        rows: Iterable[int] = range(self.rows)
+        if (
+            self.rows > _STARTS
+        ):  # by the golden section: all over the plan, and not at the same value of a key each time
+            rows = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
+        starts = chain([written_texts(self.spec.origin, keys)] if self.spec.given else [], map(self.plan.texts, rows))
         failed: list[KurbelError] = []
-        for texts in self._starts(keys):
+        for texts in starts:
             try:
-                binder = (CasesBinder if self.spec.cases else Binder)(self.spec.origin, keys, texts)
+                binder = Binder(self.spec.origin, keys, texts, self.spec.cases)
                 asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
-                return binder, asked, tuple(limit_answers(binder.machine))
+                return binder, asked, list(limit_answers(binder.machine))
             except (MachineFileError, NoSolutionError) as error:
                 failed.append(error)
         raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
-
-    def _starts(self, keys: Sequence[str]) -> Iterator[Sequence[str]]:
-        """Yield texts that may make a machine: those of the file of one that was read, and rows of the whole plan."""
-        if self.spec.given:
-            yield written_texts(self.spec.origin, keys)
-        if self.rows <= _STARTS:
-            yield from map(self.plan.texts, range(self.rows))
-        else:  # by the golden section: all over the plan, and not at the same value of a key each time
-            yield from (self.plan.texts(int(self.rows * (number * _GOLDEN % 1))) for number in range(_STARTS))
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
         """What stands over the values."""
         ids = [one.quantity.id for one in self.asked if not one.angle]
-        heads = [self._input_head(number, one) for number, one in enumerate(self.plan.inputs)]
+        heads = []
+        for key, text, kind in zip(self._keys, self.plan.texts(0), self._binder.kinds):
+            first = _in_base([text], kind)[0] or 0.0
+            heads.append(Head(key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind))
         for one, unit in zip(self.asked, self._units):
             owned = one.alone or ids.count(one.quantity.id) > 1
             name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
             heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind, one.quantity.listed))
         return tuple(heads)
 
-    def _input_head(self, number: int, one: Input) -> Head:
-        kind = self._binder.kinds[number]
-        first = _in_base([self.plan.texts(0)[number]], kind)[0] or 0.0
-        return Head(one.key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind)
-
     def types(self) -> list[str]:
         """Return what stands under the heads: `number`, `list`, or `text`, also where words stand among numbers."""
-        wordy = [
-            one.distribution is None and None in _in_base(one.texts, kind)
-            for one, kind in zip(self.plan.inputs, self._binder.kinds)
-        ]
-        answers = self.heads[len(wordy) :]
-        return [
-            *("text" if one else "number" for one in wordy),
-            *("list" if one.listed else "number" for one in answers),
-        ]
+        inputs = zip(self.plan.inputs, self._binder.kinds)
+        wordy = [one.distribution is None and None in _in_base(one.texts, kind) for one, kind in inputs]
+        answers = ["list" if one.quantity.listed else "number" for one in self.asked]
+        return [*("text" if one else "number" for one in wordy), *answers]
 
     @cached_property
     def _units(self) -> tuple[str, ...]:
@@ -177,41 +159,38 @@ class Sweep:
 
     def chunk(self, company: range, wanted: range) -> list[Row]:
         """Return the wanted rows of a chunk, counted from 0."""
-        texts = [self.plan.texts(row) for row in company]
-        bound = self._binder.bound(texts)
+        bound = self._binder.bound([self.plan.texts(row) for row in company])
         own = range(wanted.start - company.start, wanted.stop - company.start)
-        found = bound.failures | answers_of(bound.lots, (*self.asked, *(one.answer for one in self._limits)), own)
-        inputs = list(self._inputs(texts))
-        values = iter(self._values([found[row] for row in own if not isinstance(found[row], str)]))
-        return [self._row(number + 1, inputs[row], found[row], values) for row, number in zip(own, wanted)]
-
-    def _row(self, number: int, inputs: tuple[Any, ...], found: Values, values: Iterator[tuple[Any, ...]]) -> Row:
-        if isinstance(found, str):
-            return self._unanswered(number, inputs, found)
-        return Row(number, (*inputs, *next(values)), *self._judged(found[len(self.asked) :]))
+        found = bound.failures | answers_of(bound.lots, (*self.asked, *(one for _, one, _ in self._limits)), own)
+        answered = {row: each for row in own if not isinstance(each := found[row], str)}
+        columns = zip(zip(*answered.values()), self.asked, self._units)
+        values = dict(zip(answered, zip(*(_in_unit(column, one.kind, unit) for column, one, unit in columns))))
+        rows = []
+        for number, inputs in zip(wanted, self.inputs(wanted)):
+            row = number - company.start
+            if row in answered:
+                keeps, broken, unjudged = self._judged(answered[row][len(self.asked) :])
+                rows.append(Row(number + 1, (*inputs, *values[row]), keeps, broken, unjudged))
+            else:
+                rows.append(Row(number + 1, (*inputs, *[None] * len(self.asked)), failure=str(found[row])))
+        return rows
 
     def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
         """Return what is under the heads of the inputs in these rows, counted from 0: it is known unsolved."""
-        return self._inputs([self.plan.texts(row) for row in rows])
-
-    def _unanswered(self, number: int, inputs: tuple[Any, ...], failure: str = "") -> Row:
-        return Row(number, (*inputs, *[None] * (len(self.heads) - len(inputs))), failure=failure)
-
-    def _inputs(self, rows: Sequence[Sequence[str]]) -> Iterable[tuple[Any, ...]]:
-        """Return what stands under the heads of the inputs, row by row, of the texts (rows, inputs)."""
-        return zip(*(_input_values(*one) for one in zip(self.heads, zip(*rows))))
-
-    def _values(self, found: Sequence[Sequence[Any]]) -> Iterable[tuple[Any, ...]]:
-        """Return what stands under the heads of the answers, row by row, of the answers (rows, asked) in SI."""
-        columns = zip(self.asked, self._units, zip(*found))
-        return zip(*(_column_in_unit(column, one.kind, unit) for one, unit, column in columns))
+        columns = []
+        for head, texts in zip(self.heads, zip(*map(self.plan.texts, rows))):
+            different = list(dict.fromkeys(texts))
+            values = _in_unit(_in_base(different, head.kind), head.kind, head.unit)
+            known = {text: text if value is None else value for text, value in zip(different, values)}
+            columns.append([known[text] for text in texts])
+        return zip(*columns)
 
     def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        there = [(one, value) for one, value in zip(self._limits, found) if value is not None]
-        broken = next((one.name for one, value in there if breaks(one.answer.quantity, one.bound, value)), "")
-        known = {one.name for one, _ in there}
-        unknown = {one.name: one.answer.quantity.id for one in self._limits if one.name not in known}
+        there = [(*limit, value) for limit, value in zip(self._limits, found) if value is not None]
+        broken = next((name for name, one, bound, value in there if breaks(one.quantity, bound, value)), "")
+        known = {name for name, *_ in there}
+        unknown = {name: one.quantity.id for name, one, _ in self._limits if name not in known}
         keeps = None if not self.limited or (unknown and not broken) else not broken
         return keeps, broken, "; ".join(f"limits.{name}: {without(name, id)}" for name, id in unknown.items())
 
@@ -230,46 +209,39 @@ class Sweep:
     @cached_property
     def _at_once(self) -> int:
         """Rows that are answered and handed over at once: few where each takes long."""
-        every = (*self.asked, *(one.answer for one in self._limits))
+        every = (*self.asked, *(one for _, one, _ in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
-
-
-def _input_values(head: Head, texts: Sequence[str]) -> list[Any]:
-    """Return what stands under the head of an input in rows of these texts: numbers in its unit, or words."""
-    different = list(dict.fromkeys(texts))
-    values = zip(different, _in_base(different, head.kind))
-    known = {text: text if value is None else _in_unit(value, head.kind, head.unit) for text, value in values}
-    return [known[text] for text in texts]
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
     """Return the values of texts in the base of their kind; None for a word, or what a row fails for."""
+    found: list[float | None] = [None] * len(texts)
     if not kind:
-        return [None] * len(texts)
-    return plain_quantities(texts, kind) or [_one_in_base(text, kind) for text in texts]
+        return found
+    if plain := plain_quantities(texts, kind):
+        return plain
+    for place, text in enumerate(texts):
+        with suppress(KurbelError):
+            found[place] = parse_quantity(text, kind)
+    return found
 
 
-def _one_in_base(text: str, kind: str) -> float | None:
-    try:
-        return parse_quantity(text, kind)
-    except KurbelError:
-        return None
-
-
-def _column_in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
+def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
+    """Return values of a kind in a unit; lists in tuples, None for what is none."""
     if set(map(type, column)) == {float}:  # as most are
         return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
-    return [_in_unit(value, kind, unit) for value in column]
+    return [
+        tuple(convert(part, kind, unit) + 0.0 for part in one)
+        if isinstance(one, tuple)
+        else None
+        if one is None
+        else convert(one, kind, unit) + 0.0
+        for one in column
+    ]
 
 
-def _in_unit(number: Any, kind: str, unit: str) -> Any:
-    if isinstance(number, tuple):
-        return tuple(convert(part, kind, unit) + 0.0 for part in number)
-    return None if number is None else convert(number, kind, unit) + 0.0
-
-
-def limit_answers(machine: Machine) -> Iterable[_Limit]:
-    """Yield whose value each limit of the file is for, with its bound; raises UsageError where nobody has it."""
+def limit_answers(machine: Machine) -> Iterator[tuple[str, Answer, float]]:
+    """Yield each limit of the file with whose value it is for and its bound; raises UsageError where nobody has it."""
     case = Case(machine)
     for name, bound in machine.limits:
         try:
@@ -279,7 +251,7 @@ def limit_answers(machine: Machine) -> Iterable[_Limit]:
             raise UsageError(f"limits.{name}: {error}") from None
         if not found:
             raise UsageError(f"limits.{name}: {without(name, scoped(name)[1])}")
-        yield from (_Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
+        yield from ((name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
 
 
 _sweep = lru_cache(maxsize=4)(Sweep)

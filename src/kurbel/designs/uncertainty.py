@@ -8,18 +8,19 @@ Where an answer bends over the width of an uncertainty, so that its first order 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, Values, answers_of, is_slow
+from kurbel.designs.answers import Answer, answers_of, is_slow
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
-from kurbel.errors import Fault, UnitError, UsageError
+from kurbel.errors import Fault, Path, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import located
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
-_AT_ONCE, _SLOWLY = 200, 10
-"""Of these the machines that are held, and told of, at once: a measured trace of each may be large."""
+_HELD, _FEW_HELD = 200, 10
+"""Of these the machines that are held, and counted, at once: a measured trace of each may be large."""
 _STEP = 0.1
 """Of an uncertainty: the outer difference; the inner one is half of it."""
 _BEND = 0.1
@@ -43,8 +44,6 @@ _BEND = 0.1
 _ROUNDING = 1e-9
 """What is less than this beside the value itself bends nothing."""
 
-
-Found = TypeVar("Found")
 Counted = Callable[[Sequence[Any]], Iterable[Any]]
 """Yields what it is given, and may tell on the way how much of it is left."""
 
@@ -67,146 +66,134 @@ class Uncertain(NamedTuple):
     failed: str = ""
 
 
-class WrongUncertainty(UsageError):
-    """What is wrong with uncertainties; faults: dotted key -> message."""
+class Inputs(NamedTuple):
+    """Uncertain inputs: what makes machines of their texts, and of each the key, the value and its uncertainty."""
 
-    def __init__(self, faults: dict[str, str]) -> None:
-        self.faults = faults
-        super().__init__("; ".join(f"uncertainty of {key}: {message}" for key, message in faults.items()))
+    binder: Binder
+    keys: tuple[str, ...]
+    values: Array
+    spreads: Array
 
 
-class Uncertainty:
-    """What uncertain inputs make of key values; spreads: dotted key -> `0.2 mm` or `2 %`, its standard uncertainty.
+def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Inputs | None:
+    """Return the uncertain inputs of a machine's file, and those that no file gives; None where there are none.
 
-    Raises WrongUncertainty for keys under which no number stands, and for units that do not fit: all of them.
+    Raises MachineFileError or UsageError with all that is wrong with them.
     """
-
-    def __init__(self, origin: Origin, spreads: Mapping[str, str]) -> None:
-        tree, wrong = tree_of(origin), dict[str, str]()
-        first = {path_of(key): key for key in reversed([*spreads])}
-        wrong |= {key: "this key is given twice" for key in spreads if key not in first.values()}
-        texts = _of_each(spreads, lambda key: written(tree, key), wrong)
-        self.keys = tuple(texts)
-        self._binder = Binder(origin, self.keys, list(texts.values()))
-        kinds = dict(zip(self.keys, self._binder.kinds))
-        values = _of_each(self.keys, lambda key: _number(texts[key], kinds[key]), wrong)
-        self._values = list(values.values())
-        widths = _of_each(values, lambda key: _spread(spreads[key], kinds[key], values[key]), wrong)
-        self._spreads = list(widths.values())
-        if wrong:
-            raise WrongUncertainty(wrong)
-
-    def _texts(self, shifts: Sequence[float]) -> list[str]:
-        """Return the texts of the inputs where each is off by so many of its uncertainties."""
-        values = (value + shift * spread for value, shift, spread in zip(self._values, shifts, self._spreads))
-        return [f"{value!r} {SI[kind]}".rstrip() for value, kind in zip(values, self._binder.kinds)]
-
-    def _found(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> list[Values]:
-        """Return the answers of machines whose inputs are off by so many uncertainties, or why there are none."""
-        bound = self._binder.bound([self._texts(one) for one in shifts])
-        found = bound.failures | answers_of(bound.lots, asked)
-        return [found[row] for row in range(len(shifts))]
-
-    def _answers(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer]) -> Any:
-        """Return the answers (machines, asked) as floats, nan where there are none."""
-        blank = [math.nan] * len(asked)
-        rows = self._found(shifts, asked)
-        return np.array([blank if isinstance(row, str) else [_float(value) for value in row] for row in rows])
-
-    def of(self, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
-        """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
-        linear, bends = self._of_first_order(asked)
-        beside = [place for place in bends if not is_slow(self._binder.machine, linear[place].answer)]
-        alone = [place for place in bends if place not in beside]
-        found = dict(enumerate(linear))
-        for places, count, at_once in ((beside, SAMPLE, _AT_ONCE), (alone, SLOW_SAMPLE, _SLOWLY)):
-            found |= zip(places, self._drawn([linear[place] for place in places], count, at_once, counted))
-        return list(found.values())
-
-    def _of_first_order(self, asked: Sequence[Answer]) -> tuple[list[Uncertain], list[int]]:
-        """Return the uncertainties of first order, and the places of those that bend too much for it."""
-        steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
-        units = np.eye(len(self.keys))
-        places = [0 * units[0], *(unit * step for unit in units for step in steps)]
-        found = self._answers([one.tolist() for one in places], asked)
-        there = [place for place in range(len(asked)) if math.isfinite(found[0, place])]
-        kept, found = [asked[place] for place in there], found[:, there]
-        outer, inner, whole = (found[1:].reshape(len(self.keys), 3, 2, -1)[:, k] for k in range(3))
-        slopes = [(pair[:, 0] - pair[:, 1]) / (2 * step) for pair, step in ((outer, _STEP), (inner, _STEP / 2))]
-        first = (4 * slopes[1] - slopes[0]) / 3
-        bend = np.maximum(np.abs(whole.sum(axis=1) / 2 - found[0]), np.abs(slopes[1] - slopes[0]))
-        size = np.sqrt((first**2).sum(axis=0))
-        holds = (bend <= np.maximum(_BEND * size, _ROUNDING * np.abs(found[0]))).all(axis=0)
-        shares = [_shares(squares) for squares in (first**2).T]
-        linear = map(Uncertain, kept, found[0].tolist(), size.tolist(), shares)
-        return list(linear), np.flatnonzero(~holds).tolist()
-
-    def _drawn(self, bent: Sequence[Uncertain], count: int, at_once: int, counted: Counted) -> list[Uncertain]:
-        """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
-        if not bent:
-            return []
-        points = latin_hypercube(count, len(self.keys), 0).tolist()
-        shifts = [[NormalDist().inv_cdf(share) for share in point] for point in points]
-        parts = [shifts[start : start + at_once] for start in range(0, count, at_once)]
-        asked = [one.answer for one in bent]
-        found = np.concatenate([self._answers(part, asked) for part in counted(parts)])
-        failed = self._failed([shifts[row] for row in np.flatnonzero(np.isnan(found).all(axis=1))], asked, count)
-        drawn = [_of_sample(one, np.array(shifts), found[:, k]) for k, one in enumerate(bent)]
-        return [one._replace(failed=failed) for one in drawn]
-
-    def _failed(self, shifts: Sequence[Sequence[float]], asked: Sequence[Answer], count: int) -> str:
-        """Return how many of so many machines gave no answer, and why the first one did not."""
-        if not shifts:
-            return ""
-        (why,) = self._found(shifts[:1], asked)
-        return f"{len(shifts)} of {count} drawn machines fail and count for nothing ({why})."
+    outside, origin = dict(more), machine.origin
+    if len(outside) < len(more):
+        twice = max(outside, key=[key for key, _ in more].count)
+        raise UsageError(f"--uncertainty {shown(twice)}: this key is given twice")
+    spreads = dict(machine.uncertainty) | outside
+    if not spreads or origin is None:
+        return None
+    inputs, wrong = read_inputs(origin, spreads)
+    if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
+        raise UsageError("; ".join(told))
+    if wrong:
+        raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+    return inputs
 
 
-def _of_sample(one: Uncertain, shifts: Any, values: Any) -> Uncertain:
-    there = np.isfinite(values)
-    spread = float(values[there].std(ddof=1)) if there.sum() > 1 else math.nan
-    if not spread > 0:
-        return one._replace(spread=spread, shares=(0.0,) * shifts.shape[1], sample=int(there.sum()))
-    own = shifts[there]
-    shares = tuple(float(np.corrcoef(own[:, k], values[there])[0, 1]) ** 2 for k in range(own.shape[1]))
-    return one._replace(spread=spread, shares=shares, sample=int(there.sum()))
-
-
-def _shares(squares: Any) -> tuple[float, ...]:
-    whole = squares.sum()
-    return tuple((squares / whole).tolist()) if whole > 0 else (0.0,) * len(squares)
-
-
-def _float(value: Any) -> float:
-    return value if isinstance(value, (int, float)) else math.nan
-
-
-def _of_each(keys: Iterable[str], told: Callable[[str], Found], wrong: dict[str, str]) -> dict[str, Found]:
-    """Return what is told of every key; what is wrong with one is noted."""
-    found = {}
-    for key in keys:
+def read_inputs(origin: Origin, spreads: Mapping[str, str]) -> tuple[Inputs, dict[str, str]]:
+    """Return the inputs that are uncertain by `0.2 mm` or `2 %`, by dotted key, and what is wrong with any, by key."""
+    tree, wrong = tree_of(origin), dict[str, str]()
+    texts: dict[str, str] = {}
+    paths: set[Path] = set()
+    for key in spreads:
+        if path_of(key) in paths:
+            wrong[key] = "this key is given twice"
+        paths.add(path_of(key))
         try:
-            found[key] = told(key)
+            texts[key] = written(tree, key)
         except UsageError as error:
             wrong[key] = str(error)
-    return found
+    binder = Binder(origin, tuple(texts), list(texts.values()))
+    found = []
+    for (key, text), kind in zip(texts.items(), binder.kinds):
+        try:
+            value = parse_quantity(text, kind)
+        except (UnitError, KeyError):
+            wrong[key] = f"{shown(text)!r} is no number that could be off"
+            continue
+        spread = spreads[key]
+        try:
+            size = abs(value) * parse_ratio(spread) if spread.endswith("%") else parse_quantity(spread, kind)
+            found.append((value, size))
+            if not size > 0:
+                wrong[key] = f"it must be more than 0, got {spread}"
+        except UnitError as error:
+            wrong[key] = str(error)
+    values, sizes = np.array(found).reshape(-1, 2).T
+    return Inputs(binder, tuple(texts), values, sizes), wrong
 
 
-def _number(text: str, kind: str) -> float:
-    try:
-        return parse_quantity(text, kind)
-    except (UnitError, KeyError):
-        raise UsageError(f"{shown(text)!r} is no number that could be off") from None
+def uncertainties(inputs: Inputs, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
+    """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
+    steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
+    units = np.eye(len(inputs.keys))
+    shifts = np.array([0 * units[0], *(unit * step for unit in units for step in steps)])
+    found, _ = _answers(inputs, shifts, asked)
+    there = np.flatnonzero(np.isfinite(found[0])).tolist()
+    values, found = found[0, there], found[:, there]
+    outer, inner, whole = np.moveaxis(found[1:].reshape(len(inputs.keys), 3, 2, -1), 1, 0)
+    slopes = (outer[:, 0] - outer[:, 1]) / (2 * _STEP), (inner[:, 0] - inner[:, 1]) / _STEP
+    first = (4 * slopes[1] - slopes[0]) / 3
+    sizes = np.sqrt((first**2).sum(axis=0))
+    shares = np.divide(first**2, sizes**2, out=np.zeros_like(first), where=sizes > 0)
+    linear = [
+        Uncertain(asked[place], *each)
+        for place, *each in zip(there, values.tolist(), sizes.tolist(), map(tuple, shares.T.tolist()))
+    ]
+    bend = np.maximum(np.abs(whole.sum(axis=1) / 2 - values), np.abs(slopes[1] - slopes[0]))
+    holds = (bend <= np.maximum(_BEND * sizes, _ROUNDING * np.abs(values))).all(axis=0)
+    drawn = iter(_drawn(inputs, [one for one, straight in zip(linear, holds) if not straight], counted))
+    return [one if straight else next(drawn) for one, straight in zip(linear, holds)]
 
 
-def _spread(text: str, kind: str, value: float) -> float:
-    try:
-        spread = abs(value) * parse_ratio(text) if text.endswith("%") else parse_quantity(text, kind)
-    except UnitError as error:
-        raise UsageError(str(error)) from None
-    if not spread > 0:
-        raise UsageError(f"it must be more than 0, got {text}")
-    return spread
+def _drawn(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> list[Uncertain]:
+    """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
+    if not bent:
+        return []
+    asked = [one.answer for one in bent]
+    slow = any(is_slow(inputs.binder.machine, one) for one in asked)
+    count, held = (SLOW_SAMPLE, _FEW_HELD) if slow else (SAMPLE, _HELD)
+    normal = np.vectorize(NormalDist().inv_cdf)
+    shifts = normal(latin_hypercube(count, len(inputs.keys), 0))
+    parts = [_answers(inputs, part, asked) for part in counted([shifts[k : k + held] for k in range(0, count, held)])]
+    found = np.concatenate([values for values, _ in parts])
+    failures = [why for _, each in parts for why in each]
+    failed = (
+        f"{len(failures)} of {count} drawn machines fail and count for nothing ({failures[0]})." if failures else ""
+    )
+    result = []
+    for one, values in zip(bent, found.T):
+        there = np.isfinite(values)
+        spread = float(values[there].std(ddof=1)) if there.sum() > 1 else math.nan
+        shares = (0.0,) * len(inputs.keys)
+        if spread > 0:
+            shares = tuple(float(np.corrcoef(own, values[there])[0, 1]) ** 2 for own in shifts[there].T)
+        result.append(one._replace(spread=spread, shares=shares, sample=int(there.sum()), failed=failed))
+    return result
+
+
+def _answers(inputs: Inputs, shifts: Array, asked: Sequence[Answer]) -> tuple[Array, list[str]]:
+    """Return the answers (machines, asked) where inputs are off by so many uncertainties, and why machines have none.
+
+    shifts: (machines, inputs); nan where there is no number.
+    """
+    units = [SI[kind] for kind in inputs.binder.kinds]
+    rows = [
+        [f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)]
+        for row in (inputs.values + shifts * inputs.spreads).tolist()
+    ]
+    bound = inputs.binder.bound(rows)
+    values = bound.failures | answers_of(bound.lots, asked)
+    found = np.full((len(rows), len(asked)), math.nan)
+    for row, each in values.items():
+        if not isinstance(each, str):
+            found[row] = [one if isinstance(one, (int, float)) else math.nan for one in each]
+    return found, [why for _, why in sorted(values.items()) if isinstance(why, str)]
 
 
 def with_uncertainty(
@@ -214,17 +201,24 @@ def with_uncertainty(
 ) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
 
-    counted: see `Uncertainty.of`.
+    counted: see `uncertainties`.
 
     Raises what `given_uncertainty` does.
     """
-    uncertainty = given_uncertainty(case.machine, more)
-    if uncertainty is None:
+    inputs = given_uncertainty(case.machine, more)
+    if inputs is None:
         return report
-    found = uncertainty.of(_asked(case, report.command), counted)
-    parts = [_with_table(part, found, uncertainty.keys, system) for part in report.all_parts]
+    found = uncertainties(inputs, _asked(case, report.command), counted)
+    parts = [_with_table(part, found, inputs.keys, system) for part in report.all_parts]
     last = parts.pop() if report.whole else None
-    return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *_notes(found)))
+    notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
+    if any(one.sample for one in found):
+        notes.append(
+            "Those with a sample bend too much for that and come from so many drawn machines; their shares are squares "
+            "of correlations, which fall short of 100 % where an answer turns back."
+        )
+    notes += dict.fromkeys(one.failed for one in found if one.failed)
+    return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *notes))
 
 
 _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))
@@ -238,39 +232,18 @@ def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
     """
     from kurbel.accuracy.trials import Difference
 
-    uncertainty = given_uncertainty(machine)
-    if uncertainty is None:
+    inputs = given_uncertainty(machine)
+    if inputs is None:
         return ()
     case = Case(machine)
     asked = [one for command, ids in _COMPARED for one in _asked(case, command) if one.quantity.id in ids]
     first = [one for one in asked if one.subject in (asked[0].subject, "whole machine")]
-    found = [one for one in uncertainty.of(first) if one.spread > _NOISE * abs(one.value)]
+    found = [one for one in uncertainties(inputs, first) if one.spread > _NOISE * abs(one.value)]
     return tuple(
         Difference(one.answer.quantity.symbol, "standard uncertainties of the file", one.spread / abs(one.value))
         for one in found
         if one.value
     )
-
-
-def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Uncertainty | None:
-    """Return the uncertainties of a machine's file, and those that no file gives; None where there are none.
-
-    Raises MachineFileError or UsageError with all that is wrong with them.
-    """
-    outside, origin = dict(more), machine.origin
-    if len(outside) < len(more):
-        twice = max(outside, key=[key for key, _ in more].count)
-        raise UsageError(f"--uncertainty {shown(twice)}: this key is given twice")
-    spreads = dict(machine.uncertainty) | outside
-    if not spreads or origin is None:
-        return None
-    try:
-        return Uncertainty(origin, spreads)
-    except WrongUncertainty as error:
-        wrong = error.faults
-    if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
-        raise UsageError("; ".join(told))
-    raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
 
 
 def _asked(case: Case, command: str) -> list[Answer]:
@@ -287,16 +260,16 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     own = [one for one in found if one.answer.subject == part.name and one.spread > _NOISE * abs(one.value)]
     if not own:
         return part
-    names, values, spreads = [], [], []
     units = units_of([(one.answer.kind, one.answer.quantity.family, abs(one.value)) for one in own], system)
-    for one, unit in zip(own, units):
-        quantity = one.answer.quantity
-        names.append((quantity.id, quantity.symbol, unit or "1"))
-        values.append(convert(one.value, quantity.kind, unit))
-        spreads.append(convert(one.spread, quantity.kind, unit))
+    kinds = [one.answer.quantity.kind for one in own]
+    names = [(one.answer.quantity.id, one.answer.quantity.symbol, unit or "1") for one, unit in zip(own, units)]
+    values, spreads = (
+        tuple(convert(value, kind, unit) for value, kind, unit in zip(each, kinds, units))
+        for each in ([one.value for one in own], [one.spread for one in own])
+    )
     columns = [
-        Column("value", "value", "value", "", tuple(values), alone=6),
-        Column("uncertainty", "±", "+-", "", tuple(spreads), alone=2),
+        Column("value", "value", "value", "", values, alone=6),
+        Column("uncertainty", "±", "+-", "", spreads, alone=2),
     ]
     for place, key in enumerate(keys):
         columns.append(Column(key, key, key, "%", tuple(round(100 * one.shares[place], 1) for one in own), alone=2))
@@ -305,13 +278,3 @@ def _with_table(part: Part, found: Iterable[Uncertain], keys: Sequence[str], sys
     heads = ("key_value", "symbol", "unit")
     table = PlaceTable("uncertainty", title, heads, tuple(names), tuple(columns), headed=True)
     return part._replace(place_tables=(*part.place_tables, table))
-
-
-def _notes(found: Sequence[Uncertain]) -> Iterable[str]:
-    yield "Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."
-    if any(one.sample for one in found):
-        yield (
-            "Those with a sample bend too much for that and come from so many drawn machines; their shares are squares "
-            "of correlations, which fall short of 100 % where an answer turns back."
-        )
-    yield from dict.fromkeys(one.failed for one in found if one.failed)

@@ -344,26 +344,24 @@ class Machine(Record):
 
 def firings(machine: Machine) -> list[tuple[float, int]]:
     """Return the crank angles of a cycle in degrees at which cylinders fire, each with the number of its cylinder."""
-    cycle = 360.0 * machine.revolutions
-    return sorted(
-        (within_cycle(turn + angle + cylinder.crank_position, cycle), number)
-        for number, cylinder in enumerate(machine.cylinders, 1)
-        for length, angle in _of_cylinder(machine, cylinder)
-        for turn in range(0, round(cycle), length)
-    )
-
-
-def _of_cylinder(machine: Machine, cylinder: Cylinder) -> Iterator[tuple[int, float]]:
-    """Yield for every end that fires the length of its cycle and its dead centre, in degrees of its own crank."""
-    four = machine.cycle_of(cylinder) == "four-stroke"
-    if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
-        yield 720, cylinder.mechanism.dead_centres()[0]
-    for number, piston in enumerate(cylinder.pistons):
-        turns = CYCLES[machine.cycle_of_piston(cylinder, number)]
-        for end, chamber in piston.chambers.items():
-            # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
-            if getattr(chamber, "fires", turns == 2 and getattr(chamber, "mean", 1.0) > 0):
-                yield 360 * turns, cylinder.mechanism.dead_centres()[end == "crank_end"]
+    cycle = 360 * machine.revolutions
+    found = []
+    for number, cylinder in enumerate(machine.cylinders, 1):
+        centres = cylinder.mechanism.dead_centres
+        each: list[tuple[int, float]] = []  # of every end that fires the length of its cycle, and its dead centre
+        four = machine.cycle_of(cylinder) == "four-stroke"
+        if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
+            each.append((720, centres()[0]))
+        for index, piston in enumerate(cylinder.pistons):
+            turns = CYCLES[machine.cycle_of_piston(cylinder, index)]
+            for end, chamber in piston.chambers.items():
+                # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
+                if getattr(chamber, "fires", turns == 2 and getattr(chamber, "mean", 1.0) > 0):
+                    each.append((360 * turns, centres()[end == "crank_end"]))
+        for length, angle in each:
+            firing = (turn + angle + cylinder.crank_position for turn in range(0, cycle, length))
+            found += [(within_cycle(one, float(cycle)), number) for one in firing]
+    return sorted(found)
 
 
 def of_cycle(machine: Machine, number: int) -> Machine:

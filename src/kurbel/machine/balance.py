@@ -1,15 +1,10 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from kurbel.declared.forms.values import Choice
 from kurbel.declared.record import Record, Rule, alternative, field
-
-
-def _product(given: Mapping[str, Any]) -> dict[str, Any]:
-    return {"product": given["mass"] * given["radius"]}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +26,7 @@ class _Weight(Record):
         least=0,
         instead="product",
         needs="radius",
-        gives=_product,
+        gives=lambda given: {"product": given["mass"] * given["radius"]},
         key="mass",
     )
     _radius = alternative(

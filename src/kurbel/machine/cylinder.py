@@ -15,7 +15,7 @@ from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.parts import ConnectingRod, Friction, Masses, Moment, Piston, RamForce, RodPoint
+from kurbel.machine.parts import Friction, Masses, Moment, Piston, RamForce, RodPoint
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 
@@ -148,18 +148,15 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
     """Yield the rule that no cylinder stands where another one does, on one stroke line and at one place."""
     message = "stands where '{other}' does, {place:length} along the shaft, on the same stroke line; give another"
     for index, one in enumerate(cylinders):
-        if one.axial_position is not None:
-            yield from first_of(_apart(index, one, other, message) for other in cylinders[:index])
-
-
-def _apart(index: int, one: Cylinder, other: Cylinder, message: str) -> Rule:
-    place = ("cylinders", index, "axial_position")
-    if one.axial_position is None or other.axial_position is None:
-        return Rule(place, False, "")
-    same = np.abs(one.axial_position - other.axial_position) < 1e-9
-    same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
-    numbers = {"other": other.name, "place": one.axial_position}
-    return Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
+        rules = []
+        for other in cylinders[:index]:
+            if one.axial_position is not None and other.axial_position is not None:
+                same = np.abs(one.axial_position - other.axial_position) < 1e-9
+                same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
+                numbers = {"other": other.name, "place": one.axial_position}
+                place = ("cylinders", index, "axial_position")
+                rules.append(Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers))
+        yield from first_of(iter(rules))
 
 
 def may_lock(cylinder: Cylinder) -> bool:
@@ -208,18 +205,13 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
         message = f"a {kind} has no connecting rod; give what goes to and fro as 'other'"
         yield Rule(("masses", "connecting_rod"), not has_rod, message)
         if has_rod and rod.center_of_gravity is not None:
-            yield from _on_rod(rod, mechanism.rod_length)
-
-
-def _on_rod(rod: ConnectingRod, length: Any) -> Iterator[Rule]:
-    """Yield the rules of the place of the centre of gravity of a rod of this length in m."""
-    place = ("masses", "connecting_rod", "center_of_gravity")
-    endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
-    yield Rule(place, np.isinf(length), endless)
-    # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
-    beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
-    numbers = {"at": rod.center_of_gravity, "length": length}
-    yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
+            place, length = ("masses", "connecting_rod", "center_of_gravity"), mechanism.rod_length
+            endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+            yield Rule(place, np.isinf(length), endless)
+            # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
+            beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
+            numbers = {"at": rod.center_of_gravity, "length": length}
+            yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
 
 
 _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")

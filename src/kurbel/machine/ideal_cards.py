@@ -139,14 +139,6 @@ class Compressor(_TwoStroke):
         yield Rule((), self.delivery >= top, nothing, {"top": top})
 
 
-def _of_ratio(given: Mapping[str, Any]) -> dict[str, Any]:
-    return {"clearance": 1 / (given["compression_ratio"] - 1)}
-
-
-def _expansion_too(given: Mapping[str, Any]) -> dict[str, Any]:
-    return {"expansion_exponent": given.get("expansion_exponent", given["exponent"])}
-
-
 _RATIO = alternative(
     "ratio",
     "Largest over smallest volume; or give `clearance`",
@@ -155,7 +147,7 @@ _RATIO = alternative(
     most=1e6,
     required=True,
     example="8",
-    gives=_of_ratio,
+    gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
     key="compression_ratio",
 )
 
@@ -180,7 +172,7 @@ def _compression_exponent() -> Any:
         most=10,
         absent="1.4, air",
         example="1.3",
-        gives=_expansion_too,
+        gives=lambda given: {"expansion_exponent": given.get("expansion_exponent", given["exponent"])},
     )
 
 

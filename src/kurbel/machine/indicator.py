@@ -1,8 +1,11 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any, ClassVar, Protocol
+
+import numpy as np
 
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
@@ -64,24 +67,11 @@ class Drawn(Record):
     spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0, required=True)
 
     @property
-    def unit(self) -> str:
-        """The unit of the points."""
-        return "in" if isinstance(self.length, Bound) and self.length.unit.startswith("in") else "mm"
-
-    @property
-    def factor(self) -> Factor:
-        """What turns heights above the atmospheric line into Pa."""
-        return (1.0, 1e3 * self.spring) if self.unit == "mm" else (254.0, 1e4 * self.spring)
-
-    @property
-    def whole(self) -> float:
-        """The length of the card in the unit of its points."""
-        return round(1e3 * self.length if self.unit == "mm" else self.length * 1e4 / 254, 9)
-
-    def rectangle(self, mean_height: float | None = None, area: float | None = None) -> Rectangle:
-        """Return the card of the mean height in m, or of the area in m² by planimeter: p_i = a/(l · spring)."""
-        height = (area or 0.0) / self.length if mean_height is None else mean_height
-        return Rectangle(mean=height / self.spring)
+    def scales(self) -> tuple[str, Factor, float]:
+        """The unit of the points, what turns heights above the atmospheric line into Pa, the length in that unit."""
+        if isinstance(self.length, Bound) and self.length.unit.startswith("in"):
+            return "in", (254.0, 1e4 * self.spring), round(self.length * 1e4 / 254, 9)
+        return "mm", (1.0, 1e3 * self.spring), round(1e3 * self.length, 9)
 
 
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
@@ -180,25 +170,33 @@ class Card(Record):
         **given: Any,
     ) -> "Card | Rectangle":
         """Return the card that these keys of a machine file describe; raises RuleError with every fault."""
-        if drawn and given.keys() & {"area", "mean_height"}:
-            return _by_planimeter(drawn, **given)
-        factor = drawn.factor if drawn else unit or (1, 1)
-        whole = drawn.whole if drawn else 1.0
-        faults = [*_missing_lines(given), *_all_line_faults(given, whole, drawn.unit if drawn else "")]
+        by_planimeter = {name: given.pop(name) for name in ("area", "mean_height") if name in given}
+        if drawn and by_planimeter:
+            own = "the lines have an area of their own; leave out the one by planimeter"
+            refuse(*(Fault((name,), own) for name in given))
+            height = by_planimeter.get("mean_height", by_planimeter.get("area", 0.0) / drawn.length)
+            return Rectangle(mean=height / drawn.spring)  # p_i = a/(l · spring)
+        paper, factor, whole = drawn.scales if drawn else ("", unit or (1, 1), 1.0)
+        cycle = "four-stroke" if {"intake", "exhaust"} & given.keys() else "two-stroke"
+        missing = [name for name in STROKES[cycle] if name not in given]
+        faults = [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
+        faults += _line_faults(given, whole, paper)
         if interpolate == "polytropic" and not clearance:
             needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
             faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
         for name, points in given.items():
             faults += size_faults(points, factor, "pressure", (name,))
         refuse(*faults)
-        names = STROKES[_cycle_of(given)]
-        lines = tuple(_line(name, given[name], factor, whole, index % 2) for index, name in enumerate(names))
-        notes = tuple(
-            f"{line.name}: a point given twice counts once"
-            for line in lines
-            if len(line.fractions) < len(given[line.name])
-        )
-        return cls(lines, interpolate, clearance, notes, drawn is not None)
+        lines, notes = [], []
+        for index, name in enumerate(STROKES[cycle]):
+            points, start = given[name], index % 2
+            ordered = points if (points[0][0] <= points[-1][0]) == (start == 0) else points[::-1]
+            kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
+            if len(kept) < len(points):
+                notes.append(f"{name}: a point given twice counts once")
+            pressures = tuple(p * factor[0] / factor[1] for _, p in kept)
+            lines.append(Line(name, tuple(x / whole for x, _ in kept), pressures, start))
+        return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @classmethod
     def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
@@ -206,7 +204,7 @@ class Card(Record):
         if REFUSED not in values.values():
             return []
         lines = {name: value for name, value in values.items() if isinstance(value, list)}
-        return [] if "drawn" in values else _all_line_faults(lines, 1.0, "")
+        return [] if "drawn" in values else _line_faults(lines, 1.0, "")
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -218,7 +216,7 @@ class Card(Record):
         wanted = STROKES[cycle]
         lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
         yield Rule((), len(self.lines) != len(wanted), lines)
-        lowest = min(pressure for line in self.lines for pressure in line.pressures)
+        lowest = reduce(np.minimum, (pressure for line in self.lines for pressure in line.pressures))
         numbers = {"lowest": lowest, "vacuum": 0.0 - lift}
         if self.interpolate == "polytropic":
             above = "{lowest:pressure} is not above the vacuum, as p V^n needs; write 'interpolate: linear'"
@@ -228,56 +226,27 @@ class Card(Record):
             yield Rule((), lowest + lift < 0, below, numbers)
 
 
-def _cycle_of(given: Iterable[str]) -> str:
-    return "four-stroke" if {"intake", "exhaust"} & set(given) else "two-stroke"
-
-
-def _missing_lines(given: Mapping[str, Any]) -> list[Fault]:
-    cycle = _cycle_of(given)
-    missing = [name for name in STROKES[cycle] if name not in given]
-    return [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
-
-
-def _by_planimeter(drawn: "Drawn", **given: Any) -> "Rectangle":
-    lines = [name for name in given if name not in ("area", "mean_height")]
-    refuse(*(Fault((name,), "the lines have an area of their own; leave out the one by planimeter") for name in lines))
-    return drawn.rectangle(**given)
-
-
-def _runs_forward(points: list[Point]) -> bool:
-    return points[0][0] <= points[-1][0]
-
-
-def _line(name: str, points: list[Point], unit: Factor, whole: float, start: int) -> Line:
-    """Return one line in process order, its pressures in Pa."""
-    up, down = unit
-    ordered = points if _runs_forward(points) == (start == 0) else points[::-1]
-    kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
-    return Line(name, tuple(x / whole for x, _ in kept), tuple(p * up / down for _, p in kept), start)
-
-
-def _all_line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
+def _line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
     """Return what keeps lines from running once through the whole stroke; points that are not on it are told once."""
     faults = []
     for name, points in lines.items():
         beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
-        if beyond:
-            return [Fault((name, beyond[0]), _beyond(points[beyond[0]][0], whole, unit, len(beyond) > 1))]
-        faults += _order_faults(name, points, whole, unit)
+        if not beyond:
+            faults += _order_faults(name, points, whole, unit)
+            continue
+        x = points[beyond[0]][0]
+        message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
+        if not unit:
+            hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and len(beyond) > 1 else ""
+            message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
+        return [Fault((name, beyond[0]), message)]
     return faults
 
 
-def _beyond(x: float, whole: float, unit: str, several: bool) -> str:
-    if unit:
-        return f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
-    hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and several else ""
-    return f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
-
-
 def _order_faults(name: str, points: list[Point], whole: float, unit: str) -> list[Fault]:
-    forward = _runs_forward(points)
     word, unit = ("", f" {unit}") if unit else ("fraction ", "")
     along = [x for x, _ in points]
+    forward = along[0] <= along[-1]
     low, high = (along[0], along[-1]) if forward else (along[-1], along[0])
     if (low, high) != (0.0, whole):
         own = "0 is this chamber's own dead centre, where it is smallest"

@@ -110,23 +110,25 @@ def _equal(
 ) -> dict[str, Any]:
     """Return the cylinders that these keys of a machine file describe, and how they stand."""
     angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
-    places = [None if spacing is None else spacing * angles[:index].count(one) for index, one in enumerate(angles)]
-    cylinders = (_standing(each, angle - angles[0], place) for angle, place in zip(angles, places))
-    positions = crank_positions or (each.crank_position,) * count
-    named = tuple(
-        replace(one, name=f"{each.name or 'cylinder'} {i}", crank_position=position)
-        for i, (one, position) in enumerate(zip(cylinders, positions), 1)
-    )
-    return {"cylinders": named, "placed": crank_positions is not None, "shared": len(set(angles)) == count}
-
-
-def _standing(each: Cylinder, bank: float, place: float | None) -> Cylinder:
-    """Return a cylinder turned by a bank angle in degrees, at a place along the shaft in m."""
-    incline = each.inclination
-    if incline is not None:
-        incline = (incline + bank + 180.0) % 360.0 - 180.0 if bank else incline
-    along = each.axial_position if place is None else place + (each.axial_position or 0.0)
-    return replace(each, bank_angle=each.bank_angle + bank, inclination=incline, axial_position=along)
+    cylinders = []
+    for index, angle in enumerate(angles):
+        bank, incline, along = angle - angles[0], each.inclination, each.axial_position
+        if bank and incline is not None:
+            incline = (incline + bank + 180.0) % 360.0 - 180.0
+        if spacing is not None:
+            along = spacing * angles[:index].count(angle) + (along or 0.0)
+        cylinders.append(
+            replace(
+                each,
+                name=f"{each.name or 'cylinder'} {index + 1}",
+                crank_position=(crank_positions or (each.crank_position,) * count)[index],
+                bank_angle=each.bank_angle + bank,
+                inclination=incline,
+                axial_position=along,
+            )
+        )
+    placed, shared = crank_positions is not None, len(set(angles)) == count
+    return {"cylinders": tuple(cylinders), "placed": placed, "shared": shared}
 
 
 def in_order(
@@ -208,28 +210,21 @@ def _pins(cylinders: Sequence[Cylinder], places: Iterable[int]) -> list[list[int
 
 def _most_even(fixed: Mapping[int, float], open_: Mapping[int, float]) -> dict[int, float]:
     """Return the angles of those that are fixed and of those of which each may fire a turn later."""
+    sums: list[float] = []
+    choices = [(angle, angle + 360.0) for angle in open_.values()]
     here = [within_cycle(angle, 720.0) for angle in fixed.values()]
-    either = [(within_cycle(angle, 720.0), within_cycle(angle + 360.0, 720.0)) for angle in open_.values()]
-    sums = [_squared([*here, *angles]) for angles in product(*either)]
+    for angles in product(*([within_cycle(angle, 720.0) for angle in both] for both in choices)):
+        along = sorted([*here, *angles])
+        sums.append(sum((after - one) ** 2 for one, after in pairwise((*along, along[0] + 720.0))))
     least = min(sums) * (1 + _EQUAL)
-    turns = product(*((angle, angle + 360.0) for angle in open_.values()))
-    found = ({**fixed, **dict(zip(open_, angles))} for angles, size in zip(turns, sums) if size <= least)
-    return min(found, key=_order)
+    found = ({**fixed, **dict(zip(open_, angles))} for angles, size in zip(product(*choices), sums) if size <= least)
 
+    def order(angles: Mapping[int, float]) -> list[int]:
+        """Return the cylinders in the order in which they fire, from the first one on."""
+        first = angles[min(angles)]
+        return sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
 
-def _squared(angles: list[float]) -> float:
-    """Return the sum of the squared intervals between angles of 0 to 720 degrees."""
-    angles.sort()
-    total = (angles[0] + 720.0 - angles[-1]) ** 2
-    for one, after in pairwise(angles):
-        total += (after - one) ** 2
-    return total
-
-
-def _order(angles: Mapping[int, float]) -> list[int]:
-    """Return the cylinders in the order in which they fire, from the first one on."""
-    first = angles[min(angles)]
-    return sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
+    return min(found, key=order)
 
 
 def within_cycle(angle: float, cycle: float) -> float:

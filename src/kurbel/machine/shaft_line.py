@@ -74,20 +74,20 @@ class ShaftPart(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        kinds = {"a mass": _OF_MASS, "a piece of shaft": _OF_PIECE, "a gear": ("gear",)}
-        each = [(kind, self._given(keys)) for kind, keys in kinds.items()]
-        found = [(kind, keys) for kind, keys in each if keys]
-        if len(found) > 1:
-            (one, first), (other, second), *_ = found
-            message = f"'{first[0]}' is of {one}, '{second[0]}' of {other}; make two items of them"
-            yield Rule(second[0], True, message)
+        each = {"a mass": _OF_MASS, "a piece of shaft": _OF_PIECE, "a gear": ("gear",)}
+        found = [(kind, key) for kind, keys in each.items() for key in keys if vars(self)[key] is not None]
+        others = [(kind, key) for kind, key in found if kind != found[0][0]]
+        if others:
+            (one, first), (other, second) = found[0], others[0]
+            message = f"'{first}' is of {one}, '{second}' of {other}; make two items of them"
+            yield Rule(second, True, message)
         elif not found:
             piece = "'stiffness', or 'diameter' and 'length', of a piece of shaft"
             yield Rule((), True, f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")
-        elif self.is_piece:
+        elif kind_of(self) == "piece":
             none = self.stiffness is None and self.length is None
             yield Rule((), none, "the piece has no stiffness: give 'stiffness', or 'diameter' and 'length'")
-        elif self.is_mass:
+        elif kind_of(self) == "mass":
             none = self.inertia is None and self.cylinder is None
             yield Rule("load", none, "the mass has no inertia: give 'inertia' or 'cylinder'")
         both = self.gear is not None and self.damping is not None
@@ -95,28 +95,18 @@ class ShaftPart(Record):
         if self.bore is not None and self.diameter is not None:
             yield Rule("bore", self.bore >= self.diameter, "{bore} leaves nothing of the diameter ({diameter})")
 
-    def _given(self, keys: Sequence[str]) -> list[str]:
-        return [key for key in keys if vars(self)[key] is not None]
 
-    @property
-    def is_mass(self) -> bool:
-        """Whether it is a mass."""
-        return bool(self._given(_OF_MASS))
+Part = Union[ShaftPart, str]
 
-    @property
-    def is_piece(self) -> bool:
-        """Whether it is a piece of shaft."""
-        return bool(self._given(_OF_PIECE))
 
-    @property
-    def twist_stiffness(self) -> float:
-        """Stiffness of a piece in N m/rad, G π (d⁴ − d_i⁴)/(32 l)."""
-        if self.stiffness is not None:
-            return self.stiffness
-        assert self.diameter is not None
-        assert self.length is not None
-        modulus = STEEL if self.shear_modulus is None else self.shear_modulus
-        return modulus * math.pi * (self.diameter**4 - (self.bore or 0.0) ** 4) / (32 * self.length)
+def kind_of(part: Part) -> str:
+    """Return what an item of the list is: `mass`, `piece`, `gear` or `ground`."""
+    if isinstance(part, str):
+        return GROUND if part == GROUND else "mass"
+    for kind, keys in (("mass", _OF_MASS), ("piece", _OF_PIECE)):
+        if any(vars(part)[key] is not None for key in keys):
+            return kind
+    return "gear"
 
 
 class Section(NamedTuple):
@@ -174,48 +164,43 @@ class ShaftLine:
     load: int = -1
 
 
-Part = Union[ShaftPart, str]
-
-
 def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
     """Return what is wrong with a list; of one with parts that could not be read what can be told of the others."""
+    found = _of_cylinders(parts, cylinders)
     if REFUSED in parts:
-        return [fault for fault in _of_cylinders(parts, cylinders) if fault.path]
-    return [*_of_cylinders(parts, cylinders), *_of_order(parts), *_of_load(parts)]
+        return [fault for fault in found if fault.path]
+    return [*found, *_of_order(parts), *_of_whole(parts)]
 
 
-def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> Iterator[Fault]:
-    seen: set[str] = set()
+def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> list[Fault]:
+    faults, seen = [], set[str]()
     for index, part in enumerate(parts):
         for name in (part.cylinder or ()) if isinstance(part, ShaftPart) else ():
+            place = index, "cylinder"
             if name not in cylinders:
-                there = f"the machine has {', '.join(cylinders)}" if cylinders else "the machine has none"
-                yield Fault((index, "cylinder"), f"no cylinder '{name}'{did_you_mean(name, tuple(cylinders))}; {there}")
+                there = f"the machine has {', '.join(cylinders) or 'none'}"
+                near = did_you_mean(name, tuple(cylinders))
+                faults.append(Fault(place, f"no cylinder '{name}'{near}; {there}"))
             elif name in seen:
-                yield Fault((index, "cylinder"), f"'{name}' stands in the shaft line twice")
+                faults.append(Fault(place, f"'{name}' stands in the shaft line twice"))
             seen.add(name)
     absent = [name for name in cylinders if name not in seen]
     if absent and not seen - set(cylinders):
-        yield Fault((), f"{', '.join(absent)} stands nowhere in it; give its crank an item '{{cylinder: {absent[0]}}}'")
-
-
-def _kind(part: Part) -> str:
-    if isinstance(part, str):
-        return GROUND if part == GROUND else "mass"
-    return "mass" if part.is_mass else "piece" if part.is_piece else "gear"
+        item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
+        faults.append(Fault((), f"{', '.join(absent)} stands nowhere in it; {item}"))
+    return faults
 
 
 def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
     """Yield what is wrong with the order of the items."""
-    kinds = [_kind(part) for part in parts]
-    for index, kind in enumerate(kinds):
-        before = kinds[index - 1] if index else ""
-        after = kinds[index + 1] if index + 1 < len(kinds) else ""
+    kinds = [kind_of(part) for part in parts]
+    for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
         if kind == "piece" and not (before and after):
             yield Fault((index,), "a shaft line begins and ends with a mass, or with 'ground'")
         if kind == before == "mass":
             yield Fault((index,), "no piece of shaft stands between this mass and the one before; give it, or one mass")
-        if kind == before == "piece" and any(getattr(one, "damping", None) for one in parts[index - 1 : index + 1]):
+        damped = any(isinstance(one, ShaftPart) and one.damping for one in parts[max(index - 1, 0) : index + 1])
+        if kind == before == "piece" and damped:
             yield Fault((index,), "pieces in series with a damper are not one piece; give a mass between them")
         if kind == GROUND and before and after:
             yield Fault((index,), "'ground' is a fixed end; it stands first or last")
@@ -225,10 +210,11 @@ def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
             yield Fault((index, "gear"), "gears have inertia; give it as a mass before or after the gear")
         if GROUND in (kind, before) and {kind, before} & {"mass", "gear"}:
             yield Fault((index,), "a piece of shaft stands between 'ground' and the first mass; give its stiffness")
-    yield from _of_numbers(kinds)
 
 
-def _of_numbers(kinds: Sequence[str]) -> Iterator[Fault]:
+def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
+    """Yield what there is too much or too little of."""
+    kinds = [kind_of(part) for part in parts]
     gears = [index for index, kind in enumerate(kinds) if kind == "gear"]
     grounds = [index for index, kind in enumerate(kinds) if kind == GROUND]
     if len(gears) > 1:
@@ -236,50 +222,47 @@ def _of_numbers(kinds: Sequence[str]) -> Iterator[Fault]:
     if len(grounds) > 1:
         yield Fault((grounds[1],), "a shaft that is held at both ends does not turn; leave one 'ground' out")
     if kinds.count("mass") + len(grounds) < 2:
-        yield Fault(
-            (), "one mass has nothing to vibrate against; give a second one and the piece of shaft between them"
-        )
-
-
-def _of_load(parts: Sequence[Part]) -> Iterator[Fault]:
+        second = "give a second one and the piece of shaft between them"
+        yield Fault((), f"one mass has nothing to vibrate against; {second}")
     loads = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.load]
     if len(loads) > 1:
         yield Fault((loads[1], "load"), "one mass takes the load; leave one of them out")
-    gears = [index for index, part in enumerate(parts) if _kind(part) == "gear"]
     cranks = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.cylinder]
     if gears and cranks and cranks[0] < gears[0] < cranks[-1]:
         yield Fault((gears[0], "gear"), "cranks stand before and behind the gear; they turn at one speed")
 
 
 def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
-    """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError."""
+    """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
+
+    All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
+    """
     refuse(*shaft_faults(parts, cylinders))
-    kinds = [_kind(part) for part in parts]
+    gear = next((index for index, part in enumerate(parts) if kind_of(part) == "gear"), len(parts))
+    ratios = 1.0, next((part.gear for part in parts if isinstance(part, ShaftPart) and part.gear), 1.0)
+    if any(isinstance(part, ShaftPart) and part.cylinder for part in parts[gear:]):
+        ratios = 1 / ratios[1], 1.0
     masses: list[ShaftMass] = []
     pieces: list[ShaftPiece] = []
-    loads = []
-    for index, (kind, part, ratio) in enumerate(zip(kinds, parts, _ratios(parts))):
-        if kind == "piece":
-            in_series = kinds[index - 1] == "piece"
-            pieces.append(_in_series(pieces.pop(), _piece(part, ratio)) if in_series else _piece(part, ratio))
-        elif kind == "mass":
-            mass, geared = _mass(part, ratio, len(masses) + 1), kinds[:index][-2:] == ["mass", "gear"]
-            masses.append(_as_one(masses.pop(), mass) if geared else mass)
-            loads += [len(masses) - 1] if isinstance(part, ShaftPart) and part.load else []
-    ground = "before" if kinds[0] == GROUND else "after" if kinds[-1] == GROUND else ""
+    loads: list[int] = []
+    before = ""
+    for index, part in enumerate(parts):
+        kind, ratio = kind_of(part), ratios[index > gear]
+        if kind == "mass":
+            mass = _mass(part, ratio, len(masses) + 1)
+            if before == "gear" and kind_of(parts[gear - 1]) == "mass":
+                mass = _geared(masses.pop(), mass)
+            masses.append(mass)
+            if isinstance(part, ShaftPart) and part.load:
+                loads.append(len(masses) - 1)
+        elif kind == "piece":
+            piece = _piece(part, ratio)
+            pieces.append(_in_series(pieces.pop(), piece) if before == "piece" else piece)
+        before = kind
+    ground = "before" if parts[0] == GROUND else "after" if parts[-1] == GROUND else ""
     # what drives or is driven stands at an end, and is no crank
     usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
     return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])
-
-
-def _ratios(parts: Sequence[Part]) -> list[float]:
-    """Return the speeds of the items over that of the cranks."""
-    gears = [(index, part.gear) for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.gear]
-    for place, gear in gears:
-        if any(isinstance(part, ShaftPart) and part.cylinder for part in parts[place:]):
-            return [1.0 if index > place else 1 / gear for index in range(len(parts))]
-        return [gear if index > place else 1.0 for index in range(len(parts))]
-    return [1.0] * len(parts)
 
 
 def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
@@ -291,15 +274,8 @@ def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
     return ShaftMass(name, square * (part.inertia or 0.0), cylinders, 0.0, square * (part.damping or 0.0), ratio)
 
 
-def _piece(part: Part, ratio: float) -> ShaftPiece:
-    assert isinstance(part, ShaftPart)
-    sections = () if part.diameter is None else (Section(part.diameter, part.bore or 0.0),)
-    damping, loss = ratio**2 * (part.damping or 0.0), part.loss_factor or 0.0
-    return ShaftPiece(ratio**2 * part.twist_stiffness, damping, loss, sections, ratio)
-
-
-def _as_one(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
-    """Return two masses that a pair of gears joins, referred to the cranks' shaft already."""
+def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
+    """Return two masses that a pair of gears joins as one."""
     return replace(
         mass,
         name=f"{mass.name} + {other.name}",
@@ -308,6 +284,20 @@ def _as_one(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
         flywheel=mass.flywheel + other.flywheel,
         damping=mass.damping + other.damping,
     )
+
+
+def _piece(part: Part, ratio: float) -> ShaftPiece:
+    """Return a piece; where no stiffness is given, it is G π (d⁴ − d_i⁴)/(32 l) in N m/rad."""
+    assert isinstance(part, ShaftPart)
+    stiffness, bore = part.stiffness, part.bore or 0.0
+    if stiffness is None:
+        assert part.diameter is not None
+        assert part.length is not None
+        modulus = STEEL if part.shear_modulus is None else part.shear_modulus
+        stiffness = modulus * math.pi * (part.diameter**4 - bore**4) / (32 * part.length)
+    sections = () if part.diameter is None else (Section(part.diameter, bore),)
+    square, loss = ratio**2, part.loss_factor or 0.0
+    return ShaftPiece(square * stiffness, square * (part.damping or 0.0), loss, sections, ratio)
 
 
 def _in_series(piece: ShaftPiece, other: ShaftPiece) -> ShaftPiece:

@@ -16,12 +16,6 @@ CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
 
 
-def _between(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return D = (D_a + D_i)/2 and h = (D_a − D_i)/2."""
-    outer, inner = given["outer_diameter"], given["inner_diameter"]
-    return {"mean_diameter": (outer + inner) / 2, "depth": (outer - inner) / 2}
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
@@ -34,7 +28,10 @@ class Rim(Record):
         above=0,
         instead="mean_diameter",
         needs="inner_diameter",
-        gives=_between,
+        gives=lambda given: {
+            "mean_diameter": (given["outer_diameter"] + given["inner_diameter"]) / 2,
+            "depth": (given["outer_diameter"] - given["inner_diameter"]) / 2,
+        },
         key="outer_diameter",
     )
     _inner = alternative(
@@ -120,12 +117,6 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
-def _of_rim(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the moment of inertia of a rim whose sizes are given."""
-    rim = given["rim"]
-    return {"rim": rim} | ({"inertia": rim.inertia} if rim.sized_by else {})
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
@@ -171,7 +162,9 @@ class Flywheel(Record):
         Rim,
         "A rim that has the whole moment of inertia; its sizes give it, or else the section that it needs is printed",
         absent="no section",
-        gives=_of_rim,
+        gives=lambda given: (
+            {"rim": given["rim"]} | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
+        ),
         key="rim",
     )
     rim: Rim | None = None

@@ -23,7 +23,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import within_cycle
-from kurbel.machine.batch import Chambers, count_of, taken
+from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam, after_polytrope
 from kurbel.machine.indicator import STROKES, Card, Rectangle
@@ -215,7 +215,7 @@ class CardPressure:
     def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
         self.setting, self._count = setting, count
         self.processes, self._which = _processes(chamber, setting, count)
-        alike = self._alike = len(self.processes) == 1 and count_of(setting.mechanism) is None
+        alike = self._alike = len(self.processes) == 1 and not varies(setting.mechanism)
         segments = _over_the_angle(self.processes, self._which, setting, alike)
         self._machine, self._begins, self._ends, self._table = segments
         self._clearance = self._of_machines([one.clearance for one in self.processes])
@@ -296,8 +296,11 @@ class CardPressure:
 
 def _processes(chamber: Any, setting: Setting, count: int | None) -> tuple[list[Process], Indices]:
     """Return the different processes of machines, and which one each has, (machines,)."""
-    each, which = (chamber.each, chamber.which) if isinstance(chamber, Chambers) else ((chamber,), 0)
-    numbers = (np.broadcast_to(one, count or 1).tolist() for one in (which, setting.lift, setting.base))
+    each, which = [chamber], np.zeros(count or 1, int)
+    if varies(chamber):
+        which = np.arange(count or 1)
+        each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
+    numbers = (np.broadcast_to(one, len(which)).tolist() for one in (which, setting.lift, setting.base))
     made: dict[tuple[int, float, float], int] = {}
     own = np.array([made.setdefault(key, len(made)) for key in zip(*numbers)])
     return [process_in(each[one], lift, setting.cycle, base) for one, lift, base in made], own
