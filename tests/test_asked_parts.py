@@ -34,19 +34,6 @@ def test_the_page_says_which_cylinder() -> None:
     assert len(asked.stdout.splitlines()) < 50
 
 
-FORMS = [(format, layout) for format in ("table", "json", "markdown", "csv") for layout in ("book", "rows")]
-
-
-@pytest.mark.parametrize(("format", "layout"), few(FORMS, [FORMS[0], FORMS[2], FORMS[6]]))
-def test_key_values_come_without_a_table(format: str, layout: str) -> None:
-    asked = run("forces", FOUR, "-f", format, "--layout", layout, "--key-values")
-    assert (asked.exit_code, asked.stderr) == (0, "")
-    assert "T_max" in asked.stdout.replace("\\", "")
-    assert "360" not in asked.stdout.splitlines()[2]
-    if format == "json":
-        assert all(one["columns"] == [] for one in json.loads(asked.stdout)["cylinders"])
-
-
 def test_key_values_as_csv_are_those_of_json() -> None:
     rows = list(csv.DictReader(run("forces", GAS_ENGINE, "-f", "csv", "--key-values").stdout.splitlines()))
     (cylinder,) = json.loads(run("forces", GAS_ENGINE, "-f", "json").stdout)["cylinders"]
@@ -58,12 +45,6 @@ def test_key_values_as_csv_are_those_of_json() -> None:
     assert [(row["key_value"], row["unit"], float(row["value"])) for row in rows] == expected
     at = {one["id"]: one["at_deg"] for one in cylinder["key_values"] if "at_deg" in one}
     assert {row["key_value"]: float(row["at_deg"]) for row in rows if row["at_deg"]} == at
-
-
-def test_strength_has_key_values_alone_too() -> None:
-    asked = run("stress", GAS_ENGINE, "--key-values")
-    assert "Position of the largest torque" not in asked.stdout  # as it stands in the whole: test_stress_command
-    assert "Key values" in asked.stdout
 
 
 @pytest.mark.parametrize(

@@ -84,13 +84,6 @@ def test_the_book_stands_beside_the_exact_only_where_it_is_asked_for() -> None:
     assert orders["F_forward_book"][2] == 0 < orders["F_forward"][2]  # of order 4 the books know nothing
 
 
-def test_orders_as_csv() -> None:
-    result = run(V90, "--orders", "-f", "csv")
-    head, *rows = result.stdout.splitlines()
-    assert head.startswith("table,weight,order,F_forward_N,F_backward_N,F_share")
-    assert [row.split(",")[0] for row in rows].count("orders") == 6
-
-
 def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> None:
     short = "{speed: 600 rpm, crank: 50 mm, rod_ratio: 1.00001, axial_position: 0 mm, masses: {reciprocating: 2 kg}}"
     result = run(short, "--orders", "--width", "200")
@@ -101,11 +94,6 @@ def test_of_thousands_of_orders_the_lowest_are_told_and_the_rest_together() -> N
     assert note.endswith(" kN of the force, 0 N m of the moment.")
     assert len(result.stdout.splitlines()) < 100
     assert "more orders" not in run(short.replace("1.00001", "3"), "--orders").stdout
-
-
-def test_a_column_by_name() -> None:
-    result = run(V90, "--columns", "F_free", "--angles", "0,90", "-f", "csv")
-    assert result.stdout.splitlines()[0] == "phi_deg,F_free_N"
 
 
 @pytest.mark.parametrize(
@@ -135,14 +123,6 @@ def test_pins_that_are_not_shared_are_told() -> None:
     assert "crank pin" not in run(shared).stdout
 
 
-def test_a_limit_and_an_expectation() -> None:
-    text = f"{V90}limits: {{F_free_max: 500 N}}\nexpect: {{counterweight_best: 0.1 kg m ± 0.01 %}}\n"
-    result = CliRunner().invoke(kurbel, ["check", "-"], input=text)
-    assert result.exit_code == 1
-    assert "BROKEN  (whole machine)" in result.stdout
-    assert "met  (whole machine)" in result.stdout
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -165,30 +145,6 @@ def test_the_counterweights_say_what_they_hold() -> None:
     assert best.split()[1:3] == ["0.2000", "kg"]
     assert "Counterweight against what rotates and half of what reciprocates" in best
     assert "Vector sum of the given counterweights" in told
-
-
-def test_a_case_answers_by_name() -> None:
-    from kurbel import loads
-    from kurbel.solver.case import Case
-
-    case = Case(loads(V90))
-    assert case["counterweight_best"].value == pytest.approx(0.1)
-    assert case["F_max"].unit == "N"
-
-
-@pytest.mark.parametrize("width", [40, 80])
-@pytest.mark.parametrize("name", ["boxer", "locomotive-two-cylinders", "v8-cross-plane", "four-in-line"])
-def test_tables_keep_within_the_width_asked_for(name: str, width: int) -> None:
-    """Orders and weights were 89 columns wide; what says the row is said again in every part."""
-    file = str(CONFIGS / f"{name}.yaml")
-    lines = CliRunner().invoke(kurbel, ["balance", file, "--orders", "--width", str(width)]).stdout.splitlines()
-    tables = lines[: next(k for k, text in enumerate(lines) if text.startswith("φ is the angle"))]
-    assert max(map(len, tables)) <= width
-    heads = [text.split() for text in tables if text.split()[:1] == ["n"]]
-    assert len(heads) >= 2
-    columns = [symbol for head in heads for symbol in head[1:]]
-    assert {"F_+", "F_−", "F_a", "M_+", "M_−", "∠M_−"} <= set(columns)
-    assert len(columns) == len(set(columns))
 
 
 @pytest.mark.parametrize("asked", [["--columns", "F_x"], ["--angles", "30"]])

@@ -14,6 +14,7 @@ BRIEF = {
     "random_files.py": ["5"],
     "random_machines.py": ["5"],
     "reading.py": ["500"],
+    "speed_lines.py": ["1"],
     "start_up.py": ["1"],
     "sweep.py": ["20"],
 }

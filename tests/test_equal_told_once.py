@@ -10,7 +10,6 @@ from click.testing import CliRunner
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
-from kurbel.render.text import width
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case
@@ -50,13 +49,6 @@ def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
     one = run("forces", "-", *form, "--cylinder", "cylinder 3", text=EQUAL).replace("\\", "")
     assert page.replace("cylinders 1–4", "cylinder 3") == one
     assert page.splitlines()[0].endswith("Forces in the crank train: cylinders 1–4")
-
-
-def test_programs_get_each() -> None:
-    assert len(json.loads(run("forces", "-", "-f", "json", text=EQUAL))["cylinders"]) == 4
-    assert {row.split(",")[0] for row in run("forces", "-", "-f", "csv", text=EQUAL).splitlines()[1:]} == {
-        f"cylinder {n}" for n in (1, 2, 3, 4)
-    }
 
 
 def test_equally_loaded_pins_stand_once_on_a_page_and_each_for_programs() -> None:
@@ -124,28 +116,3 @@ def test_findings_name_their_cylinder() -> None:
     assert said == [f"cylinder {n}: left out: friction: no friction given" for n in (1, 2, 3, 4)]
     alone = json.loads(run("check", str(CONFIGS / "waterworks.yaml"), "-f", "json"))["findings"]
     assert "left out: weight: no inclination given" in [one["message"] for one in alone]
-
-
-FITTED = [
-    (command, name, columns)
-    for command in ("forces", "flywheel")
-    for name in ("compressor", "coupled-blower", "four-cylinder-generator", "waterworks-two-cranks")
-    for columns in (40, 80)
-]
-
-
-@pytest.mark.parametrize(
-    ("command", "name", "columns"),
-    few(FITTED, [("forces", "waterworks-two-cranks", 40), ("flywheel", "coupled-blower", 40)]),
-)
-def test_no_key_value_runs_over_the_page(command: str, name: str, columns: int) -> None:
-    page = run(command, str(CONFIGS / f"{name}.yaml"), "--key-values", "--width", str(columns))
-    assert [line for line in page.splitlines() if width(line) > columns] == []
-
-
-@pytest.mark.parametrize("columns", [40, 80])
-def test_check_fills_a_width(columns: int) -> None:
-    page = run("check", "-", "--width", str(columns), text=V8.format(bank=90))
-    lines = page.splitlines()
-    assert columns - 16 <= max(map(width, lines)) <= columns
-    assert page.split() == run("check", "-", text=V8.format(bank=90)).split()

@@ -161,32 +161,6 @@ def test_expected_figures_are_compared() -> None:
     assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  OFF, 0.1 m/s too small" in listed) == (1, True)
 
 
-@pytest.mark.parametrize(
-    ("figure", "told"),
-    [
-        ("13.16 m/s2", "expected a figure and its tolerance, such as '10 m/s2 ± 0.5 %' or '10 m/s2 ± 0.1 m/s2'"),
-        ("13.16 ± 0.5 %", "13.16 has no unit"),
-        ("13.16 m/s2 ± 0.5 kg", "unknown acceleration unit 'kg'"),
-        ("13.16 m/s2 ± 0 %", "the tolerance of '13.16 m/s2 ± 0 %' is 0"),
-        ("0 m/s2 ± 5 %", "the tolerance of '0 m/s2 ± 5 %' is 0"),
-        ("13 m/s2 ± -1 m/s2", "is negative"),
-        ("[2 m/s2, 1 m/s2]", "the first bound, 2 m/s2, is larger than the second"),
-        ("[2 m/s2]", "got a list"),
-        ("[2 m/s2, 3]", "3 has no unit"),
-    ],
-)
-def test_an_expectation_that_cannot_be_read_says_what_to_write(figure: str, told: str) -> None:
-    status, _, said = run(ENGINE + f"expect: {{b_max: {figure}}}\n", "check")
-    assert (status, told in said) == (2, True), said
-
-
-def test_a_figure_is_told_by_the_name_that_is_written() -> None:
-    text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n"
-    listed = run(text + "expect: {p_i: 5 bar ± 1 %}\nlimits: {A_H: 1 m2}\n", "check")[1]
-    assert (listed.count("\n  p_i "), listed.count("\n  A_H ")) == (1, 1)
-    assert "mean_pressure" not in listed
-
-
 def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:
     status, _, said = run(
         ENGINE + "expect: {T_max: 1 N ± 1 %, phi_reversal: 1 deg ± 1 deg, c_mx: 1 N ± 1 %}\n", "check"
@@ -254,18 +228,6 @@ def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
         assert (result.exit_code, finding["line"], finding["severity"]) == (2, line, "error")
 
 
-def test_a_check_goes_to_a_file_but_never_over_its_own(tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(ENGINE)
-    (tmp_path / "link.json").symlink_to(tmp_path / "m.yaml")
-    for name in ("m.yaml", "link.json"):
-        result = CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / name)])
-        assert (result.exit_code, (tmp_path / "m.yaml").read_text()) == (2, ENGINE)
-    assert CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / "m.txt")]).stdout == ""
-    assert "a valid machine" in (tmp_path / "m.txt").read_text(encoding="utf-8")
-    result = CliRunner().invoke(kurbel, ["check", str(tmp_path / "m.yaml"), "-o", str(tmp_path / "m.csv")])
-    assert (result.exit_code, "writes table or json" in result.stderr) == (2, True)
-
-
 SEVERAL = {
     "good.yaml": ENGINE,
     "slow.yaml": "name: The slow one\n" + ENGINE + "limits: {c_max: 9 m/s}\n",
@@ -327,13 +289,6 @@ def unnamed(text: str, path: Path) -> str:
     return next((text[len(name) + 2 :] for name in names if text.startswith(f"{name}: ")), text)
 
 
-@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces", "flywheel"]))
-def test_notes_stand_in_every_command_once(command: str) -> None:
-    """A gauge pressure that never falls below 1 bar looks absolute."""
-    _, printed, _ = run(ENGINE + GAUGE + SHAFT, command)
-    assert printed.count("about the ambient: absolute?") == 1
-
-
 @pytest.mark.parametrize("command", ["check", "forces", "flywheel"])
 def test_notes_name_their_cylinder(command: str) -> None:
     one = "{name: %s, crank: 400 mm, rod: 2 m, bore: 450 mm, %s}"
@@ -347,13 +302,6 @@ def test_notes_name_their_cylinder(command: str) -> None:
         assert lines[place].startswith("left, right: piston, head end: ")
     else:  # below the head of both
         assert any("left, right" in line for line in lines[:place])
-
-
-@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
-def test_a_card_that_was_tidied_up_is_told_by_every_command(command: str) -> None:
-    card = "indicator: {head_end: {unit: bar, expansion: [[0, 5], [1, 2], [1, 2]], compression: [[1, 1], [0, 4]]}}\n"
-    (note,) = loads(ENGINE + card).cylinders[0].pistons[0].indicator.head_end.notes[:1]  # type: ignore[union-attr]
-    assert run(ENGINE + card + SHAFT, command)[1].count(note) == 1
 
 
 # left out

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from pathlib import Path
@@ -12,7 +10,6 @@ import pytest
 from click.testing import CliRunner, Result
 
 from good_machines import DEMO
-from imported import modules_after
 from kurbel.cli import kurbel
 from kurbel.quantities import every_quantity
 from kurbel.quantity import by_id
@@ -76,14 +73,6 @@ def test_every_id_is_declared_and_every_number_finite(path: Path) -> None:
             assert all(math.isfinite(value) for value in values)
 
 
-def test_csv_has_the_columns_in_the_order_asked_for() -> None:
-    result = run("forces", WATERWORKS, "--columns", "T,x", "--step", "90", "-f", "csv")
-    rows = list(csv.reader(io.StringIO(result.stdout)))
-    assert rows[0] == ["phi_deg", "T_N", "x_m"]
-    assert [row[0] for row in rows[1:]] == ["0", "90", "180", "270", "360"]
-    assert float(rows[3][2]) == 0.8
-
-
 def test_technical_units_show_the_figures_of_the_book() -> None:
     """Waterworks engine: 1546,3 cm², about 1115 kg of inertia (with 826 kg instead of 830), pump 3490 and 3710 kg."""
     part = cylinder(answer("forces", WATERWORKS, "--units", "technical", "--angles", "90,270"))
@@ -91,22 +80,6 @@ def test_technical_units_show_the_figures_of_the_book() -> None:
     assert key_value(part, "A_head")["unit"] == "cm^2"
     assert key_value(part, "P_inertia_min")["value"] == pytest.approx(-1115 * 826 / 830, rel=2e-3)
     assert key_value(part, "stroke")["value"] == pytest.approx(800, rel=1e-15)
-
-
-def test_several_cylinders_have_a_column_and_a_part_each() -> None:
-    text = DEMO.replace("crank: 400", "cylinders:\n- crank: 400").split("cylinders:")[0] + "cylinders:\n"
-    body = DEMO.split("speed: 50 rpm\n")[1].replace("\n", "\n    ").rstrip()
-    text += f"  - name: HP\n    {body}\n  - name: LP\n    crank_position: 90 deg\n    {body}\n"
-    parsed = answer("forces", "-", text=text)
-    assert [part["name"] for part in parsed["cylinders"]] == ["HP", "LP"]  # type: ignore[index,union-attr]
-    header = run("forces", "-", "-f", "csv", text=text).stdout.splitlines()[0]
-    assert header.startswith("cylinder,phi_deg,")
-
-
-def test_a_column_that_the_machine_lacks_is_an_error() -> None:
-    result = run("forces", "-", "--columns", "F_friction", text=DEMO)
-    assert result.exit_code == 2
-    assert "'F_friction' is left out for this machine" in result.stderr
 
 
 def test_a_machine_without_forces_says_what_is_left_out() -> None:
@@ -132,11 +105,6 @@ LOCKING = (
     "speed: 60 rpm\ncrank: 95 mm\nrod: 100 mm\nbore: 50 mm\nfriction: {crosshead: 0.5}\n"
     "indicator: {head_end: {constant: {expansion: 0 bar, compression: 5 bar}}}\n"
 )
-
-
-def test_the_locking_angle_does_not_depend_on_the_step() -> None:
-    told = {run("forces", "-", "--step", step, text=LOCKING).stderr for step in ("1", "7", "10", "45")}
-    assert len(told) == 1
 
 
 def test_check_tells_that_the_crosshead_locks_itself() -> None:
@@ -209,15 +177,6 @@ def test_what_the_brake_measured_needs_an_indicated_power(missing: str | None, w
     assert f"comparison with brake_power: {why}" in " ".join(stdout.split())
 
 
-def test_a_cylinder_may_hang_below_the_shaft_leaning_over() -> None:
-    text = "speed: 60 rpm\ncrank: 95 mm\nrod: 300 mm\nmasses: {piston: 10 kg}\ninclination: "
-    upright, leaning = (
-        run("forces", "-", "-f", "csv", "--columns", "P_weight", "--angles", "0", text=text + angle).stdout
-        for angle in ("60 deg", "120 deg")
-    )
-    assert leaning.splitlines()[1] == pytest.approx(upright.splitlines()[1])
-
-
 def test_numbers_too_large_are_refused_by_name() -> None:
     text = "speed: 1e200 rpm\ncrank: 1e200 m\nrod_ratio: 5\nmasses: {piston: 1e200 kg}\n"
     result = run("forces", "-", text=text)
@@ -226,31 +185,7 @@ def test_numbers_too_large_are_refused_by_name() -> None:
     assert "nan" not in result.output.lower()
 
 
-def test_check_compares_limits() -> None:
-    kept = run("check", "-", text=DEMO + "limits: {c_max: 3 m/s, P_min: -200 kN}\n")
-    broken = run("check", "-", text=DEMO + "limits: {c_max: 2 m/s}\n")
-    assert kept.exit_code == 0
-    assert kept.stdout.count("kept") == 2
-    assert broken.exit_code == 1
-    assert "c_max" in broken.stdout
-    assert "BROKEN" in broken.stdout
-
-
 def test_check_names_what_is_computed_and_what_is_left_out() -> None:
     output = run("check", "-", text=DEMO).stdout
     assert "gas force" in output.split("computed")[1].splitlines()[0]
     assert "inertia: no masses given" in output
-
-
-def test_a_limit_of_something_absent_is_a_fault() -> None:
-    result = run("check", "-", text=DEMO + "limits: {loss_crosshead: 0.01}\n")
-    assert result.exit_code == 2
-    assert "limits.loss_crosshead" in result.stderr
-
-
-def test_what_a_machine_does_not_need_is_not_imported(tmp_path: Path) -> None:
-    plain = tmp_path / "plain.yaml"
-    plain.write_text(DEMO, encoding="utf-8")
-    loaded = modules_after(["forces", str(plain), "-f", "csv"])
-    assert {"numpy", "kurbel.mechanisms.slider_crank", "kurbel.solver.gas"} <= loaded
-    assert "rich" not in loaded

@@ -17,12 +17,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 FOLDER = Path(__file__).parent
-CONFIGS = FOLDER.parent / "configs"
 SLIDER = "crank: 400 mm\nrod: 2000 mm\n"
 MACHINES = {
     "slider-crank": SLIDER,
@@ -96,28 +94,6 @@ def test_columns_and_key_values_fit_the_mechanism_and_no_others(name: str) -> No
     assert set(key_values) == FITTING[name][1]
     assert columns["phi"] == list(range(0, 361, 10))
     assert all(math.isfinite(value) for values in columns.values() for value in values)
-
-
-PRINTED = [
-    (name, format, units)
-    for units in ("si", "technical")
-    for format in ("table", "csv", "json", "markdown")
-    for name in MACHINES
-]
-
-
-@pytest.mark.parametrize(("name", "format", "units"), few(PRINTED, PRINTED[::7]))
-def test_every_format(name: str, format: str, units: str) -> None:
-    text = f"name: It\nspeed: 60 rpm\n{MACHINES[name]}"
-    result = run("motion", "-", "-f", format, "--units", units, "--step", "30", text=text)
-    assert (result.exit_code, result.stderr) == (0, "")
-    assert "nan" not in result.stdout
-    if format in ("table", "markdown"):
-        assert "It. Motion of the crank train" in result.stdout
-    if format == "csv":
-        rows = list(csv.reader(io.StringIO(result.stdout)))
-        assert len(rows) == 1 + 13
-        assert {len(row) for row in rows} == {1 + len(FITTING[name][0])}
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -217,25 +193,6 @@ def test_several_cylinders_each_with_its_own_part() -> None:
     assert "Key values: valve gear" in run("motion", "-", text=text).stdout
 
 
-def test_a_four_stroke_engine_moves_alike_in_every_turn() -> None:
-    columns, _ = only_part(answer("-", text=f"cycle: four-stroke\n{SLIDER}"))
-    assert columns["phi"][-1] == 360
-    columns, _ = only_part(answer("-", "--angles", "30,390", text=f"cycle: four-stroke\n{SLIDER}"))
-    assert columns["x"][0] == columns["x"][1]
-
-
-def test_key_values_do_not_depend_on_the_step() -> None:
-    for name in ("offset", "shaper with link", "four-bar"):
-        assert motion_of(name, "--step", "90")[1] == motion_of(name, "--step", "1")[1]
-
-
-def test_forces_print_the_same_key_values_of_motion() -> None:
-    text = f"speed: 60 rpm\n{MACHINES['shaper with link']}ram_force: {{work: 3 kN}}\n"
-    _, key_values = only_part(answer("-", text=text))
-    _, with_forces = only_part(json.loads(run("forces", "-", "-f", "json", text=text).stdout))
-    assert key_values.items() <= with_forces.items()
-
-
 def test_columns_in_the_order_asked_for() -> None:
     columns, _ = motion_of("slotted-lever", "--columns", "theta,c,x", "--angles", "0,90")
     assert list(columns) == ["phi", "theta", "c", "x"]
@@ -260,23 +217,6 @@ def test_a_machine_without_cylinders_does_not_move() -> None:
     result = run("motion", "-", text="effort: {unit: N m, points: [[0, 1], [360, 1]]}\n")
     assert result.exit_code == 2
     assert "has no cylinder; kurbel motion needs one" in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ("{mechanism: slotted-lever, crank: 3 cm, frame: 3 cm, lever: 9 cm}", "pass through the lever's pivot"),
-        ("{mechanism: four-bar, crank: 1 m, coupler: 2 m, rocker: 2 m, frame: 1 m}", "crank"),
-        ("{mechanism: four-bar, crank: 1 m, coupler: 2 m, rocker: 3 m, frame: 2 m}", "change point"),
-        ("{mechanism: four-bar, crank: 2 m, coupler: 3 m, rocker: 3 m, frame: 5 m}", "Grashof"),
-        ("{crank: 1 m, rod: 1 m}", "no longer than the crank"),
-    ],
-)
-def test_degenerate_geometry_is_an_error_of_the_file(keys: str, message: str) -> None:
-    result = run("motion", "-", text=keys)
-    assert result.exit_code == 2
-    assert message in result.stderr
-    assert result.stderr.startswith("<stdin>:1:") or ":1:" in result.stderr
 
 
 def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) -> None:

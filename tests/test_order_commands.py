@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -89,13 +88,6 @@ def test_orders_over_the_speed() -> None:
     assert found["M_cos"][:2] == pytest.approx(slow["M_cos"], rel=1e-12)
 
 
-def test_csv_tells_whose_orders() -> None:
-    rows = list(csv.DictReader(run("harmonics", BLOWER, "-f", "csv", "--orders", "1,2").stdout.splitlines()))
-    assert [(row["cylinder"], row["order"]) for row in rows] == [
-        (name, order) for name in ("cylinder 1", "cylinder 2", "whole machine") for order in ("1.0", "2.0")
-    ]
-
-
 def test_every_piece_over_the_angle() -> None:
     found = parsed("torsion", SHIP, "--columns", "M_shaft,tau", "--step", "1")
     pieces = found["cylinders"]
@@ -130,11 +122,6 @@ def test_what_lies_beside_the_working_speed_is_told() -> None:
 def test_orders_by_steps(asked: str, orders: list[float]) -> None:
     generator = str(CONFIGS / "four-cylinder-generator.yaml")
     assert table(parsed("harmonics", generator, "--orders", asked), "orders")["order"] == orders
-
-
-def test_angles_by_steps_are_decimal_fractions() -> None:
-    cylinder = parsed("motion", BLOWER, "--angles", "0:1:0.1")["cylinders"][0]
-    assert cylinder["columns"][0]["values"] == [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]
 
 
 def test_a_critical_speed_without_a_torque_is_said_to_be_beyond_the_machine() -> None:
@@ -174,22 +161,10 @@ cylinders:
     assert near[6] == [*[""] * 5, "near", *[""] * 6]
 
 
-def test_a_bound_has_two_figures() -> None:
-    """Orders beyond the 96th add about 2.58512 kN m or less: nobody knows a bound to five figures."""
-    assert "(higher ones add about 2.6 kN m or less)" in " ".join(parsed("torsion", SHIP)["notes"])
-
-
 def test_without_damping_it_says_so() -> None:
     result = run("torsion", BLOWER, "--set", "coupling.damping=0 N m s/rad")
     assert "no damping given; at resonance nothing but damping bounds a vibration" in " ".join(result.stdout.split())
     assert "M_w,a" not in result.stdout
-
-
-def test_the_book_s_look_in_ascii() -> None:
-    result = CliRunner(charset="ascii").invoke(kurbel, ["torsion", "-"], input=TWO.encode("ascii"))
-    assert result.exit_code == 0
-    assert result.stdout_bytes.isascii()
-    assert "Holzer's table of mode 1" in result.stdout
 
 
 def test_a_shaft_line_alone() -> None:

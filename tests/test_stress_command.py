@@ -42,27 +42,6 @@ def test_text_lists_every_place_in_three_tables() -> None:
     assert "Key values" in text
 
 
-def test_json() -> None:
-    result = json.loads(run("stress", "-", "-f", "json", "--step", "45").stdout)
-    columns = {column["id"]: column for column in result["machine_columns"]}
-    assert columns["phi"]["values"][:2] == [0, 45]
-    assert columns["phi"]["values"][-1] == 720
-    assert {len(column["values"]) for column in columns.values()} == {17}
-    values = {value["id"]: value for value in result["machine_key_values"]}
-    assert max(columns["sigma_web_B"]["values"]) <= values["sigma_web_B_max"]["value"]
-    assert values["sigma_web_B_max"]["unit"] == "Pa"
-    assert 0 < values["sigma_web_B_max"]["at_deg"] < 90
-    assert values["equilibrium_residual"]["value"] <= 1e-14
-    dead_centre, torque, worst = result["machine_place_tables"]
-    ids = [table["id"] for table in (dead_centre, torque, worst)]
-    assert ids == ["dead_centre", "largest_torque", "largest_stress"]
-    assert [(row["part"], row["place"]) for row in dead_centre["rows"]] == PLACES
-    combined = next(column["values"] for column in worst["columns"] if column["id"] == "combined")
-    assert max(combined[:3]) == pytest.approx(values["sigma_pin_max"]["value"], rel=1e-14)
-    assert max(combined[3:6]) == pytest.approx(values["sigma_web_A_max"]["value"], rel=1e-14)
-    assert "cylinders" not in result
-
-
 def test_csv_over_the_crank_angle_and_by_place() -> None:
     rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35").stdout)))
     assert [row["phi_deg"] for row in rows] == ["0", "35"]
@@ -72,20 +51,6 @@ def test_csv_over_the_crank_angle_and_by_place() -> None:
     assert [(row["part"], row["place"]) for row in rows] == PLACES * 3
     assert rows[0]["compression_Pa"] == ""
     assert float(rows[3]["torsion_Pa"]) > 0
-
-
-def test_markdown_and_units() -> None:
-    text = run("stress", "-", "--places", "-f", "markdown", "--units", "technical").stdout
-    assert "| part | place | φ (°) | σ\\_c (kgf/cm²) |" in text
-    assert "| web A | wide face |" in text
-
-
-def test_columns() -> None:
-    result = run("stress", "-", "--columns", "B_T,sigma_pin", "-f", "csv", "--angles", "0")
-    assert result.stdout.splitlines()[0] == "phi_deg,B_T_N,sigma_pin_Pa"
-    refused = run("stress", "-", "--columns", "P")
-    assert refused.exit_code == 2
-    assert "'P' is no column of kurbel stress" in refused.stderr
 
 
 def test_what_is_not_given_is_left_out_by_name() -> None:
@@ -129,29 +94,7 @@ def test_turning_part_of_the_rod_is_told() -> None:
     assert "C_rod" not in {value["id"] for value in exact["machine_key_values"]}
 
 
-def test_limits_work_on_strength() -> None:
-    broken = run(
-        "check", "-", file=ENGINE.replace("safety_pin_min: 1", "safety_pin_min: 1.5\n  sigma_web_B_max: 20 N/mm2")
-    )
-    assert broken.exit_code == 1
-    assert "safety_pin_min" in broken.stdout
-    assert (broken.stdout.count("BROKEN"), "kept" in broken.stdout) == (2, True)
-
-
 def test_limits_of_a_machine_without_crankshaft_name_the_reason() -> None:
     result = run("check", "-", file=ENGINE.partition("crankshaft:")[0] + "limits: {sigma_pin_max: 60 N/mm2}\n")
     assert result.exit_code == 2
     assert "no 'crankshaft' is given" in result.stderr
-
-
-def test_check_tells_what_of_the_crankshaft_is_left_out() -> None:
-    text = run("check", "-", file=without("inclination").partition("limits:")[0]).stdout
-    assert "flywheel weight: no inclination given" in text
-
-
-def test_ascii() -> None:
-    invoked = CliRunner(charset="ascii").invoke(kurbel, ["stress", "-", "--places"], input=ENGINE.encode())
-    assert invoked.exit_code == 0
-    assert "sigma_res  sigma_v" in invoked.stdout
-    assert "carry D less C_rod" in invoked.stdout
-    assert "?" not in invoked.stdout

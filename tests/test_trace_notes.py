@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import warnings
 from pathlib import Path
@@ -10,10 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from indicated import Engine, absolute, columns_file, cycles, indicated
-from kurbel.cli import kurbel
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slider_crank import SliderCrank
@@ -26,7 +23,6 @@ from representative import few
 AMBIENT = 1.01325
 ENGINE = Engine()
 FINE = np.arange(0.0, 720.0, 0.4)
-SHIFTED = "{file: p.csv, unit: bar%s}"
 
 
 def written(folder: Path, angles: Any, pressures: Any) -> Path:
@@ -218,26 +214,6 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     each = "  " + f"stroke: 100 mm{body}".replace("\n", "\n    ")
     four = f"{brake}{head}cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  each:\n  {each}"
     assert notes_of(four) == []
-
-
-@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
-def test_every_command_shows_the_same_notes_once(tmp_path: Path, command: str) -> None:
-    shaft = (
-        "crankshaft: {a: 80 mm, b: 80 mm, web_distance: 50 mm, web_thickness: 20 mm, web_width: 70 mm, "
-        "pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, journal_length: 40 mm}\n"
-        "flywheel: {inertia: 1 kg m2}\n"
-    )
-    (tmp_path / "m.yaml").write_text(shaft + machine_text(written(tmp_path, FINE, late(90))))
-    (note,) = [one for one in notes_of((tmp_path / "m.yaml").read_text()) if "the peak is" in one]
-    ran = CliRunner().invoke(kurbel, [command, str(tmp_path / "m.yaml"), "-f", "json"])
-    assert ran.exit_code == 0, ran.output
-    found = json.loads(ran.stdout)
-    if command == "check":
-        said = [one["message"] for one in found["findings"] if one["severity"] == "warning"]
-    else:
-        parts = found.get("cylinders", []) if command == "forces" else []
-        said = [text for part in parts for text in part["warnings"]] or found.get("machine_warnings", [])
-    assert sum(note in text for text in said) == 1
 
 
 def test_cycles_told_by_a_wrong_speed(tmp_path: Path) -> None:

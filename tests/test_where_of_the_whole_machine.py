@@ -120,14 +120,6 @@ def test_rounding_is_no_figure() -> None:
     assert {abs(float(one)) for one in row[2:]} == {0.0}
 
 
-def test_b_at_its_own_zero() -> None:
-    page = CliRunner().invoke(kurbel, ["forces", str(CONFIGS / "waterworks.yaml"), "--where", "b=0"]).stdout
-    rows = {line.split()[0]: line.split()[1:] for line in page.splitlines() if line[:2] in ("b ", "P_", "c ")}
-    assert rows["b"] == ["m/s²", "0.00", "0.00"]
-    assert rows["P_b"] == ["kN", "0.00", "0.00"]
-    assert rows["c"] == ["m/s", "2.136", "-2.136"]
-
-
 STAGES = """
 speed: 600 rpm
 cylinders:

@@ -26,7 +26,7 @@ def test_there_are_many_cases() -> None:
 
 def quick(case: Probe) -> bool:
     """Whether no reference is computed that takes most of a second: of energy, or of many samples."""
-    dear = ("flywheel omega@", "flywheel dE", "forces T_max", "forces T_min", "forces friction_work")
+    dear = ("flywheel dE", "forces T_max", "forces T_min", "forces friction_work")
     return (case.case, case.asked) in KEPT or not (
         case.asked.startswith(dear) or case.case in ("1e5 noisy samples", "polytropic card")
     )
@@ -128,7 +128,11 @@ def closed_forms() -> dict[tuple[str, str], mpmath.mpf]:
 def test_numbers_of_the_table_are_those_of_their_formulas() -> None:
     with mp.workdps(40):
         formulas = closed_forms()
-        numbers = {(one.case, one.asked): one.expected for one in CASES if one.ulp and one.expected != "reference"}
+        numbers = {
+            (one.case, one.asked): one.expected
+            for one in CASES
+            if one.ulp and one.expected != "reference" and "omega@" not in one.asked  # of benchmarks/speed_lines.py
+        }
         assert {at for at, number in numbers.items() if number != "0"} == set(formulas)
         assert all(abs(mpmath.mpf(numbers[at]) / formulas[at] - 1) < 1e-25 for at in formulas)
 

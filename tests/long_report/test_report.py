@@ -207,10 +207,3 @@ def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch
     assert result.exit_code == 2
     assert message in result.stderr
     assert not list(tmp_path.iterdir())
-
-
-def test_the_date_can_be_given(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    first, second = (run("-", text="{effort: {unit: N m, mean: 5, harmonics: [[1, 2, 0]]}}") for _ in "ab")
-    assert "1970-01-01" in first.stdout
-    assert first.stdout == second.stdout

@@ -11,10 +11,8 @@ from drawn import curve_of, drawn, ids_of, off_line, on_its_side
 from scipy.integrate import trapezoid
 
 from kurbel.declared.unit_systems import convert
-from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine import Cylinder, Machine
+from kurbel.errors import NoSolutionError
 from kurbel.machine_file import loads
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.picture import Panel, Picture
 from kurbel.report.picture_source import FINENESS, PictureOptions, sampled
 from kurbel.report.pictures import PICTURES, pictures
@@ -66,15 +64,6 @@ def test_marks_stand_where_the_key_values_do(name: str) -> None:
                     assert mark.figure.at_deg == figure.degrees
                     assert mark.y == mark.figure.value == convert(figure.value, figure.quantity.kind, panel.y.unit)
                     assert mark.x == figure.degrees
-
-
-def test_the_marks_are_there() -> None:
-    symbols = [mark.figure.name.symbol for panel in drawn("waterworks", "forces")[0].panels for mark in panel.marks]
-    assert symbols == ["S_max", "S_min", "N_max", "N_min", "T_max", "T_min"]
-    over_way = drawn("waterworks", "motion-way")[0].panels[0]
-    (largest, _), motion = over_way.marks, case_of("waterworks").cylinders[0].motion
-    assert motion.c_max is not None
-    assert largest.x == 1e3 * float(case_of("waterworks").cylinders[0].at([motion.c_max.degrees]).x[0])
 
 
 def test_forces_reverse_where_the_inertia_line_is_crossed() -> None:
@@ -197,40 +186,12 @@ def test_a_shipped_machine_can_be_drawn(name: str) -> None:
                 assert all(np.isfinite(piece).all() for piece in curve.pieces())
 
 
-def test_a_machine_that_only_moves_has_no_forces() -> None:
-    case = Case(loads("{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5}"))
-    assert ids_of(case) == ("motion", "motion-way", "mechanism")
-    assert ids_of(Case(loads("{stroke: 800 mm, rod_ratio: 5}"))) == ("motion", "mechanism")
-    with pytest.raises(
-        UsageError, match="has no picture 'forces': what it shows is left out; it has motion, motion-way"
-    ):
-        list(pictures(case, ("forces",), PictureOptions()))
-
-
 def test_a_crosshead_that_locks_itself_is_refused_and_its_motion_drawn() -> None:
     locked = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 2, masses: {piston: 100 kg}, friction: {crosshead: 5}}"
     case = Case(loads(locked))
     with pytest.raises(NoSolutionError, match="locks itself"):
         list(pictures(case, ("forces",), PictureOptions()))
     assert list(pictures(case, ("motion",), PictureOptions()))
-
-
-def test_numbers_that_overflow_are_refused_by_name() -> None:
-    huge = Machine((Cylinder(SliderCrank(0.4, 2.0)),), speed=1e200)
-    with pytest.raises(UsageError, match="too large to compute with"):
-        list(pictures(Case(huge), ("motion",), PictureOptions()))
-
-
-def test_units_are_those_that_are_asked_for() -> None:
-    (picture,) = pictures(case_of("waterworks"), ("forces",), PictureOptions("technical"))
-    assert picture.panels[0].y.unit == "kgf"
-    (mark,) = (m for m in picture.panels[0].marks if m.figure.name.symbol == "T_max")
-    assert mark.y == pytest.approx(case_of("waterworks")["T_max"].value / 9.80665, rel=1e-15)
-
-
-def test_ids_are_unique_and_every_function_exists() -> None:
-    assert len({one.id for one in PICTURES}) == len(PICTURES)
-    assert all(one.title and one.text.endswith(".") for one in PICTURES)
 
 
 def test_equal_cylinders_are_drawn_once() -> None:
@@ -243,13 +204,6 @@ def test_equal_cylinders_are_drawn_once() -> None:
             np.testing.assert_array_equal(convert(one.at(degrees).way, "length", panel.y.unit), y)
     (third,) = pictures(case, ("motion",), PictureOptions(cylinder="3"))
     assert third.of == "cylinder 3"
-
-
-def test_cylinders_that_differ_by_one_key_are_drawn_apart() -> None:
-    equal = "{name: A, stroke: 800 mm, rod_ratio: 5, masses: {piston: 100 kg}}"
-    others = "{name: B, like: A, crank_position: 120 deg}, {name: C, like: A, masses: {piston: 101 kg}}"
-    case = Case(loads(f"{{speed: 50 rpm, cylinders: [{equal}, {others}]}}"))
-    assert [one.of for one in pictures(case, ("forces",), PictureOptions())] == ["A, B", "C"]
 
 
 def test_an_infinite_rod_is_drawn_as_the_yoke_that_moves_alike() -> None:
@@ -293,12 +247,6 @@ def test_bars_stand_side_by_side_and_do_not_meet() -> None:
     spans = sorted((float(one.x[0]), float(one.x[-1])) for one in panel.shades)
     assert all(end <= start + 1e-12 for (_, end), (start, _) in itertools.pairwise(spans))
     assert len(spans) == 2 * len(panel.x.names)
-
-
-def test_what_has_no_speed_has_no_free_forces() -> None:
-    text = "{stroke: 800 mm, rod_ratio: 5, masses: {piston: 100 kg}}"
-    assert not {"free-vectors", "free-angle", "free-orders"} & set(ids_of(Case(loads(text))))
-    assert {"free-vectors", "free-angle", "free-orders"} <= set(ids_of("boxer"))
 
 
 def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:

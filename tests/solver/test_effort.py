@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 
@@ -23,10 +21,9 @@ from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, Rings
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.effort import TurningEffort
 from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from machines import STEAM_CARD, constant_pressure
-from representative import few, law_of_each
+from representative import law_of_each
 from turning_machines import of_points
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -49,15 +46,6 @@ def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
     assert pytest.approx(alone.at(ANGLES).M + alone.at(ANGLES + 90).M, rel=1e-12, abs=1e-9) == both.at(ANGLES).M
 
 
-def test_cylinders_that_work_alike_give_what_each_gives_by_itself() -> None:
-    """They are asked as one, each at its own angles; one that is heavier, and one on the next bank, by themselves."""
-    heavier = replace(ENGINE, masses=Masses(900.0), crank_position=200.0)
-    across = replace(ENGINE, bank_angle=60.0, crank_position=260.0)
-    machine = turning(ENGINE, replace(ENGINE, crank_position=90.0), heavier, across, efficiency=0.9)
-    each = (turning(one).at(ANGLES).M for one in machine.machine.cylinders)
-    np.testing.assert_allclose(machine.at(ANGLES).M, 0.9 * sum(each), rtol=1e-13, atol=1e-9)
-
-
 def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
     """∮ m x′ x″ dφ = 0: their mean torque is none, where its rounding once stood as a divisor under ΔE."""
     moved = replace(ENGINE, pistons=())
@@ -75,14 +63,6 @@ def test_of_two_peaks_that_are_alike_the_first_is_told(rod: float) -> None:
     assert alone.T_peak.degrees == min(alone.T_max.degrees, alone.T_min.degrees)
 
 
-def test_the_efficiency_scales_the_turning_effort_only() -> None:
-    """R p. 611."""
-    whole, less = turning(ENGINE), turning(ENGINE, efficiency=0.9)
-    assert pytest.approx(0.9 * whole.at(ANGLES).M, rel=1e-14) == less.at(ANGLES).M
-    assert less.dE == pytest.approx(0.9 * whole.dE, rel=1e-14)
-    assert pytest.approx(0.9 * Case(less.machine).cylinders[0].W, rel=1e-14) == less.W
-
-
 @pytest.mark.parametrize("eta", [1.0, 0.95])
 def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
     """A chamber that draws in at ambient pressure and delivers at 4 bar above it takes p A s in a turn, over η."""
@@ -97,13 +77,6 @@ def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
     lossless = turning(pump, rpm=120)
     assert driven.lobes == pytest.approx(np.array(lossless.lobes) / eta, rel=1e-12)
     assert driven.at(ANGLES).T_inertia == pytest.approx(lossless.at(ANGLES).T_inertia / eta, rel=1e-13, abs=1e-9)
-
-
-def test_forces_are_referred_to_crank_1() -> None:
-    small = replace(ENGINE, mechanism=SliderCrank(0.2, 1.5))
-    both = turning(ENGINE, small)
-    assert pytest.approx(both.at(ANGLES).M, rel=1e-14) == both.at(ANGLES).T * 0.4
-    assert pytest.approx(both.M_mean, rel=1e-14) == both.W * 0.4
 
 
 def test_inertia_line_of_tolle() -> None:
@@ -195,12 +168,6 @@ def test_an_effort_that_equals_the_resistance_has_no_lobes() -> None:
     assert machine.delta == pytest.approx(0, abs=1e-16)
 
 
-def test_touching_is_not_crossing() -> None:
-    """A diagram whose peak reaches just over, or not quite to, the mean between two corners."""
-    load = of_points([(0, 10), (100, -5), (140, 2.0), (180, -5), (360, 4)])
-    assert len(load.phi_crossing) == 4 if load.M_mean < 2.0 else 2
-
-
 # cycles that differ
 
 FOUR_LINES = Card.from_keys(
@@ -223,21 +190,6 @@ def test_a_pump_of_one_turn_beside_an_engine_of_two() -> None:
     at = machine.at(ANGLES + 360).M - machine.at(ANGLES).M
     alone = turning(GAS, rpm=300, cycle="four-stroke")
     assert at == pytest.approx(alone.at(ANGLES + 360).M - alone.at(ANGLES).M, abs=1e-9)
-
-
-def test_four_cylinders_that_fire_in_turn() -> None:
-    positions = (0.0, 540.0, 180.0, 360.0)
-    machine = turning(*(replace(GAS, crank_position=p) for p in positions), rpm=300, cycle="four-stroke")
-    assert pytest.approx(machine.at(ANGLES).M, abs=1e-8) == machine.at(ANGLES + 180).M
-    assert machine.M_mean == pytest.approx(4 * turning(GAS, rpm=300, cycle="four-stroke").M_mean, rel=1e-13)
-
-
-def test_a_diagram_of_one_turn_repeats_in_a_cycle_of_two() -> None:
-    machine = of_points([(0, 5), (180, 20), (360, 5)])
-    twice = replace(machine.machine, cycle="four-stroke")
-    again = Case(twice).flywheel
-    assert pytest.approx(again.at(ANGLES).M, rel=1e-13) == again.at(ANGLES + 360).M
-    assert again.work_shaft == pytest.approx(2 * machine.work_shaft, rel=1e-14)
 
 
 def test_no_force_turns_nothing() -> None:
@@ -269,122 +221,6 @@ def constant_pressure_pair(suction: float, delivery: float) -> Card:
 
 
 # ΔE against mpmath
-
-
-def precise_swing(cylinders: list[Cylinder], rpm: float) -> mpmath.mpf:
-    """ΔE of straight slider-cranks with linear two-stroke cards, from the drawn card and plain formulas."""
-    mp = mpmath.mp
-    omega = 2 * mp.pi * mp.mpf(rpm / 60)
-
-    def motion(c: Cylinder, phi: Any) -> tuple[Any, Any]:
-        crank, rod = mp.mpf(c.mechanism.crank), mp.mpf(c.mechanism.rod)
-        cos, sin = mp.cos_sin(phi)
-        reach = mp.sqrt(rod**2 - (crank * sin) ** 2)
-        x = crank + rod - crank * cos - reach
-        return x, crank * sin + crank**2 * sin * cos / reach
-
-    def area(points: list[tuple[Any, Any]], z: Any, forward: bool) -> Any:
-        """∫ p dz along a line from its start to the fraction z."""
-        total = mp.mpf(0)
-        for (z0, p0), (z1, p1) in pairwise(points):
-            if z1 == z0:
-                continue
-            done = (z >= z1) if forward else (z <= z1)
-            end = z1 if done else z
-            p_end = p0 + (p1 - p0) * (end - z0) / (z1 - z0)
-            total += (end - z0) * (p0 + p_end) / 2
-            if not done:
-                break
-        return total
-
-    def ends(c: Cylinder) -> list[Any]:
-        """Surface, stroke, lines, work of both lines and side of every piston face."""
-        found = []
-        for piston in c.pistons:
-            for card, bore, rod, head in (
-                (piston.indicator.head_end, piston.bore, piston.head_end_rod, True),
-                (piston.indicator.crank_end, piston.bore, piston.crank_end_rod, False),
-            ):
-                surface = mp.pi / 4 * (mp.mpf(bore) ** 2 - mp.mpf(rod) ** 2)
-                lines = [
-                    [(mp.mpf(z), mp.mpf(p)) for z, p in zip(line.fractions, line.pressures)] for line in card.lines
-                ]
-                out, back = area(lines[0], mp.mpf(1), True), area(lines[1], mp.mpf(0), False)
-                found.append((surface, 2 * mp.mpf(c.mechanism.crank), lines, out, back, head))
-        return found
-
-    faces = {id(c): ends(c) for c in cylinders}
-
-    def work(c: Cylinder, phi: Any) -> Any:
-        turns, rest = mp.floor(phi / (2 * mp.pi)), phi - 2 * mp.pi * mp.floor(phi / (2 * mp.pi))
-        x, slope = motion(c, rest)
-        total = -mp.mpf(c.masses.parts) / 2 * slope**2 * omega**2
-        for surface, stroke, lines, out, back, head in faces[id(c)]:
-            z = x / stroke if head else 1 - x / stroke
-            if head:
-                part = area(lines[0], z, True) if rest < mp.pi else out + area(lines[1], z, False)
-            else:
-                part = area(lines[1], z, False) if rest < mp.pi else back + area(lines[0], z, True)
-            total += surface * stroke * (part + turns * (out + back))
-        return total
-
-    def energy(phi: Any) -> Any:
-        each = (work(c, phi - mp.radians(mp.mpf(c.crank_position))) for c in cylinders)
-        return sum(each) - mean * phi
-
-    mean = mp.mpf(0)
-    mean = (energy(2 * mp.pi) - energy(mp.mpf(0))) / (2 * mp.pi)
-    samples = {degree: energy(mp.radians(mp.mpf(degree))) for degree in range(0, 360, 3)}
-    found = []
-    for sign in (1, -1):
-        best = max(samples, key=lambda degree: sign * samples[degree])
-        low, high = mp.radians(mp.mpf(best - 3)), mp.radians(mp.mpf(best + 3))
-        golden = (mp.sqrt(5) - 1) / 2
-        a, b = high - golden * (high - low), low + golden * (high - low)
-        at_a, at_b = sign * energy(a), sign * energy(b)
-        for _ in range(110):  # E may have a corner at its summit: no digit of the angle can be spared
-            if at_a > at_b:
-                high, b, at_b = b, a, at_a
-                a = high - golden * (high - low)
-                at_a = sign * energy(a)
-            else:
-                low, a, at_a = a, b, at_b
-                b = low + golden * (high - low)
-                at_b = sign * energy(b)
-        found.append(energy((low + high) / 2))
-    return found[0] - found[1]
-
-
-CASES = {
-    "one": ([ENGINE], 50.0),
-    "fast": ([ENGINE], 200.0),
-    "leading": ([ENGINE, replace(ENGINE, crank_position=-90.0)], 50.0),
-    "pumps": (
-        [
-            replace(ENGINE, pistons=(STEAM, PUMP)),
-            replace(ENGINE, mechanism=SliderCrank(0.3, 0.9), crank_position=120.0),
-        ],
-        90.0,
-    ),
-}
-
-
-@pytest.mark.parametrize("name", few(CASES, ["pumps"]))
-def test_the_swing_agrees_with_forty_digits(name: str) -> None:
-    """Half a unit in the last place of the displacements moves the swing of balanced cranks by some 8e-16."""
-    cylinders, rpm = CASES[name]
-    with mpmath.workdps(40):
-        truth = precise_swing(cylinders, rpm)
-        error = abs((mpmath.mpf(turning(*cylinders, rpm=rpm).dE) - truth) / truth)
-    assert error < (1e-15 if len(cylinders) == 1 else 2e-15)
-
-
-def test_the_last_digit_of_the_mean_does_not_move_the_swing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Balanced cranks pass on 25 times their swing: a unit in the last place of the mean moved it by some 3e-15."""
-    cylinders, rpm = CASES["leading"]
-    swing, mean_of = turning(*cylinders, rpm=rpm).dE, TurningEffort._mean_of
-    monkeypatch.setattr(TurningEffort, "_mean_of", lambda self, torque: np.nextafter(mean_of(self, torque), np.inf))
-    assert turning(*cylinders, rpm=rpm).dE == pytest.approx(swing, rel=5e-16)
 
 
 def test_no_crossing_is_missed_in_random_machines() -> None:
@@ -441,27 +277,10 @@ def missed(machine: MachineTurning, samples: int = 200) -> int:
     return len(beside) - int(sum(beside)) + int(beaten)
 
 
-def test_the_excess_work_begins_at_zero_and_an_angle_answers_alike_in_any_company() -> None:
-    tandem = replace(ENGINE, pistons=(STEAM, PUMP), crank_position=77.7, name="")
-    machine = turning(ENGINE, tandem)
-    every = machine.at(np.arange(0.0, 361.0, 1.0)).E
-    assert every[0] == 0
-    for angle in (0.0, 33.0, 180.0, 271.0, 360.0):
-        assert machine.at(np.array([angle])).E[0] == every[int(angle)]
-        assert machine.at(np.array([angle, 12.0])).E[0] == every[int(angle)]
-
-
 def test_whole_turns_of_a_crank_position_change_nothing() -> None:
     near, far = (turning(ENGINE, replace(ENGINE, crank_position=p)) for p in (45.5, 45.5 + 360.0 * 2.0**30))
     assert (far.dE, far.M_mean) == (near.dE, near.M_mean)
     assert (far.at(ANGLES).M == near.at(ANGLES).M).all()
-
-
-def test_the_work_of_very_many_points_is_the_area_under_them() -> None:
-    """What running sums over them take is in benchmarks/reading.py."""
-    points = [(360.0 * i / 40_000, 1000 + 500 * math.sin(i * 6.0 / 40_000) + (i * 7919 % 13)) for i in range(40_001)]
-    area = math.fsum((b - a) * (m + n) / 2 for (a, m), (b, n) in pairwise(points))
-    assert of_points(points).work_shaft == pytest.approx(math.radians(area), rel=1e-13)
 
 
 @pytest.mark.parametrize(

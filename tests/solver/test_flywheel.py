@@ -13,12 +13,10 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import DeadCentre
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -55,22 +53,6 @@ def test_the_whole_machine_stands_under_its_own_keys() -> None:
     ids = [one["id"] for one in found["machine_key_values"]]
     assert {"W", "M_mean", "dE", "delta", "J", "GD2", "omega_max", "omega_min"} <= set(ids)
     assert found["cylinders"][0]["key_values"][0]["id"] == "P_dead_centre"
-
-
-def test_csv_has_a_row_for_every_angle() -> None:
-    lines = run(ENGINE, "-f", "csv", "--step", "120").stdout.splitlines()
-    assert lines[0] == "phi_deg,T_N,T_inertia_N,M_Nm,E_J"
-    assert [line.partition(",")[0] for line in lines[1:]] == ["0", "120", "240", "360"]
-
-
-def test_gd2_is_four_times_the_inertia() -> None:
-    """GD² = 4gJ as a weight times an area: 4 kgf m² is 1 kg m²."""
-    weight, inertia = (
-        values(ENGINE + "flywheel: {gd2: 200000 kgf m2}\n"),
-        values(ENGINE + "flywheel: {inertia: 50 t m2}\n"),
-    )
-    assert weight == inertia
-    assert inertia["GD2"] == 4 * inertia["J"]
 
 
 def test_the_wanted_fluctuation_gives_the_flywheel() -> None:
@@ -187,19 +169,6 @@ def test_means_that_differ_are_told() -> None:
     assert values(uneven)["dE"] == pytest.approx(values(PUNCH)["dE"], rel=0.1)
 
 
-def test_friction_taken_off_twice_is_told() -> None:
-    assert "friction is taken off twice" in warnings(ENGINE + "efficiency: 0.9\n")
-
-
-def test_the_efficiency_of_a_compressor_raises_what_it_needs() -> None:
-    text = (CONFIGS / "compressor.yaml").read_text(encoding="utf-8")
-    lossless, real = values(text), values(text + "efficiency: 0.95\n")
-    for name in ("W", "M_mean", "work_shaft", "power_shaft"):
-        assert lossless[name] < 0
-        assert real[name] == pytest.approx(lossless[name] / 0.95, rel=1e-12)
-    assert "over the efficiency 0.95" in run(text + "efficiency: 0.95\n").stdout
-
-
 def test_a_resonance_is_told() -> None:
     coupling = "{stiffness: 1e6 N m/rad, inertia: 3000 kg m2, damping: 100 N m s/rad}"
     text = f"{ENGINE}flywheel: {{inertia: 20 t m2}}\ncoupling: {coupling}\n"
@@ -209,42 +178,6 @@ def test_a_resonance_is_told() -> None:
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
     assert run(tuned).exit_code == 3
-
-
-def test_limits_reach_the_flywheel() -> None:
-    text = ENGINE + "flywheel: {inertia: 50000 kg m2}\nlimits: {delta: 1/50, dE: 30 kJ}\n"
-    assert not checked(Case(loads(text))).broken
-    assert checked(Case(loads(text.replace("1/50", "1/200")))).broken
-
-
-@pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "punch"])
-def test_shipped_machines_run(name: str) -> None:
-    turning = Case(load(CONFIGS / f"{name}.yaml")).flywheel
-    assert turning.delta == pytest.approx(turning.delta_book, rel=1)
-    assert sum(turning.lobes) == pytest.approx(0, abs=1e-9 * turning.dE)
-
-
-def test_tafel_i_low_pressure_leads_and_evens_the_effort() -> None:
-    """R p. 612: two cranks at 90° are far smoother than one."""
-    both = Case(load(CONFIGS / "waterworks-two-cranks.yaml"))
-    assert [c.drive.cylinder.crank_position for c in both.cylinders] == [0, -90]
-    each = [c.W * c.drive.mechanism.crank for c in both.cylinders]
-    assert both.flywheel.M_mean == pytest.approx(sum(each), rel=1e-13)
-    assert DeadCentre(both.cylinders[0], both.flywheel.effort.cycle).P_dead_centre.degrees == 0
-
-
-def test_four_cylinders_fire_every_180_degrees() -> None:
-    turning = Case(load(CONFIGS / "four-cylinder-generator.yaml")).flywheel
-    assert turning.effort.cycle == 720
-    assert len(turning.phi_crossing) == 16
-    assert turning.multiplier < 1
-
-
-def test_technical_units_and_text() -> None:
-    text = run(ENGINE + "flywheel: {fluctuation: 0.01}\n", "--units", "technical", "--step", "90").stdout
-    assert "Turning effort and flywheel" in text
-    assert "kgf m²" in text
-    assert "T and W are referred to the radius of crank 1, 400 mm" in text
 
 
 MIXED = """
@@ -302,34 +235,12 @@ def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None
     assert both["J_exact"] == pytest.approx(exact, rel=1e-12)
 
 
-def test_check_tells_what_flywheel_makes_of_the_machine() -> None:
-    given = dict(entries(PUNCH, "Whole machine"))
-    assert given["left out"] == "T, W: no crank: the effort is given as a torque"
-    coupled = ENGINE.replace("speed: 50 rpm\n", "") + (
-        "flywheel: {inertia: 1 t m2}\nload: {slip: 0.02}\ncoupling: {stiffness: 1 N m/rad, inertia: 1 kg m2}\n"
-    )
-    found = entries(coupled, "Whole machine")
-    assert [text for what, text in found if what == "left out"] == [
-        f"{what}: no speed given" for what in ("power", "speed line, δ", "load over the speed", "coupling")
-    ]
-    assert found[-1] == ("load", "slip 0.02")
-
-
-def test_a_damping_is_a_torque_over_an_angular_velocity() -> None:
-    assert parse_quantity("3 N m s", "damping") == parse_quantity("3 N m s/rad", "damping") == 3
-
-
-def test_a_column_that_is_not_there_is_told_with_those_that_are() -> None:
-    answer = run(ENGINE + "flywheel: {inertia: 9000 kg m2}\n", "--columns", "M_coupling")
-    assert answer.exit_code == 2
-    assert "'M_coupling' is left out for this machine, which has phi (φ), T, T_inertia (T_b), M, E" in answer.stderr
-
-
 def test_an_effort_beyond_all_speeds_needs_a_flywheel_beyond_all_wheels() -> None:
     text = "{speed: 60 rpm, effort: {unit: N m, mean: 300, harmonics: [[5, 1e18, 0]]}, flywheel: {inertia: 3 kg m2}}"
     result = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text)
     assert result.exit_code == 3
-    assert "the machine stops near φ = 54°" in result.stderr
+    stops = float(result.stderr.partition("the machine stops near φ = ")[2].partition("°")[0])
+    assert stops % 72 == 54  # any of the five troughs of the speed, which are alike
     enough = float(result.stderr.partition("it turns with a flywheel from J = ")[2].partition(" kg m^2")[0])
     for share, slowest in (
         (1.0, True),

@@ -90,19 +90,6 @@ def orders_over_the_angle(pieces: Pieces, torques: np.ndarray, orders: np.ndarra
     return amplitudes(pieces, torques, orders)[..., 0]
 
 
-@pytest.mark.parametrize("order", [0.4, 2.4, 7.5])
-@pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
-def test_the_coupling_of_the_flywheel_order_by_order(load: Load | None, order: float) -> None:
-    """Linear loads, an effort that jumps: what `flywheel` finds over the angle has the orders of `torsion`."""
-    case = Case(machine_of(load, order=order))
-    orders = case.torsion.orders
-    pieces, _ = case.torsion.steady
-    passed = case.flywheel.at(pieces.degrees.ravel()).M_coupling.reshape(1, *pieces.degrees.shape)
-    (over_the_angle,) = orders_over_the_angle(pieces, passed, orders)
-    in_orders = case.torsion.vibration.torques[0, 0]
-    assert over_the_angle == pytest.approx(in_orders, abs=1e-12 * np.abs(in_orders).max())
-
-
 @pytest.mark.parametrize("load", [None, Load(slip=0.05)], ids=["constant", "slip"])
 def test_the_coupling_of_the_flywheel_with_all_its_orders(load: Load | None) -> None:
     """An effort that has three orders: the same torque over the angle, and the same extremes."""
@@ -321,20 +308,6 @@ def test_crests_against_many_samples() -> None:
         assert smallest <= curve.min()
 
 
-def test_of_crests_that_are_all_but_equal_the_largest_is_taken() -> None:
-    """Seven of these 200 sums have two crests whose order samples do not tell; against 64 samples to a wave."""
-    draw, count, per_wave = np.random.default_rng(0), 48, 64
-    amplitudes = draw.normal(size=(200, count)) + 1j * draw.normal(size=(200, count))
-    high, low = crests(range(1, count + 1), amplitudes)
-    padded = np.zeros((200, count * per_wave // 2 + 1), dtype=complex)
-    padded[:, 1 : count + 1] = amplitudes * (count * per_wave / 2)
-    samples = np.fft.irfft(padded, axis=1)
-    assert (high >= samples.max(axis=1)).all()
-    assert (low <= samples.min(axis=1)).all()
-    between = np.abs(amplitudes) @ np.arange(1.0, count + 1) ** 2 * (2 * np.pi / count / per_wave) ** 2 / 8
-    assert (high <= samples.max(axis=1) + between).all()
-
-
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     """J + m_pin R² + m mean(x′²), the mean of (1 + λ²/4 + …)/2 with mpmath."""
     found = Case(load(CONFIGS / "coupled-blower.yaml")).torsion
@@ -347,11 +320,3 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     mean = mpmath.quad(lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]) / (2 * mpmath.pi)
     each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
     assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
-
-
-def test_a_line_made_in_python() -> None:
-    line = ShaftLine((ShaftMass("a", 1.0), ShaftMass("b", 1.0)), (ShaftPiece(50.0),))
-    found = Case(Machine((), shaft=line)).torsion
-    assert found.natural_frequency == pytest.approx(10 / (2 * math.pi), rel=1e-15)
-    assert found.obstacle == "no speed given"
-    assert found.pieces == ()

@@ -13,14 +13,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.accuracy.methods import PRECISE
 from kurbel.accuracy.textbook import TextbookMachine
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import ConnectingRod, Masses, Piston
-from kurbel.machine.turning import Harmonics
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.case import Case
@@ -57,7 +55,7 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
-        book = TextbookMachine(machine, PRECISE)
+        book = TextbookMachine(machine)
         edges = sorted(
             {*np.degrees(np.asarray(book.edges, dtype=float)), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)}
         )
@@ -85,40 +83,6 @@ def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
     found = orders_of(machine, orders)
     largest = Case(machine).flywheel.M_max.value
     assert found.machine.whole.amplitudes == pytest.approx(by_integrals(machine, orders), abs=1e-12 * largest)
-
-
-def test_a_trace_against_straight_lines_between_its_samples() -> None:
-    """p A dx/dφ with p straight over the angle, 40 digits; the trace jumps at 360 degrees."""
-    points = [
-        (0, 40),
-        (10, 75),
-        (25, 50),
-        (90, 8),
-        (180, 2),
-        (360, 1),
-        (360, 1.5),
-        (540, 1),
-        (620, 3),
-        (700, 25),
-        (720, 40),
-    ]
-    listed = ", ".join(f"[{angle}, {pressure}]" for angle, pressure in points)
-    trace = f"{{head_end: {{trace: {{unit: bar, points: [{listed}]}}}}}}"
-    text = f"crank: 60 mm\nrod: 150 mm\nbore: 100 mm\ncycle: four-stroke\nindicator: {trace}"
-    orders = [0.5, 1.0, 3.5, 24.0]
-    found = orders_of(loads(text), orders).machine.whole.amplitudes
-
-    def torque(angle: float) -> Any:
-        (low, first), (high, last) = next(one for one in pairwise(points) if one[0][0] <= angle < one[1][0])
-        pressure = first + (mpmath.mpf(last) - mpmath.mpf(first)) * (angle - low) / (high - low)
-        sin, cos, lam = mp.sin(mp.radians(angle)), mp.cos(mp.radians(angle)), mpmath.mpf("0.4")
-        slope = mpmath.mpf("0.06") * (sin + lam * sin * cos / mp.sqrt(1 - (lam * sin) ** 2))
-        return pressure * 100000 * mp.pi / 4 * mpmath.mpf("0.01") * slope
-
-    with mpmath.workdps(40):
-        edges = sorted({*(float(angle) for angle, _ in points), *np.arange(0.0, 721.0, 15.0).tolist()})
-        exact = gauss(torque, edges, orders)
-    assert found == pytest.approx(exact, abs=1e-12 * 75e5 * 0.00785 * 0.06)
 
 
 def test_a_diagram_with_jumps_in_closed_form() -> None:
@@ -183,14 +147,6 @@ def test_the_series_of_the_inertia_torque() -> None:
     assert -found.imag == pytest.approx(known, abs=1e-12)
 
 
-def test_effort_by_harmonics_comes_back() -> None:
-    first = orders_of(load(CONFIGS / "waterworks-two-cranks.yaml")).machine.whole
-    terms = tuple((v, m.real, -m.imag) for v, m in zip(first.orders.tolist(), first.amplitudes.tolist()))
-    again = orders_of(Machine((), effort=Harmonics(first.mean, terms))).machine.whole
-    assert again.mean == pytest.approx(first.mean, rel=1e-14)
-    assert again.amplitudes == pytest.approx(first.amplitudes, abs=1e-13 * np.abs(first.amplitudes).max())
-
-
 @pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "diesel-four-stroke"])
 def test_their_sum_is_the_torque(name: str) -> None:
     """Bessel: the mean square of what 24 orders leave is what Parseval says."""
@@ -201,25 +157,18 @@ def test_their_sum_is_the_torque(name: str) -> None:
     pieces = whole.split(Angles(np.zeros(len(every), dtype=int), every))
     left = pieces.carried(found.effort.M, whole) - found.machine.whole.at(pieces.degrees)
     (square,) = pieces.mean(left**2)
-    assert square == pytest.approx((1 - found.orders_share) * found.swing, rel=1e-6)
+    swing = whole.mean((found.effort.M - found.effort.mean) ** 2)[0]
+    assert square == pytest.approx((1 - found.orders_share) * swing, rel=1e-6)
     assert 0.99 < found.orders_share < 1
 
 
-def test_the_inertia_goes_with_the_square_of_the_speed() -> None:
-    slow, fast = (Machine((steam(),), speed=rpm / 60) for rpm in (50.0, 85.0))
-    found = orders_of(slow).machine.at_speed(85 / 50)
-    assert found.amplitudes == pytest.approx(
-        orders_of(fast).machine.whole.amplitudes, abs=1e-13 * np.abs(found.amplitudes).max()
-    )
-
-
 def test_a_crank_that_follows_turns_its_orders() -> None:
-    """M_ν e^{−iνβ}; over its own angle every cylinder has the same ones."""
+    """Both together have M_ν (1 + e^{−iνβ}); over its own angle every cylinder has the same ones."""
     alone = orders_of(Machine((steam(),), speed=50 / 60)).machine.whole
     two = orders_of(Machine((steam(), steam(name="b", crank_position=73.0)), speed=50 / 60))
     turn = np.exp(-1j * np.radians(73.0 * alone.orders))
-    assert two.cylinders[1].in_machine.whole.amplitudes == pytest.approx(
-        alone.amplitudes * turn, abs=1e-12 * np.abs(alone.amplitudes).max()
+    assert two.machine.whole.amplitudes == pytest.approx(
+        alone.amplitudes * (1 + turn), abs=1e-12 * np.abs(alone.amplitudes).max()
     )
     assert two.cylinders[1].own.whole.amplitudes == pytest.approx(
         alone.amplitudes, abs=1e-12 * np.abs(alone.amplitudes).max()
@@ -259,7 +208,7 @@ def test_major_orders(positions: tuple[float, ...], cycle: str, major: tuple[flo
 
 def test_the_efficiency_takes_its_share() -> None:
     plain, lossy = (orders_of(Machine((steam(),), speed=1.0, efficiency=eta)).machine.whole for eta in (1.0, 0.8))
-    assert lossy.amplitudes == pytest.approx(0.8 * plain.amplitudes, rel=1e-14)
+    assert lossy.amplitudes == pytest.approx(0.8 * plain.amplitudes, abs=2e-14 * np.abs(plain.amplitudes).max())
 
 
 def test_without_a_speed_there_is_no_inertia() -> None:
@@ -268,9 +217,3 @@ def test_without_a_speed_there_is_no_inertia() -> None:
     assert (found.machine.whole.amplitudes == found.machine.gas.amplitudes).all()
     with pytest.raises(UsageError, match="no force acts"):
         orders_of(Machine((steam(pistons=(), masses=None),)))
-
-
-def test_the_mean_torque_of_masses_alone_is_zero() -> None:
-    """∮ m x′ x″ dφ = 0: it is the mean torque of the flywheel's page, where its rounding was told as a torque here."""
-    case = Case(load(CONFIGS / "boxer.yaml"))
-    assert case.harmonics().M_mean == case.flywheel.M_mean == 0.0

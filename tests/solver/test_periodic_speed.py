@@ -11,7 +11,6 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Cylinder, Machine
@@ -19,11 +18,8 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import ConnectingRod, Masses, Piston
 from kurbel.machine.turning import Flywheel, Load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.collocation import Unsettled, periodic, radau
-from kurbel.numerics.pieces import Pieces
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
-from kurbel.solver.speed import SpeedEquation
 from machines import STEAM_CARD
 from representative import few
 from turning_machines import moving_inertia, of_points
@@ -113,47 +109,12 @@ def test_relaxation_from_1e_11_to_1e3_revolutions(relaxation: float) -> None:
     assert machine.multiplier == pytest.approx(math.exp(-1 / relaxation), rel=1e-9, abs=1e-60)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("inertia", "slip"), [(300.0, 1.0), (300.0, 0.1), (20000.0, 0.1)])
-def test_scipy_marches_to_the_same_state(slip: float, inertia: float) -> None:
-    """J(φ) varies tenfold with the light flywheel; scipy's LSODA from the periodic state comes back to it."""
-    second = replace(CYLINDER, crank_position=90.0)
-    machine = steam(inertia, Load(slip=slip), second)
-    omega_n = machine.omega
-
-    def slope(phi: float, energy: Any) -> Any:
-        angle = np.array([min(max(math.degrees(phi), low), high)])
-        middle = np.array([(low + high) / 2])
-        torque = machine.at(angle, middle)
-        omega = np.sqrt(energy / kinetic(machine, angle))
-        load = machine.M_mean * (1 + (omega / omega_n - 1) / slip)
-        return torque.M - torque.T_inertia * machine.crank - load  # the masses are in E already
-
-    energy = kinetic(machine, np.zeros(1)) * machine.at([0.0]).omega ** 2
-    breaks = machine.breaks
-    for low, high in pairwise(breaks):
-        span = (math.radians(low), math.radians(high))
-        energy = solve_ivp(slope, span, energy, method="LSODA", rtol=1e-8, atol=1e-8 * energy[0]).y[:, -1]
-        if low < 180 <= high or high == 360:
-            expected = kinetic(machine, np.array([high % 360]))[0] * machine.at([high % 360]).omega[0] ** 2
-            assert energy[0] == pytest.approx(expected, rel=1e-6)
-
-
 def test_power_and_load_are_in_balance() -> None:
     """Over a cycle the load takes what the effort gives, whatever the speed does."""
     machine = steam(2000, Load(slip=0.05))
     pieces, omega = machine.speed.omega
     load = machine.M_mean * (1 + (omega / machine.omega - 1) / 0.05)
     assert pieces.mean(load)[0] == pytest.approx(machine.M_mean, rel=1e-13)
-
-
-def test_a_stiff_generator_turns_the_torque_into_a_speed() -> None:
-    """For a vanishing slip ω/ω_n − 1 = s (M/M_m − 1), inertia included, to first order in s."""
-    slip = 1e-9
-    machine = steam(50000, Load(slip=slip), replace(CYLINDER, crank_position=90.0))
-    angles = np.array([10.0, 77.0, 150.0, 260.0])
-    expected = slip * (machine.at(angles).M / machine.M_mean - 1)
-    assert ratio_of(machine, angles) / 2 == pytest.approx(expected, rel=1e-2)
 
 
 def test_a_heavy_flywheel_keeps_the_digits_of_its_fluctuation() -> None:
@@ -174,30 +135,6 @@ def test_the_mean_speed_over_time_is_the_nominal_one() -> None:
         mean = np.sum((slowness[1:] + slowness[:-1]) / 2) / 20000
         assert 1 / mean == pytest.approx(machine.omega, rel=1e-8)
         assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
-
-
-def test_without_masses_the_kinetic_energy_swings_by_the_excess_work() -> None:
-    machine = of_points(POINTS, RPM, inertia=30.0)
-    swing = 30.0 / 2 * (machine.omega_max.value**2 - machine.omega_min.value**2)
-    assert swing == pytest.approx(machine.dE, rel=1e-13)
-    assert machine.omega_max.degrees == pytest.approx(machine.E_max.degrees, abs=1e-9)
-    expected = 2 * machine.dE / (30.0 * (machine.omega_max.value + machine.omega_min.value) * machine.omega_mean)
-    assert machine.delta == pytest.approx(expected, rel=1e-13)
-
-
-def test_a_falling_load_is_unstable() -> None:
-    assert of_points(POINTS, RPM, inertia=200.0, load=Load(power=-1.0)).multiplier > 1
-    assert of_points(POINTS, RPM, inertia=200.0, load=Load(power=1.0)).multiplier < 1
-
-
-def test_the_larger_the_slip_the_larger_the_fluctuation() -> None:
-    deltas = [steam(5000, Load(slip=s)).delta for s in (1e-9, 1e-6, 1e-3, 1e-2, 1e-1, 1.0)]
-    assert deltas == sorted(deltas)
-
-
-def test_no_flywheel_at_all_where_the_cranks_have_inertia_everywhere() -> None:
-    machine = steam(0.0, Load(slip=0.01), replace(CYLINDER, crank_position=90.0))
-    assert 0 < machine.delta < 0.1
 
 
 def test_no_inertia_in_a_dead_centre_is_refused() -> None:
@@ -234,16 +171,6 @@ def test_a_load_on_a_mean_of_nothing_is_left_out() -> None:
     assert machine.speed.law is None
 
 
-def test_radau_rule_integrates_polynomials() -> None:
-    """Row i of the matrix integrates to c_i exactly up to degree s − 1, the last one, the weights, up to 2s − 2."""
-    nodes, area = radau(11).nodes, radau(11).area
-    for k in range(len(nodes)):
-        assert area @ nodes**k == pytest.approx((nodes ** (k + 1) - (-1) ** (k + 1)) / (k + 1), abs=4e-15)
-    for k in range(2 * len(nodes) - 1):
-        assert area[-1] @ nodes**k == pytest.approx((1 - (-1) ** (k + 1)) / (k + 1), abs=2e-15)
-    assert nodes[-1] == 1
-
-
 @pytest.mark.parametrize(
     ("power", "inertia"),
     few([(-2.0, 800.0), (-1.5, 800.0), (1000.0, 300.0), (3000.0, 3000.0)], [(-2.0, 800.0)]),
@@ -258,14 +185,6 @@ def test_the_speed_line_does_not_hang_on_where_the_angle_begins(power: float, in
     own = [line.at(np.array([0.0, 100.0]) + line.machine.cylinders[0].crank_position).omega for line in lines]
     for omega in own:
         assert omega == pytest.approx(own[0], rel=1e-10)
-
-
-@pytest.mark.parametrize("inertia", few([10.0, 60.0, 300.0, 800.0], [10.0, 800.0]))
-def test_under_a_load_as_1_over_omega_the_time_of_a_turn_is_the_nominal_one(inertia: float) -> None:
-    """∮ M_load dφ = M_m ω_n ∮ dφ/ω must be the work of the effort, 2π M_m, however unstable that is."""
-    machine = steam(inertia, Load(power=-1.0), cylinder=replace(CYLINDER, masses=None))
-    assert machine.omega_mean == pytest.approx(machine.omega, rel=1e-12)
-    assert machine.multiplier > 1e3
 
 
 def test_an_unstable_line_is_where_marching_backward_ends() -> None:
@@ -303,20 +222,6 @@ def rectangle_above_zero() -> list[tuple[float, float]]:
     return [(0, 500), (180, 500), (180, 300), (360, 300)]
 
 
-def test_failing_to_settle_is_not_called_a_standstill(monkeypatch: pytest.MonkeyPatch) -> None:
-    machine = steam(800.0, Load(power=2.0))
-
-    def only_heavy(equation: SpeedEquation, pieces: Pieces) -> Any:
-        if equation.flywheel[0] < 3000.0:
-            raise Unsettled(1000.0)
-        return periodic(equation, pieces)
-
-    monkeypatch.setattr("kurbel.solver.speed.periodic", only_heavy)
-    with pytest.raises(NoSolutionError, match="no speed line is found that repeats under this load; it turns") as stop:
-        _ = machine.speed
-    assert 3000 <= float(str(stop.value).partition("from J = ")[2].partition(" kg")[0]) < 6000
-
-
 def test_the_turning_part_of_the_rod_counts_as_inertia() -> None:
     """(1 − share) m R²; as much as an exact rod of the same two masses without a couple of its own."""
     share, exact = (
@@ -344,12 +249,6 @@ def test_the_exact_flywheel_meets_the_wish(load: Load | None, efficiency: float)
     assert machine.J == machine.J_needed == pytest.approx(machine.dE / (0.03 * machine.omega**2), rel=1e-13)
     assert machine.misses_the_wish
     assert steam(machine.J_exact, load, efficiency=efficiency).delta == pytest.approx(0.03, rel=1e-9)
-
-
-def test_the_flywheel_of_the_books_is_exact_enough_where_it_is() -> None:
-    machine = of_points(POINTS, RPM, delta=1e-4)
-    assert not machine.misses_the_wish
-    assert machine.J_exact is None
 
 
 def test_a_uniform_effort_needs_no_flywheel() -> None:

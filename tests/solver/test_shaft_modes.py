@@ -97,13 +97,6 @@ def test_holzer_closes(count: int, spread: float, ground: str) -> None:
         assert len(modes.nodes(mode)) == mode  # the law of the nodes, beside that at the ground
 
 
-def test_the_table_begins_with_one() -> None:
-    table = Modes(at_random(6, 0, "", 3)).holzer(2)
-    assert table.angles[0] == 1
-    rigid = Modes(at_random(6, 0, "", 3)).holzer(0)
-    assert (rigid.angles.tolist(), rigid.residual) == ([1.0] * 6, 0)
-
-
 def test_a_mode_that_leaves_a_mass_at_rest() -> None:
     """Three equal masses: √(k/J) with the middle one still, √(3k/J); the node is the middle mass."""
     modes = Modes(undamped([2.0] * 3, [50.0] * 2))

@@ -1,5 +1,5 @@
-"""Error against run time: every quantity by several methods, held against references of 40 digits.
+"""Error against run time: every quantity by several methods, compared with references of 40 digits.
 
-methods: integrals, searches and periodic solutions in floats or in mpmath's numbers. textbook: the crank train once
-more. trials: what is compared for a machine. extremes: the program on stiff and extreme input.
+textbook: the crank train after the books, in mpmath's numbers. trials: what is compared for a machine, and with which
+methods. extremes: the program on stiff and extreme input.
 """

@@ -13,11 +13,8 @@ from pathlib import Path
 from random import Random
 from typing import NamedTuple
 
-import numpy as np
-
-from kurbel.accuracy.methods import DIGITS, PRECISE, Number, mp, precise_integrals, roots
-from kurbel.accuracy.textbook import TextbookMotion
-from kurbel.accuracy.trials import STEP, by_pieces, speed_line
+from kurbel.accuracy import textbook
+from kurbel.accuracy.textbook import DIGITS, Number, TextbookMotion, mp
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 
@@ -77,56 +74,50 @@ def verdicts(
     ask: runs the program: text of the machine, what is asked -> a value, or None where it is left out.
     """
     for case in cases:
-        text = text_of(case)
+        text, expected, missed, answer = text_of(case), case.expected, None, None
         try:
             answer = ask(text, case.asked)
         except KurbelError as error:
-            yield _of_refusal(case, error)
+            message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
+            words = expected.removeprefix(status)
+            passed = expected.startswith(status) and words in message
+            end = max(message.find(words) + len(words), 72)  # as much is shown as holds what was expected
+            observed = status + (message if end >= len(message) else message[end - 72 : end] + " …")
+            expected = expected if words else status + "any message"
         except Exception as error:
-            yield Verdict(case, case.expected, f"fault: {type(error).__name__}: {error}", None, False)
+            observed, passed = f"fault: {type(error).__name__}: {error}", False
         else:
-            yield _of_answer(case, text, answer, loads)
+            observed = "left out" if answer is None else repr(answer)
+            passed = observed == expected
+            if case.ulp:
+                expected, missed = _missed(case, text, answer, loads)
+                passed = missed is not None and missed <= float(case.ulp)
+        yield Verdict(case, expected, observed, missed, passed)
 
 
-def _of_refusal(case: Probe, error: KurbelError) -> Verdict:
-    """Judge a message, of which as much is shown as holds what was expected of it."""
-    message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
-    words = case.expected.removeprefix(status)
-    passed = case.expected.startswith(status) and words in message
-    end = max(message.find(words) + len(words), 72)
-    shown = message if end >= len(message) else message[end - 72 : end] + " …"
-    return Verdict(case, case.expected if words else status + "any message", status + shown, None, passed)
-
-
-def _of_answer(case: Probe, text: str, answer: float | None, loads: Callable[[str], Machine]) -> Verdict:
-    observed = "left out" if answer is None else repr(answer)
-    if not case.ulp:
-        return Verdict(case, case.expected, observed, None, observed == case.expected)
-    motion = case.asked.startswith("motion")
-    with mp.workdps(2 * DIGITS if motion else DIGITS):
+def _missed(case: Probe, text: str, answer: float | None, loads: Callable[[str], Machine]) -> tuple[str, float | None]:
+    """Return what is expected, and by how many units of the last place an answer misses it."""
+    with mp.workdps(2 * DIGITS if case.asked.startswith("motion") else DIGITS):
         truth = reference(loads(text), case.asked) if case.expected == "reference" else mp.mpf(case.expected)
         expected = mp.nstr(truth, 20) if truth else "0"
         if answer is None:
-            return Verdict(case, expected, observed, None, False)
-        missed = float(abs(answer - truth) / math.ulp(float(truth))) if math.isfinite(answer) else math.inf
-    return Verdict(case, expected, observed, missed, missed <= float(case.ulp))
+            return expected, None
+        missed = abs(answer - truth) / math.ulp(float(truth)) if math.isfinite(answer) else math.inf
+        return expected, float(missed)
 
 
 def reference(machine: Machine, asked: str) -> Number:
     """Return what the textbook makes of a question, in SI, to the digits that mpmath has now."""
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
-    if name == "omega":
-        return speed_line(machine, PRECISE)[int(at) // STEP - 1]
     if command != "motion":
         symbol = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
-        found = by_pieces(symbol, precise_integrals, 0, machine, PRECISE)
+        found, _ = textbook.reference(machine, symbol)
         return found[("T_max", "T_min").index(name)] if name[0] == "T" else found
-    book, omega = TextbookMotion(machine.cylinders[0].mechanism, PRECISE), 2 * mp.pi * mp.mpf(machine.speed or 0.0)
+    mechanism, omega = machine.cylinders[0].mechanism, 2 * mp.pi * mp.mpf(machine.speed or 0.0)
     if name == "stroke":
-        return book.stroke
+        return TextbookMotion(mechanism).stroke
     if name == "c_max":
-        (peak,), _ = roots(lambda phi, _: book.at(phi).curvature, np.array(book.dead_centres), PRECISE)
-        return book.at(peak).slope * omega
+        return textbook.peak_slope(mechanism) * omega
     order = "xcb".index(name)
-    return book.at(mp.mpf(float(at)) * mp.pi / 180)[order] * omega**order
+    return TextbookMotion(mechanism).at(mp.radians(mp.mpf(float(at))))[order] * omega**order

@@ -1,25 +1,34 @@
-"""The crank train once more, as textbooks write it: in floats for other methods, in mpmath's numbers for references.
+"""References: the crank train as textbooks write it, in mpmath's numbers.
 
 Nothing is shared with the solver: pressures are found and signs of friction chosen anew. Differences of nearly equal
-numbers are left as they are in the books; the digits of a reference pay for them. Angles are in radians of the own
-crank, all else in SI. `at` is any angle within a piece between corners: it says which side of a corner is meant.
+numbers are left as they are in the books; the digits pay for them. Angles are in radians of the own crank, all else in
+SI. `at` is any angle within a piece between corners: it says which side of a corner is meant.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from itertools import accumulate, pairwise
 from typing import Any, NamedTuple
 
-import numpy as np
+import mpmath
+from mpmath.calculus.quadrature import GaussLegendre
 
-from kurbel.accuracy.methods import FLOATS, Number, Numbers, merged, roots
-from kurbel.arrays import Array, Indices
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.indicator import Card, Line
+from kurbel.machine.indicator import Card
 from kurbel.mechanisms import Mechanism
+
+mp, mpf = mpmath.mp, mpmath.mpf
+DIGITS = 40
+Number = Any
+"""An mpf, or in `stance` a float or an array of either."""
+Function = Callable[[Number, Number], Number]
+"""Takes an angle, and one within its piece."""
 
 
 class Stance(NamedTuple):
-    """A slider-crank at crank angles: x, dx/dφ and d²x/dφ² in m, sine and cosine of the rod angle."""
+    """A slider-crank: x, dx/dφ and d²x/dφ² in m, sine and cosine of the rod angle."""
 
     x: Number
     slope: Number
@@ -28,68 +37,44 @@ class Stance(NamedTuple):
     cos_psi: Number
 
 
-class Chamber(NamedTuple):
-    """One end of a cylinder; sign: of its force; area in m²; lift makes pressures absolute, base gauge, in Pa."""
-
-    card: Card
-    sign: int
-    area: Number
-    lift: Number
-    base: Number
-
-    def line(self, stroke: int) -> Line:
-        """Return the line of the card on a stroke of the piston, which are counted from the first outstroke as 0."""
-        return self.card.lines[(stroke - (self.sign < 0)) % len(self.card.lines)]
-
-    def share(self, fraction: Number) -> Number:
-        """Return the fraction of the card's stroke for one of the piston's, and conversely."""
-        return fraction if self.sign > 0 else 1 - fraction
+def stance(r: Number, length: Number, e: Number, sin: Number, cos: Number, sqrt: Callable[[Number], Number]) -> Stance:
+    """Return the motion at a crank angle, R 285, 288, 291, of a crank r, a rod and an offset e in m."""
+    if math.isinf(length):
+        return Stance(r * (1 - cos), r * sin, r * cos, 0 * sin, 0 * sin + 1)
+    aside = r * sin - e
+    along = sqrt(length**2 - aside**2)
+    swing = r * cos * aside / along
+    x = sqrt((length + r) ** 2 - e**2) - r * cos - along
+    curvature = r * cos + (r**2 * cos**2 - aside * r * sin + swing**2) / along
+    return Stance(x, r * sin + swing, curvature, aside / length, along / length)
 
 
 class TextbookMotion:
-    """Motion of a slider-crank, or of a Scotch yoke, whose rod is infinite.
+    """Motion of a slider-crank, or of a Scotch yoke, whose rod is infinite."""
 
-    formula: `exact`, R 285, 288, 291; `first-order`, B 22, 25, 26; `infinite`, an infinite rod.
-    """
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.r, self.rod, self.offset = mpf(mechanism.crank), mpf(mechanism.rod_length), mpf(0)
+        self.dead_centres = mpf(0), +mp.pi
+        if not math.isinf(self.rod):
+            self.offset = mpf(mechanism.offset)
+            inner, outer = self.offset / (self.rod + self.r), self.offset / (self.rod - self.r)
+            self.dead_centres = mp.asin(inner), mp.pi + mp.asin(outer)
+        self.stroke = self.at(self.dead_centres[1]).x
 
-    def __init__(self, mechanism: Mechanism, numbers: Numbers = FLOATS, formula: str = "exact") -> None:
-        infinite = formula == "infinite" or math.isinf(mechanism.rod_length)
-        self.numbers, self.formula = numbers, "infinite" if infinite else formula
-        self.crank, self.rod = numbers.of(mechanism.crank), numbers.of(mechanism.rod_length)
-        self.offset = numbers.of(0.0 if infinite else mechanism.offset)
-        if infinite:
-            self.stroke, self.dead_centres = 2 * self.crank, (numbers.of(0.0), numbers.of(1.0) * numbers.pi)
-        else:
-            far, near = self.rod + self.crank, self.rod - self.crank
-            self.reach = numbers.sqrt(far**2 - self.offset**2)
-            self.stroke = self.reach - numbers.sqrt(near**2 - self.offset**2)
-            self.dead_centres = numbers.arcsin(self.offset / far), numbers.pi + numbers.arcsin(self.offset / near)
+    def at(self, phi: Number) -> Stance:
+        """Return the motion at a crank angle."""
+        return stance(self.r, self.rod, self.offset, mp.sin(phi), mp.cos(phi), mp.sqrt)
 
-    def at(self, phi: Number, formula: str = "") -> Stance:
-        """Return the motion at crank angles; formula: another one, to which an infinite rod stays infinite."""
-        formula, r, sin, cos = formula or self.formula, self.crank, self.numbers.sin(phi), self.numbers.cos(phi)
-        if self.formula == "infinite":
-            return Stance(r * (1 - cos), r * sin, r * cos, 0 * sin, 0 * sin + 1)
-        aside = r * sin - self.offset
-        along = self.numbers.sqrt(self.rod**2 - aside**2)
-        swing = r * cos * aside / along
-        x, slope = self.reach - r * cos - along, r * sin + swing
-        curvature = r * cos + (r**2 * cos**2 - aside * r * sin + swing**2) / along
-        if formula == "first-order":
-            lam = r / self.rod
-            x, slope = r * (1 - cos + lam * sin**2 / 2), r * sin * (1 + lam * cos)
-            curvature = r * (cos + lam * (2 * cos**2 - 1))
-        return Stance(x, slope, curvature, aside / self.rod, along / self.rod)
-
-    def beyond(self, fractions: Number) -> tuple[Number, Number]:
-        """Return the angle between crank and line of action at fractions of the stroke, and that of this line."""
-        numbers, r, line = self.numbers, self.crank, 0 * fractions
-        cosine = 1 - 2 * fractions
-        if self.formula != "infinite":  # law of cosines for crank, rod and the line from the shaft to the crosshead
-            distance = numbers.sqrt((self.reach - fractions * self.stroke) ** 2 + self.offset**2)
-            cosine = (r**2 + distance**2 - self.rod**2) / (2 * r * distance)
-            line = numbers.arcsin(self.offset / distance)
-        return numbers.pi / 2 - numbers.arcsin(np.maximum(np.minimum(cosine, 1), -1)), line
+    def angles_at(self, fraction: Number) -> tuple[Number, Number]:
+        """Return the crank angles of the outstroke and of the return at a fraction of the stroke."""
+        line, cosine = mpf(0), 1 - 2 * fraction
+        if not math.isinf(self.rod):  # law of cosines for crank, rod and the line from the shaft to the crosshead
+            along = mp.sqrt((self.rod + self.r) ** 2 - self.offset**2) - fraction * self.stroke
+            distance = mp.hypot(along, self.offset)
+            cosine = (self.r**2 + distance**2 - self.rod**2) / (2 * self.r * distance)
+            line = mp.asin(self.offset / distance)
+        beyond = mp.acos(min(max(cosine, -1), 1))
+        return line + beyond, line + 2 * mp.pi - beyond
 
 
 class Forces(NamedTuple):
@@ -101,164 +86,210 @@ class Forces(NamedTuple):
     lift: Number
     friction: Number
 
+    @property
+    def torque(self) -> Number:
+        """M in N m, inertia at uniform speed included."""
+        return (self.push - self.friction) * self.slope
+
 
 class TextbookCylinder:
-    """Forces of one cylinder, in pieces between the corners of its cards; formula: of the motion."""
+    """Forces of one cylinder, in pieces between the corners of its cards."""
 
-    def __init__(self, machine: Machine, cylinder: Cylinder, numbers: Numbers = FLOATS, formula: str = "exact") -> None:
-        of, self.numbers, self.motion = numbers.of, numbers, TextbookMotion(cylinder.mechanism, numbers, formula)
-        self.turns, self.omega = CYCLES[machine.cycle_of(cylinder)], 2 * numbers.pi * of(machine.speed or 0.0)
-        self._weigh(cylinder, machine.lean_of(cylinder))
-        friction = cylinder.friction
-        self._crosshead = of((friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0)
-        self._rings = of((friction and friction.constant) or 0.0)
-        if friction and (rings := friction.rings):
-            surface = rings.count * numbers.pi * of(cylinder.pistons[0].bore) * of(rings.height)
-            self._rings += surface * of(rings.pressure) * of(rings.coefficient)
-        self._chambers = tuple(self._ends(cylinder, of(machine.ambient)))
-        self._cut(self._corners())
-        if self._crosshead:
-            sides, _ = roots(lambda phi, at: self.forces(phi, at).lift, self.edges, numbers)
-            self._cut(merged([*self.edges, *sides], numbers))
-
-    def _weigh(self, cylinder: Cylinder, lean: float | None) -> None:
-        of, masses = self.numbers.of, cylinder.masses
+    def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
+        self.motion, self.turns = TextbookMotion(cylinder.mechanism), CYCLES[machine.cycle_of(cylinder)]
+        self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
+        masses, friction, lean = cylinder.masses, cylinder.friction, machine.lean_of(cylinder)
         rod = masses.connecting_rod if masses else None
-        mass, share = (of(rod.mass), of(rod.share)) if rod else (of(0.0), of(0.0))
-        self.mass = of(masses.parts if masses else 0.0) + mass * share
-        self.turning_inertia = mass * (1 - share) * self.motion.crank**2
-        angle = of(lean or 0.0) * self.numbers.pi / 180
-        weight = self.mass * of(0.0 if lean is None else "9.80665")
-        self._weight, self._side_weight = weight * self.numbers.sin(angle), weight * self.numbers.cos(angle)
+        rod_mass, share = (mpf(rod.mass), mpf(rod.share)) if rod else (mpf(0), mpf(0))
+        self.mass = mpf(masses.parts if masses else 0.0) + rod_mass * share
+        self.turning_inertia = rod_mass * (1 - share) * self.motion.r**2
+        weight, angle = self.mass * mpf(0 if lean is None else "9.80665"), mp.radians(mpf(lean or 0.0))
+        self._weight, self._side_weight = weight * mp.sin(angle), weight * mp.cos(angle)
 
-    def _ends(self, cylinder: Cylinder, ambient: Number) -> Iterator[Chamber]:
+        self._crosshead = mpf((friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0)
+        self._rings = mpf((friction and friction.constant) or 0.0)
+        if friction and (rings := friction.rings):
+            surface = rings.count * mp.pi * mpf(cylinder.pistons[0].bore) * mpf(rings.height)
+            self._rings += surface * mpf(rings.pressure) * mpf(rings.coefficient)
+
+        self._chambers: list[tuple[Card, int, Number, Number]] = []  # sign of the force, area, to absolute pressures
         for piston in cylinder.pistons:
-            absolute = piston.indicator is not None and piston.indicator.absolute
+            lift = mpf(0) if piston.indicator and piston.indicator.absolute else self._ambient
             for end, card in piston.chambers.items():
                 assert isinstance(card, Card)
-                rod = piston.head_end_rod if end == "head_end" else piston.crank_end_rod
-                area = self.numbers.pi / 4 * (self.numbers.of(piston.bore) ** 2 - self.numbers.of(rod) ** 2)
-                lift, base = (0, ambient) if absolute else (ambient, 0)
-                yield Chamber(card, 1 if end == "head_end" else -1, area, lift, base)
+                head = end == "head_end"
+                thickness = mpf(piston.head_end_rod if head else piston.crank_end_rod)
+                area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2)
+                self._chambers.append((card, 1 if head else -1, area, lift))
 
-    def _corners(self) -> Array:
+        self._cut(self._corners())
+        if self._crosshead:
+            self._cut(merged([*self.edges, *roots(lambda phi, at: self.forces(phi, at).lift, self.edges)]))
+
+    def _corners(self) -> list[Number]:
         """Return the angles from the first inner dead centre through one cycle at which a card bends or jumps."""
-        inner, numbers = self.motion.dead_centres[0], self.numbers
-        found = [inner + 2 * numbers.pi * self.turns]
+        found = [self.motion.dead_centres[0] + 2 * mp.pi * self.turns]
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
-            found.append(self.motion.dead_centres[back] + 2 * numbers.pi * turn)
-            for chamber in self._chambers:
-                fractions = chamber.share(numbers.of(chamber.line(stroke).fractions))
-                beyond, line = self.motion.beyond(fractions[(fractions > 0) & (fractions < 1)])
-                found += [*(line + 2 * numbers.pi * turn + (2 * numbers.pi - beyond if back else beyond))]
-        return merged(found, numbers)
+            found.append(self.motion.dead_centres[back] + 2 * mp.pi * turn)
+            for card, sign, _, _ in self._chambers:
+                places = map(mpf, card.lines[(stroke - (sign < 0)) % len(card.lines)].fractions)
+                inside = (place if sign > 0 else 1 - place for place in places if 0 < place < 1)
+                found += [self.motion.angles_at(fraction)[back] + 2 * mp.pi * turn for fraction in inside]
+        return merged(found)
 
-    def _cut(self, edges: Array) -> None:
+    def _cut(self, edges: list[Number]) -> None:
         """Take the edges of pieces; find on each its direction, the lines of its cards, and the side of the guide."""
-        middles = (edges[1:] + edges[:-1]) / 2
-        self.edges, self._inside = edges, np.asarray(edges[1:-1] - edges[0], dtype=float)
-        since = np.asarray(middles - edges[0], dtype=float)
-        back = since % (2 * math.pi) > float(self.motion.dead_centres[1] - self.motion.dead_centres[0])
-        self._direction = self._side = 1 - 2 * back.astype(int)
-        strokes = 2 * (since // (2 * math.pi)).astype(int) + back
-        fractions = np.asarray(self.motion.at(middles, "exact").x / self.motion.stroke, dtype=float)
-        self._pressures = [self._pressure(one, strokes, one.share(fractions)) for one in self._chambers]
-        self._side = np.where(self.forces(middles, middles).lift >= 0, 1, -1)
+        self.edges, self._starts = edges, [float(edge - edges[0]) for edge in edges[:-1]]
+        middles = [(low + high) / 2 for low, high in pairwise(edges)]
+        self._direction, self._pressures = [], []
+        for middle in middles:
+            turn, since = divmod(float(middle - edges[0]), 2 * math.pi)
+            back = since > self.motion.dead_centres[1] - self.motion.dead_centres[0]
+            self._direction.append(-1 if back else 1)
+            fraction = self.motion.at(middle).x / self.motion.stroke
+            self._pressures.append([self._segment(one, 2 * int(turn) + back, fraction) for one in self._chambers])
+        self._side = self._direction
+        self._side = [1 if self.forces(middle, middle).lift >= 0 else -1 for middle in middles]
 
-    def _pressure(self, chamber: Chamber, strokes: Indices, fractions: Array) -> Callable[[Number, Indices], Number]:
-        """Return the gauge pressure of a chamber as a function of the fraction of its stroke and the piece's number."""
-        ends = []
-        for stroke, fraction in zip(strokes, fractions):
-            line = chamber.line(stroke)
-            order = 1 if line.start == 0 else -1
-            places, pressures = line.fractions[::order], line.pressures[::order]
-            last = min(max(int(np.searchsorted(places, fraction)), 1), len(places) - 1)
-            ends.append((*places[last - 1 : last + 1], *pressures[last - 1 : last + 1]))
-        z, next_z, p, next_p = self.numbers.of(np.array(ends)).T
-        if chamber.card.interpolate == "linear":
-            rise = (next_p - p) / (next_z - z)
-            return lambda at, k: p[k] + rise[k] * (at - z[k]) - chamber.base
-        clearance, lift, log = self.numbers.of(chamber.card.clearance), chamber.lift, self.numbers.log
-        exponent = log((p + lift) / (next_p + lift)) / log((next_z + clearance) / (z + clearance))
-        constant = (p + lift) * (z + clearance) ** exponent
-        return lambda at, k: constant[k] / (at + clearance) ** exponent[k] - lift - chamber.base
+    def _segment(
+        self, chamber: tuple[Card, int, Number, Number], stroke: int, fraction: Number
+    ) -> tuple[Number, Number, Number]:
+        """Return place, absolute pressure there, and slope or exponent, of a card at a fraction of the stroke."""
+        card, sign, _, lift = chamber
+        line = card.lines[(stroke - (sign < 0)) % len(card.lines)]
+        points = list(zip(line.fractions, line.pressures))[:: 1 if line.start == 0 else -1]
+        place = fraction if sign > 0 else 1 - fraction
+        (z, p), (next_z, next_p) = next(two for two in pairwise(points) if two[0][0] < place < two[1][0])
+        z, p, next_z, next_p = mpf(z), mpf(p) + lift, mpf(next_z), mpf(next_p) + lift
+        if card.interpolate == "linear":
+            return z, p, (next_p - p) / (next_z - z)
+        clearance = mpf(card.clearance)  # p (z + clearance)^n is constant
+        return z, p, mp.log(p / next_p) / mp.log((next_z + clearance) / (z + clearance))
 
-    def forces(
-        self, phi: Number, at: Number, shift: float = 0.0, noise: Callable[[Array], Array] | None = None
-    ) -> Forces:
-        """Return the forces at crank angles.
-
-        shift: angle by which the pressures are taken too late; noise: of a chamber's pressures, what is added to them.
-        """
-        piece, late = (np.searchsorted(self._inside, self._since(angle), "right") for angle in (at, at - shift))
-        motion = on_card = self.motion.at(phi)
-        if shift or self.motion.formula == "first-order":
-            on_card = self.motion.at(phi - shift, "exact")
-        fraction, gas = on_card.x / self.motion.stroke, 0 * motion.x
-        for chamber, pressure_at in zip(self._chambers, self._pressures):
-            pressure = pressure_at(chamber.share(fraction), late)
-            gas = gas + chamber.sign * chamber.area * (pressure + noise(pressure) if noise else pressure)
+    def forces(self, phi: Number, at: Number) -> Forces:
+        """Return the forces at a crank angle."""
+        piece = bisect_right(self._starts, float(at - self.edges[0]) % (2 * math.pi * self.turns)) - 1
+        motion, gas = self.motion.at(phi), mpf(0)
+        for (card, sign, area, _), (z, pressure, rise) in zip(self._chambers, self._pressures[piece]):
+            place = motion.x / self.motion.stroke if sign > 0 else 1 - motion.x / self.motion.stroke
+            if card.interpolate == "linear":
+                pressure = pressure + rise * (place - z)
+            else:
+                pressure = pressure * ((z + mpf(card.clearance)) / (place + mpf(card.clearance))) ** rise
+            gas += sign * area * (pressure - self._ambient)
         push = gas - self.mass * self.omega**2 * motion.curvature + self._weight
-        way = self._direction[piece]
-        lift = (push - way * self._rings) * motion.sin_psi + self._side_weight * motion.cos_psi
-        leaning = motion.cos_psi + way * self._side[piece] * self._crosshead * motion.sin_psi
-        friction = way * (self._crosshead * np.abs(lift / leaning) + self._rings)
+        direction = self._direction[piece]
+        lift = (push - direction * self._rings) * motion.sin_psi + self._side_weight * motion.cos_psi
+        leaning = motion.cos_psi + direction * self._side[piece] * self._crosshead * motion.sin_psi
+        friction = direction * (self._crosshead * abs(lift / leaning) + self._rings)
         return Forces(motion.slope, gas, push, lift, friction)
-
-    def _since(self, angle: Number) -> Array:
-        """Return angles counted from the start of the cycle, in floats."""
-        return np.asarray(np.mod(np.asarray(angle - self.edges[0], dtype=float), 2 * math.pi * self.turns))
-
-    def torque(self, phi: Number, at: Number, **disturbed: Any) -> Number:
-        """Return M in N m, inertia at uniform speed included; disturbed: see `forces`."""
-        found = self.forces(phi, at, **disturbed)
-        return (found.push - found.friction) * found.slope
-
-    def gas_power(self, phi: Number, at: Number, **disturbed: Any) -> Number:
-        """Return the work of the gas in J per radian; disturbed: see `forces`."""
-        found = self.forces(phi, at, **disturbed)
-        return found.gas * found.slope
-
-    def tangential(self, phi: Number, at: Number, **disturbed: Any) -> Number:
-        """Return T in N, M over the radius of the crank; disturbed: see `forces`."""
-        return self.torque(phi, at, **disturbed) / self.motion.crank
-
-    def friction_power(self, phi: Number, at: Number) -> Number:
-        """Return the work of friction in J per radian."""
-        found = self.forces(phi, at)
-        return found.friction * found.slope
 
 
 class TextbookMachine:
     """The turning effort of all cylinders at the angles of crank 1."""
 
-    def __init__(self, machine: Machine, numbers: Numbers = FLOATS, formula: str = "exact") -> None:
-        self._cycle, degree = 2 * machine.revolutions * numbers.pi * numbers.of(1.0), numbers.pi / 180
-        self._cylinders = [
-            (TextbookCylinder(machine, one, numbers, formula), numbers.of(one.crank_position) * degree)
-            for one in machine.cylinders
-        ]
-        found = [0 * self._cycle, self._cycle]
-        for one, position in self._cylinders:
-            turns = [2 * numbers.pi * one.turns * repeat for repeat in range(machine.revolutions // one.turns)]
-            found += [(angle + position + turn) % self._cycle for angle in one.edges[:-1] for turn in turns]
-        self.edges = merged(found, numbers)
+    def __init__(self, machine: Machine) -> None:
+        cycle = 2 * mp.pi * machine.revolutions
+        self.cylinders = [(TextbookCylinder(machine, one), mp.radians(one.crank_position)) for one in machine.cylinders]
+        found = [mpf(0), cycle]
+        for one, position in self.cylinders:
+            starts = [position + 2 * mp.pi * turn for turn in range(0, machine.revolutions, one.turns)]
+            found += [(angle + start) % cycle for angle in one.edges[:-1] for start in starts]
+        self.edges = merged(found)
 
-    def torque(self, phi: Number, at: Number, **disturbed: Any) -> Number:
-        """Return M in N m; disturbed: see `TextbookCylinder.forces`."""
-        return sum(one.torque(phi - place, at - place, **disturbed) for one, place in self._cylinders)
+    def torque(self, phi: Number, at: Number) -> Number:
+        """Return M in N m."""
+        return mp.fsum(one.forces(phi - place, at - place).torque for one, place in self.cylinders)
 
-    def drive(self, phi: Number, at: Number) -> Number:
-        """Return M without inertia in N m."""
-        total = self.torque(phi, at)
-        for one, place in self._cylinders:
-            motion = one.motion.at(phi - place)
-            total = total + one.mass * one.omega**2 * motion.slope * motion.curvature
-        return total
 
-    def inertia(self, phi: Number, at: Number) -> Number:
-        """Return Σ (m x′² + (1 − s) m_r R²) in kg m², with the reciprocating share s of the rods."""
-        return sum(
-            one.mass * one.motion.at(phi - place).slope ** 2 + one.turning_inertia for one, place in self._cylinders
-        )
+# searches and integrals between corners
+
+
+def merged(angles: Sequence[Number]) -> list[Number]:
+    """Return angles in order, without those that differ from the one before by rounding only."""
+    found = sorted(angles)
+    return [found[0], *(high for low, high in pairwise(found) if high - low > mpf("1e-27"))]
+
+
+def roots(function: Function, edges: Sequence[Number], parts: int = 24) -> list[Number]:
+    """Return the roots inside the pieces, looked for at equal steps."""
+    found = []
+    for low, high in pairwise(edges):
+        middle = (low + high) / 2
+        places = [low + (high - low) * step / parts for step in range(parts + 1)]
+        values = [function(place, middle) for place in places]
+        for (a, b), (f_a, f_b) in zip(pairwise(places), pairwise(values)):
+            if (f_a > 0) != (f_b > 0):
+                along = partial(lambda middle, phi: function(phi, middle), middle)
+                found.append(
+                    mp.findroot(along, (a, b), solver="anderson", verify=False, maxsteps=300) if f_a and f_b else b
+                )
+    return found
+
+
+def extremes(function: Function, edges: Sequence[Number]) -> tuple[Number, Number]:
+    """Return the largest and the smallest value, from the ends of the pieces and the roots of the derivative."""
+    step = mpf("1e-12")
+    tops = roots(lambda phi, at: function(phi + step, at) - function(phi - step, at), edges)
+    values = [function(end, (low + high) / 2) for low, high in pairwise(edges) for end in (low, high)]
+    values += [function(top, top) for top in tops]
+    return max(values), min(values)
+
+
+@cache
+def _gauss(precision: int) -> list[tuple[Number, Number]]:
+    nodes: list[tuple[Number, Number]] = GaussLegendre(mp).calc_nodes(4, precision)
+    return nodes
+
+
+def integrals(function: Function, edges: Sequence[Number]) -> list[Number]:
+    """Return the integral over each piece by 24 Gauss points, halved until whole and halves agree to 25 digits."""
+
+    def rule(low: Number, high: Number) -> tuple[Number, Number]:
+        middle, half = (low + high) / 2, (high - low) / 2
+        values = [weight * function(middle + half * node, middle) for node, weight in _gauss(mp.prec)]
+        return half * mp.fsum(values), half * mp.fsum(values, absolute=True)
+
+    def integral(low: Number, high: Number, whole: Number) -> Number:
+        middle = (low + high) / 2
+        (left, size), (right, more) = rule(low, middle), rule(middle, high)
+        if abs(left + right - whole) <= mpf("1e-25") * (size + more):
+            return left + right
+        return integral(low, middle, left) + integral(middle, high, right)
+
+    return [integral(low, high, rule(low, high)[0]) for low, high in pairwise(edges)]
+
+
+def excess(function: Function, edges: Sequence[Number]) -> Number:
+    """Return the largest swing of ∫ (function − its mean), between the angles at which the function has its mean."""
+    mean = mp.fsum(integrals(function, edges)) / (edges[-1] - edges[0])
+    crossings = roots(lambda phi, at: function(phi, at) - mean, edges)
+    heights = [mpf(0), *accumulate(integrals(lambda phi, at: function(phi, at) - mean, merged([*edges, *crossings])))]
+    return max(heights) - min(heights)
+
+
+# the references
+
+
+def reference(machine: Machine, quantity: str) -> tuple[Number, list[Number]]:
+    """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J; and the edges of its pieces."""
+    if quantity == "ΔE":
+        whole = TextbookMachine(machine)
+        return excess(whole.torque, whole.edges), whole.edges
+    book = TextbookCylinder(machine, machine.cylinders[0])
+    if quantity[0] == "T":
+        return extremes(lambda phi, at: book.forces(phi, at).torque / book.motion.r, book.edges), book.edges
+
+    def power(phi: Number, at: Number) -> Number:
+        found = book.forces(phi, at)
+        return (found.gas if quantity == "A_i" else found.friction) * found.slope
+
+    return mp.fsum(integrals(power, book.edges)), book.edges
+
+
+def peak_slope(mechanism: Mechanism) -> Number:
+    """Return the largest dx/dφ in m on the outstroke."""
+    book = TextbookMotion(mechanism)
+    (peak,) = roots(lambda phi, at: book.at(phi).curvature, book.dead_centres)
+    return book.at(peak).slope

@@ -72,9 +72,9 @@ def find(
     """
     from kurbel.designs.find import find as found_in
     from kurbel.machine_file import source
+    from kurbel.render.findings import as_json, as_rows, heads, remarks
     from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.sweep_rows import Titles, write_rows
-    from kurbel.render.findings import as_json, as_rows, heads, remarks
 
     if write and (case_name or format):
         raise click.UsageError(f"--write prints FILE; leave {'--case' if case_name else '--format'} out.")

@@ -202,8 +202,7 @@ def accuracy(
 
     Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
     and come from other methods than kurbel's. Numerical errors, errors of the model (the formulas of the book) and
-    errors of the data (0.1 deg of dead centre, 0.5 % noise, what the file gives as 'uncertainty') stand apart; the last
-    section says what leaving out saves.
+    errors of the data (0.1 deg of dead centre, 0.5 % noise, what the file gives as 'uncertainty') are listed apart.
     """
     if (case_name or overrides) and file is None:
         raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")

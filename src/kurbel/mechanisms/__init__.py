@@ -201,9 +201,12 @@ class Mechanism(Record):
         inner, outer = (np.full_like(passed, degrees) for degrees in self.dead_centres())
         ends = ((inner, -passed), (outer, self.stroke - passed))
         (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -passed))
-        found = bracketed_roots(
-            lambda degrees: self.coordinate(CrankAngle.of(degrees)) - self.start - passed, low, high, f_low, f_high
-        )
+
+        def left(degrees: Array) -> tuple[Array, Array]:
+            angle = CrankAngle.of(degrees)
+            return self.coordinate(angle) - self.start - passed, self.slope(angle) * (np.pi / 180)
+
+        found = bracketed_roots(left, low, high, f_low, f_high)
         # near a dead centre the rounding of the coordinate leaves 1e-6 degrees open
         return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 

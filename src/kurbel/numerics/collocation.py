@@ -36,42 +36,34 @@ _OPEN = 1e-11
 
 
 class Unsettled(Exception):
-    """No solution is found; enough: how far to ease the equation for one, in the unit of y, or None if not known."""
+    """No solution is found.
 
-    def __init__(self, enough: float | None = None) -> None:
+    enough: how far to ease the equation for one, in the unit of y, or None if not known; degrees: the angle near which
+    the machine stops, or None where it does not come to a stop.
+    """
+
+    def __init__(self, enough: float | None = None, degrees: float | None = None) -> None:
         super().__init__("no periodic solution found")
-        self.enough = enough
-
-
-class Standstill(Unsettled):
-    """The machine stops near an angle in degrees; enough: see `Unsettled`."""
-
-    def __init__(self, degrees: float, enough: float | None = None) -> None:
-        super().__init__(enough)
-        self.degrees = degrees
+        self.enough, self.degrees = enough, degrees
 
 
 class Equation(Protocol):
     """y′ = f(φ, y), per radian, with m unknowns y of about one size for each of many machines.
 
-    bounded: the unknown that must stay above −height. noise (machines,): smaller parts of y are not refined. eased
-    (machines,), from 0 on: is added to the height, and makes the equation the tamer the more y moves f less.
+    bounded: the unknown that must stay above −height; the equation is the tamer the larger the height. None where
+    nothing bounds one. noise (machines,): smaller parts of y are not refined.
     """
 
     unknowns: int
-    bounded: int
+    bounded: int | None
     noise: Array
 
     def known(self, pieces: Pieces) -> Array:
-        """Return what depends on the angle alone at the Lobatto nodes of pieces, (…, nodes, pieces)."""
+        """Return what depends on the angle alone at the Lobatto nodes, (q, nodes, pieces), the height last."""
         ...
 
-    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
-        """Return f (m, k, pieces) and ∂f/∂y (m, m, k, pieces) at y (m, k, pieces), where `known` is (…, k, pieces)."""
-        ...
-
-    def height(self, known: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return how far the bounded unknown may fall below 0, (k, pieces) or (pieces,); ∞ where nothing bounds it."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+        """Return f (m, k, pieces) and ∂f/∂y (m, m, k, pieces) at y (m, k, pieces), where `known` is (q, k, pieces)."""
         ...
 
 
@@ -121,17 +113,16 @@ class Periodic(NamedTuple):
         return np.asarray(radau(len(self.pieces.rule.nodes)).to_lobatto @ y)
 
     def refuse(self) -> None:
-        """Raise Standstill or Unsettled where the only machine has no solution."""
+        """Raise Unsettled where the only machine has no solution."""
         if not self.failed[0]:
             return
         if np.isnan(self.short[0]):
             raise Unsettled
         system = _System(self.equation, self.pieces, self.short)
         share = (1 + self.y[self.equation.bounded, 1:] / system.height).T
-        if share.min() > _STANDING:
-            raise Unsettled(float(self.short[0]))
         degrees = self.pieces.low + self.pieces.half * (1 + system.rule.nodes[:, None])
-        raise Standstill(float(degrees.T.ravel()[np.argmin(share)]), float(self.short[0]))
+        stops = share.min() <= _STANDING
+        raise Unsettled(float(self.short[0]), float(degrees.T.ravel()[np.argmin(share)]) if stops else None)
 
     @property
     def growth(self) -> Array:
@@ -151,18 +142,29 @@ class Periodic(NamedTuple):
 def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     """Return the solutions of y′ = f(φ, y) with the periods of the machines.
 
-    Newton's method starts from y = 0; where that leads nowhere, from a solution of an eased equation, which is followed
-    back to the given one. What a linear equation leaves open is as small as can be.
+    Newton's method starts from y = 0; where that leads nowhere, from the solution with an endless height, which is
+    followed down to the given one. What a linear equation leaves open is as small as can be.
     """
     pieces = pieces.with_nodes(max(_FEWEST, len(pieces.rule.nodes)))
     still = _Solution(pieces, np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half))))
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         found, good = _settled(equation, still, np.zeros(pieces.count))
-        short = np.full(pieces.count, np.nan)
-        if not good.all():
-            more, later, short = _followed(equation, still.of(~good))
-            found, good = found.replaced(more, ~good), good | later
-    return Periodic(equation, found.pieces, found.y, ~good, short)
+        if good.all() or equation.bounded is None:
+            return Periodic(equation, *found, ~good, np.full(pieces.count, np.nan))
+        own = np.maximum(_largest(pieces, _System(equation, pieces, np.zeros(pieces.count)).height), 0.0)
+        found = _joined([found.of(good), still.of(~good)])
+        running, height = ~good & np.isfinite(own) & (own > 0), np.where(good, own, np.nan)
+        target, share = own * _ENDLESS, np.full_like(own, _STEP)
+        for _ in range(_MOST_STEPS):
+            running = running & ~(height <= own) & (share <= _SHORTEST)
+            if not running.any():
+                break
+            finer, better = _settled(equation, found.of(running), np.where(running, target - own, 0.0))
+            found = _joined([found.of(~better), finer.of(better)])
+            height = np.where(better, target, height)
+            share = np.where(better, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share))
+            target = np.maximum(height * share, own)
+    return Periodic(equation, *found, ~(height <= own), height - own)
 
 
 class _Solution(NamedTuple):
@@ -175,10 +177,6 @@ class _Solution(NamedTuple):
         """Return that of these machines."""
         rows = machines[self.pieces.machine]
         return _Solution(self.pieces.taken(rows), self.y[..., rows])
-
-    def replaced(self, other: _Solution, machines: Flags) -> _Solution:
-        """Return it with that of these machines taken from another one."""
-        return _joined([self.of(~machines), other.of(machines)])
 
 
 def _joined(parts: Sequence[_Solution]) -> _Solution:
@@ -197,59 +195,52 @@ def _swing(pieces: Pieces, y: Array) -> Array:
     return np.array([_largest(pieces, one) + _largest(pieces, -one) for one in y])
 
 
-# Newton's method, and halving
-
-
-def _settled(equation: Equation, start: _Solution, eased: Array) -> tuple[_Solution, Flags]:
-    """Solve and refine until every piece is smooth, and return which machines have settled.
+def _settled(equation: Equation, left: _Solution, eased: Array) -> tuple[_Solution, Flags]:
+    """Solve, and halve pieces until y is a polynomial on every one; return which machines have settled.
 
     A machine that is smooth is done with; the others go on without it.
     """
-    count = start.pieces.count
-    settled, done, left = np.zeros(count, dtype=bool), [], start
+    count = left.pieces.count
+    settled, done = np.zeros(count, dtype=bool), []
     for _ in range(_ROUNDS):
-        system = _System(equation, left.pieces, eased)
-        y, good = _newton(system, left.y)
-        rough = _rough(system, y) & good[left.pieces.machine]
-        unsmooth = np.bincount(left.pieces.machine[rough], minlength=count) > 0
+        system, pieces, of = _System(equation, left.pieces, eased), left.pieces, left.pieces.machine
+        y, good = system.solved(left.y)
+        tails = np.abs(system.rule.series[-2:] @ y).sum(axis=1)
+        least = TAIL * _swing(pieces, y) + 4e-15 * _largest(pieces, np.abs(y)) + equation.noise
+        rough = (tails > least[:, of]).any(axis=0) & (pieces.half > _NARROWEST / 2) & good[of]
+        unsmooth = np.bincount(of[rough], minlength=count) > 0
         settled |= good & ~unsmooth
-        going = good & unsmooth & (np.bincount(left.pieces.machine, minlength=count) <= _MOST_PIECES)
-        left, rough = _Solution(left.pieces, y), rough[going[left.pieces.machine]]
-        done.append(left.of(~going))
-        left = left.of(going)
+        going = unsmooth & (np.bincount(of, minlength=count) <= _MOST_PIECES)
+        rough = rough[going[of]]
+        done.append(_Solution(pieces, y).of(~going))
+        left = _Solution(pieces, y).of(going)
         if not len(rough):
             break
-        left = _halved(system, left, rough)
+
+        halves, (m, nodes, _) = left.pieces.halved(rough), y.shape
+        fine = (system.rule.halving @ left.y[..., rough]).reshape(m, 2, nodes, -1)
+        fine = fine.transpose(0, 2, 3, 1).reshape(m, nodes, -1)
+        if equation.bounded is not None:  # a polynomial may fall below the bound between its nodes
+            bounded = fine[equation.bounded, 1:]
+            np.maximum(bounded, -0.99 * _System(equation, halves, eased).height, out=bounded)
+        left = _joined([_Solution(left.pieces.taken(~rough), left.y[..., ~rough]), _Solution(halves, fine)])
     else:
         done.append(left)
     return _joined(done), settled
 
 
-def _rough(system: _System, y: Array) -> Flags:
-    """Return on which pieces y is no polynomial yet."""
-    pieces = system.pieces
-    tails = np.abs(system.rule.series[-2:] @ y).sum(axis=1)
-    least = TAIL * _swing(pieces, y) + 4e-15 * _largest(pieces, np.abs(y)) + system.equation.noise
-    return np.asarray((tails > least[:, pieces.machine]).any(axis=0) & (pieces.half > _NARROWEST / 2))
-
-
-def _halved(system: _System, found: _Solution, rough: Flags) -> _Solution:
-    """Halve the rough pieces; y on the halves comes from the polynomials, and stays above its bound."""
-    halves, (m, nodes, _) = found.pieces.halved(rough), found.y.shape
-    y = (system.rule.halving @ found.y[..., rough]).reshape(m, 2, nodes, -1).transpose(0, 2, 3, 1).reshape(m, nodes, -1)
-    bounded = y[system.equation.bounded, 1:]
-    np.maximum(bounded, -0.99 * _System(system.equation, halves, system.eased).height, out=bounded)
-    return _joined([_Solution(found.pieces.taken(~rough), found.y[..., ~rough]), _Solution(halves, y)])
-
-
 class _System:
-    """The collocation equations on a row of pieces: those inside of each, and those that join it to the next."""
+    """The collocation equations on a row of pieces: those inside of each, and those that join it to the next.
+
+    eased (machines,): is added to the height.
+    """
 
     def __init__(self, equation: Equation, pieces: Pieces, eased: Array) -> None:
-        self.equation, self.pieces, self.eased = equation, pieces, eased
+        self.equation, self.pieces = equation, pieces
         self.rule, self.half = radau(len(pieces.rule.nodes)), np.radians(pieces.half)
         self.known = self.rule.from_lobatto @ equation.known(pieces)
-        self.height = equation.height(self.known, pieces, eased)
+        self.known[-1] += pieces.of(eased)
+        self.height = self.known[-1]
         _, self._row, lengths = np.unique(pieces.machine, return_inverse=True, return_counts=True)
         begins = np.cumsum(lengths) - lengths
         self._place = np.arange(len(self._row)) - begins[self._row]
@@ -262,24 +253,10 @@ class _System:
 
         At the start of a piece that is what the end before it has more, at its nodes what the rate makes of the start.
         """
-        rate, slope = self.equation.rate(self.known, y[:, 1:], self.pieces, self.eased)
+        rate, slope = self.equation.rate(self.known, y[:, 1:], self.pieces)
         jump = np.empty_like(y[:, 0])
         jump[:, self.after] = y[:, -1] - y[:, 0, self.after]
         return jump, y[:, :1] + self.half * (self.rule.area @ rate) - y[:, 1:], self.half * slope
-
-    def size(self, jump: Array, lack: Array) -> Array:
-        """Return the size of what is lacking, (machines,); not a number where the rate overflows."""
-        squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
-        return np.asarray(np.sqrt(np.bincount(self.pieces.machine, squares, minlength=self.pieces.count)))
-
-    def step(self, jump: Array, lack: Array, stiffness: Array) -> Array:
-        """Return Newton's step of y: in a piece δ = response + gain δ_start, its last node starts the next one."""
-        response, gain = self.inside(lack, stiffness)
-        ends, more = gain[-1], response[-1] + jump[:, self.after].T
-        start = around_the_cycle(self.padded(ends, np.eye(len(jump))), self.padded(more, np.zeros(len(jump))))
-        start = start[self._row, self._place]
-        inside = response + (gain @ start[:, :, None])[..., 0]
-        return np.asarray(np.concatenate((start[None], inside)).transpose(2, 0, 1))
 
     def inside(self, lack: Array, stiffness: Array) -> tuple[Array, Array]:
         """Return the changes at the nodes (k, pieces, m) that make up a lack, and those per change at the start."""
@@ -292,7 +269,11 @@ class _System:
             systems = np.eye(m * k) - (self.rule.area[:, None, :, None] * slopes).reshape(-1, m * k, m * k)
             sides = np.empty((len(systems), k, m, m + 1))
             sides[..., 0], sides[..., 1:] = lack[..., some].transpose(2, 1, 0), np.eye(m)
-            solved = _solved(systems, sides.reshape(-1, m * k, m + 1))
+            flat = sides.reshape(-1, m * k, m + 1)
+            try:
+                solved = np.linalg.solve(systems, flat)
+            except np.linalg.LinAlgError:  # one is exactly singular: its step becomes too long, and is taken back
+                solved = np.linalg.solve(systems + 1e-14 * np.eye(m * k), flat)
             found[:, some] = solved.reshape(sides.shape).swapaxes(0, 1)
         return found[..., 0], found[..., 1:]
 
@@ -303,15 +284,60 @@ class _System:
         found[self._row, self._place] = values
         return found
 
+    def solved(self, y: Array) -> tuple[Array, Flags]:
+        """Solve the collocation equations by Newton's method, and return which machines have settled.
 
-def _solved(systems: Array, sides: Array) -> Array:
-    """Return the solutions of systems (n, …); not a number where one is singular."""
-    try:
-        return np.asarray(np.linalg.solve(systems, sides))
-    except np.linalg.LinAlgError:
-        if len(systems) == 1:
-            return np.full_like(sides, np.nan)
-        return np.concatenate([_solved(systems[k : k + 1], sides[k : k + 1]) for k in range(len(systems))])
+        A machine that has settled, or fails, stays as it is. Steps are halved until less is lacking.
+        """
+        pieces, of, bounded = self.pieces, self.pieces.machine, self.equation.bounded
+        going = np.bincount(of, minlength=pieces.count) > 0
+        good, previous = np.zeros_like(going), np.full(pieces.count, np.inf)
+        highest = 0.0 if bounded is None else _largest(pieces, self.height)
+
+        def size_of(jump: Array, lack: Array, _: Array) -> Array:
+            squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
+            return np.asarray(np.sqrt(np.bincount(of, squares, minlength=pieces.count)))
+
+        lacking = self.lacking(y)
+        for _ in range(100):
+            now = size_of(*lacking)
+            going &= np.isfinite(now)
+            if not going.any():
+                break
+
+            # in a piece step = response + gain · step at its start; its last node starts the next piece
+            jump, lack, stiffness = lacking
+            response, gain = self.inside(lack, stiffness)
+            more = self.padded(response[-1] + jump[:, self.after].T, np.zeros(len(y)))
+            start = around_the_cycle(self.padded(gain[-1], np.eye(len(y))), more)[self._row, self._place]
+            nodes = response + (gain @ start[:, :, None])[..., 0]
+            step = np.concatenate((start[None], nodes)).transpose(2, 0, 1)
+            size = _largest(pieces, np.abs(step))
+            going &= np.isfinite(size)
+            step[..., ~going[of]] = 0.0
+
+            # far above its bound y is moved as a whole by rounding, though by nothing relative to that height
+            near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * highest)
+            share = np.ones(pieces.count)
+            if bounded is not None:
+                share /= np.maximum(_largest(pieces, -step[bounded, 1:] / (0.9 * (y[bounded, 1:] + self.height))), 1.0)
+            while True:
+                new = y + share[of] * step
+                lacking = self.lacking(new)
+                after = size_of(*lacking)
+                poor = going & (size > near) & ~(after <= (1 - share / 8) * now) & (share > 1e-6)
+                if not poor.any():
+                    break
+                share = np.where(poor, share / 2, share)
+            y = new
+
+            # the next step makes up what is still lacking: for a linear equation only rounding
+            left = np.where(now > 0, size * after / now, 0.0)
+            small = (size <= 1e-6 * near) | (left <= 1e-5 * near) | ((size <= near) & (size >= previous / 4))
+            good |= going & (share == 1) & small
+            going &= ~good & (share > 1e-6)
+            previous = np.where(share == 1, size, np.inf)
+        return y, good
 
 
 def around_the_cycle(gain: Array, more: Array) -> Array:
@@ -322,11 +348,12 @@ def around_the_cycle(gain: Array, more: Array) -> Array:
     """
     finite = np.asarray(np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2)))[:, None, None]
     gain, more = np.where(finite[..., None], gain, 0.0), np.where(finite, more, 0.0)
-    if more.shape[2] > 1:
-        return np.where(finite, _paired(gain, more), np.nan)
-    grows = (np.log(np.maximum(np.abs(gain[..., 0]), 1e-300)).sum(axis=1) > 0)[:, None]
-    back = 1 / np.where(grows, gain[:, ::-1, :, 0], 1.0)
-    found = _paired(np.where(grows, back, gain[..., 0])[..., None], np.where(grows, -more[:, ::-1] * back, more))
+    grows = np.zeros(())
+    if more.shape[2] == 1:
+        grows = (np.log(np.maximum(np.abs(gain), 1e-300)).sum(axis=(1, 2, 3)) > 0)[:, None, None]
+        back = 1 / np.where(grows[..., None], gain[:, ::-1], 1.0)
+        gain, more = np.where(grows[..., None], back, gain), np.where(grows, -more[:, ::-1] * back[..., 0], more)
+    found = _paired(gain, more)
     return np.where(finite, np.where(grows, np.roll(found[:, ::-1], 1, axis=1), found), np.nan)
 
 
@@ -343,67 +370,3 @@ def _paired(gain: Array, more: Array) -> Array:
     starts = _paired(second @ first, (second @ early[..., None])[..., 0] + late)
     middles = (first @ starts[..., None])[..., 0] + early
     return np.stack((starts, middles), axis=2).reshape(more.shape)[:, :count]
-
-
-def _newton(system: _System, y: Array) -> tuple[Array, Flags]:
-    """Solve the collocation equations by Newton's method, and return which machines have settled.
-
-    A machine that has settled, or fails, stays as it is. Steps are halved until less is lacking.
-    """
-    pieces, of, bounded = system.pieces, system.pieces.machine, system.equation.bounded
-    going = np.bincount(of, minlength=pieces.count) > 0
-    good, previous = np.zeros_like(going), np.full(pieces.count, np.inf)
-    highest = _largest(pieces, np.where(np.isfinite(system.height), system.height, 0.0))
-    lacking = system.lacking(y)
-    for _ in range(100):
-        now = system.size(*lacking[:2])
-        going &= np.isfinite(now)
-        if not going.any():
-            break
-        step = system.step(*lacking)
-        size = _largest(pieces, np.abs(step))
-        going &= np.isfinite(size)
-        step[..., ~going[of]] = 0.0
-        # far above its bound y is moved as a whole by rounding, though by nothing relative to that height
-        near = np.maximum(1e-9 * _swing(pieces, y + step).max(axis=0), 1e-14 * highest)
-        fall = -step[bounded, 1:] / (0.9 * (y[bounded, 1:] + system.height))
-        share = 1 / np.maximum(_largest(pieces, fall), 1.0)
-        while True:
-            new = y + share[of] * step
-            lacking = system.lacking(new)
-            after = system.size(*lacking[:2])
-            poor = going & (size > near) & ~(after <= (1 - share / 8) * now) & (share > 1e-6)
-            if not poor.any():
-                break
-            share = np.where(poor, share / 2, share)
-        y = new
-        # the next step makes up what is still lacking: for a linear equation only rounding
-        left = np.where(now > 0, size * after / now, 0.0)
-        small = (size <= 1e-6 * near) | (left <= 1e-5 * near) | ((size <= near) & (size >= previous / 4))
-        good |= going & (share == 1) & small
-        going &= ~good & (share > 1e-6)
-        previous = np.where(share == 1, size, np.inf)
-    return y, good
-
-
-# from an eased equation back to the given one
-
-
-def _followed(equation: Equation, start: _Solution) -> tuple[_Solution, Flags, Array]:
-    """Follow the solutions of these machines from an endless kinetic energy down to their own.
-
-    Returned with them: which machines have settled, and how much more energy the others needed last.
-    """
-    none = np.zeros(start.pieces.count)
-    own = np.maximum(_largest(start.pieces, _System(equation, start.pieces, none).height), 0.0)
-    running = np.isfinite(own) & (own > 0)
-    found, energy, target, share = start, np.full_like(own, np.nan), own * _ENDLESS, np.full_like(own, _STEP)
-    for _ in range(_MOST_STEPS):
-        running = running & ~(energy <= own) & (share <= _SHORTEST)
-        if not running.any():
-            break
-        finer, good = _settled(equation, found.of(running), np.where(running, target - own, 0.0))
-        found, energy = found.replaced(finer, good), np.where(good, target, energy)
-        share = np.where(good, np.maximum(share**1.5, _STEP), np.where(running, np.sqrt(share), share))
-        target = np.maximum(energy * share, own)
-    return found, energy <= own, energy - own

@@ -3,6 +3,8 @@
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import chebyshev as series_of
+from numpy.polynomial import legendre
 
 from kurbel.arrays import Array
 
@@ -17,7 +19,13 @@ class Rule:
     """
 
     def __init__(self, count: int) -> None:
-        self.nodes, self.weights = _nodes_and_weights(count)
+        # the ends and the roots of P′ of the last Legendre polynomial P, with the weights 2/(n(n − 1)P²)
+        last = np.eye(count)[-1]
+        inner = np.sort(legendre.legroots(legendre.legder(last)).real)
+        nodes = np.concatenate(([-1.0], inner, [1.0]))
+        self.nodes = (nodes - nodes[::-1]) / 2
+        self.weights = 2 / (count * (count - 1) * legendre.legval(self.nodes, last) ** 2)
+
         self.series = np.linalg.inv(chebyshev(self.nodes, count))
         self.slope = slope_of_series(count)
         self.area = chebyshev(self.nodes, count + 1) @ integral_of_series(count) @ self.series
@@ -33,10 +41,7 @@ rule = lru_cache(Rule)
 
 def chebyshev(places: Array, count: int) -> Array:
     """Return the first Chebyshev polynomials T_0, T_1, … at places (n,) in [−1, 1], (n, count)."""
-    columns = [np.ones_like(places), places]
-    for _ in range(count - 2):
-        columns.append(2 * places * columns[-1] - columns[-2])
-    return np.stack(columns[:count], axis=-1)
+    return np.asarray(series_of.chebvander(places, count - 1), dtype=float)
 
 
 def series_at(series: Array, places: Array) -> Array:
@@ -49,33 +54,12 @@ def series_at(series: Array, places: Array) -> Array:
     return np.asarray(series[0] + places * ahead - last)
 
 
-def _nodes_and_weights(count: int) -> tuple[Array, Array]:
-    """Return the ends and the roots of P′ of the last Legendre polynomial P, and the weights 2/(n(n − 1)P²)."""
-    nodes = -np.cos(np.pi * np.arange(count) / (count - 1))
-    for _ in range(60):
-        before, last = np.ones(count), nodes.copy()
-        for k in range(2, count):
-            before, last = last, ((2 * k - 1) * nodes * last - (k - 1) * before) / k
-        nodes = nodes - (nodes * last - before) / (count * last)
-    return (nodes - nodes[::-1]) / 2, 2 / (count * (count - 1) * last**2)
-
-
 @lru_cache
 def slope_of_series(count: int) -> Array:
-    """Return what turns Chebyshev coefficients into those of the derivative: T_k′ = 2k (T_{k−1} + T_{k−3} + …)."""
-    matrix = np.zeros((count - 1, count))
-    for k in range(1, count):
-        matrix[k - 1 :: -2, k] = 2 * k
-    matrix[0] /= 2
-    return matrix
+    """Return what turns so many Chebyshev coefficients into those of the derivative."""
+    return np.asarray(series_of.chebder(np.eye(count), axis=0), dtype=float)
 
 
 def integral_of_series(count: int) -> Array:
-    """Return what turns Chebyshev coefficients into those of the integral from −1 on."""
-    matrix = np.zeros((count + 1, count))
-    for k in range(count):
-        matrix[k + 1, k] += 1 / (2 * (k + 1)) if k else 1.0
-        if k > 1:
-            matrix[k - 1, k] -= 1 / (2 * (k - 1))
-    matrix[0] -= chebyshev(np.array([-1.0]), count + 1)[0] @ matrix
-    return matrix
+    """Return what turns so many Chebyshev coefficients into those of the integral from −1 on."""
+    return np.asarray(series_of.chebint(np.eye(count), lbnd=-1, axis=0), dtype=float)

@@ -19,6 +19,7 @@ from kurbel.arrays import Array, Flags, Indices, Number
 from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
+from kurbel.numerics.roots import bracketed_roots
 
 ROUNDING = 1e-14
 """Relative to the largest value of a quantity: a smaller value counts as zero."""
@@ -475,17 +476,6 @@ def _crossings(values: Array, of: Rule, tiny: Array) -> tuple[Indices, Array]:
 
 
 def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:
-    """Return the zeros of series (k, n) between low and high (n,), where they are first and last: clipped Newton."""
-    slopes, rising = slope_of_series(len(series)) @ series, first < last
-    places = low + (high - low) * (np.abs(first) / np.maximum(np.abs(first) + np.abs(last), 1e-300))
-    for _ in range(60):
-        value = series_at(series, places)
-        below = (value < 0) == rising
-        low, high = np.where(below, places, low), np.where(below, high, places)
-        with np.errstate(all="ignore"):
-            step = places - value / series_at(slopes, places)
-        new = np.where((step >= low - 1e-10) & (step <= high + 1e-10), np.clip(step, low, high), (low + high) / 2)
-        moved, places = np.abs(new - places), new
-        if not (moved > 4e-16).any():
-            break
-    return np.asarray(places)
+    """Return the zeros of series (k, n) between low and high (n,), where they are first and last."""
+    slopes = slope_of_series(len(series)) @ series
+    return bracketed_roots(lambda at: (series_at(series, at), series_at(slopes, at)), low, high, first, last)

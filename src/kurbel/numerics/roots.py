@@ -1,6 +1,5 @@
-"""Bracketed roots of many functions at once, after Chandrupatla (1997): inverse quadratic steps, safe as bisection."""
+"""Bracketed roots of many functions at once: Newton's method, and bisection where its step leaves the bracket."""
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -8,75 +7,25 @@ import numpy as np
 from kurbel.arrays import Array
 
 
-def bracketed_roots(function: Callable[[Array], Array], low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
-    """Return one root in each bracket (n,), to about two units in the last place of the argument.
+def bracketed_roots(
+    function: Callable[[Array], tuple[Array, Array]], low: Array, high: Array, first: Array, last: Array
+) -> Array:
+    """Return one root in each bracket (n,), to the rounding of the function or of the argument.
 
-    function: maps all arguments (n,) at once to values (n,); f_low and f_high differ in sign (or one is zero).
+    function: maps all arguments (n,) at once to values and slopes (n,); first, last: its values at the ends, of which
+    the signs differ, or one is zero.
     """
-    a, b, fa, fb = high.copy(), low.copy(), f_high.copy(), f_low.copy()
-    c, fc = a, fa
-    best = np.where(np.abs(fa) < np.abs(fb), a, b)
-    part = np.full_like(a, 0.5)
-    for _ in range(100):
-        tolerance = 2 * np.finfo(float).eps * np.maximum(np.abs(best), 1e-3)
-        width = np.abs(b - a)
-        if ((width <= 2 * tolerance) | (fa == 0) | (fb == 0)).all():
+    rising = first < last
+    places = low + (high - low) * (np.abs(first) / np.maximum(np.abs(first) + np.abs(last), 1e-300))
+    size = 4e-16 * np.maximum(np.maximum(np.abs(low), np.abs(high)), 1.0)
+    for _ in range(60):
+        value, slope = function(places)
+        below = (value < 0) == rising
+        low, high = np.where(below, places, low), np.where(below, high, places)
+        with np.errstate(all="ignore"):
+            step = places - value / slope
+        new = np.where((step >= low - 1e-10) & (step <= high + 1e-10), np.clip(step, low, high), (low + high) / 2)
+        moved, places = np.abs(new - places), new
+        if not (moved > size).any():
             break
-        middle = a + np.clip(part, tolerance / np.maximum(width, 1e-300), 1 - tolerance / np.maximum(width, 1e-300)) * (
-            b - a
-        )
-        f_middle = function(middle)
-        same = np.sign(f_middle) == np.sign(fa)
-        c, fc = np.where(same, a, b), np.where(same, fa, fb)
-        b, fb = np.where(same, b, a), np.where(same, fb, fa)
-        a, fa = middle, f_middle
-        best = np.where(np.abs(fa) < np.abs(fb), a, b)
-        part = _next_part(a, b, c, fa, fb, fc)
-    return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))
-
-
-def _next_part(a: Array, b: Array, c: Array, fa: Array, fb: Array, fc: Array) -> Array:
-    """Return how far from a toward b to step: inverse quadratic where the three points allow it, else one half."""
-    with np.errstate(all="ignore"):
-        xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
-        quadratic = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
-        step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    return np.where(quadratic & np.isfinite(step), np.clip(step, 0.0, 1.0), 0.5)
-
-
-_TRIALS = 20
-_CLOSE = 1e-9
-_FAR = 1000.0
-_STEEP = 30.0
-
-
-def rising_root(function: Callable[[float], float], start: float) -> float | None:
-    """Return an argument at which the function is zero within 1e-9, or None; start: positive.
-
-    It was found to be so there, or all but so at the end of a secant whose remainder, a product of both ends, is less.
-    It is sought from a thousandth of the start to a thousand times it. The function rises, by about 1 over `start`; it
-    may be infinite, and jump: where it rises so steeply between both ends that it seems to, there is no zero.
-    """
-    low, high, step = 0.0, math.inf, 1.0
-    f_low, f_high = -math.inf, math.inf
-    x, f = before, f_before = start, function(start)
-    for _ in range(_TRIALS):
-        if abs(f) <= _CLOSE:
-            return x
-        if abs(f * f_before) <= _CLOSE and f != f_before:
-            return x - f * (x - before) / (f - f_before)
-        low, f_low, high, f_high = (x, f, high, f_high) if f < 0 else (low, f_low, x, f)
-        if not low or math.isinf(high):
-            step *= 2.0 if x != before and abs(f) > abs(f_before) / 2 else 1.0
-            following = max(x - step * start * min(f, 1.0), x / 4)
-        else:
-            rise = f - f_before
-            following = x - f * (x - before) / rise if rise and math.isfinite(rise) else low
-            if not low < following < high:
-                following = (low + high) / 2
-        jumps = low > 0 and math.isfinite(f_high - f_low) and f_high - f_low > _STEEP * (high / low - 1)
-        if jumps or not start / _FAR < following < start * _FAR:
-            break
-        before, f_before = x, f
-        x, f = following, function(following)
-    return None
+    return np.asarray(places)

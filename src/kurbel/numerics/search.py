@@ -11,7 +11,6 @@ from itertools import product
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices
-from kurbel.numerics.roots import bracketed_roots
 
 _PLACES, _MOST = 65, 1000
 """Places of an interval that are sampled first, and at most."""
@@ -49,7 +48,7 @@ def roots(function: Function) -> tuple[Array, Flags]:
     passed = np.flatnonzero(y[:-1] * y[1:] < 0)
     if not len(passed):
         return at_samples, np.zeros(len(at_samples), dtype=bool)
-    found = bracketed_roots(
+    found = _closed(
         lambda places: np.nan_to_num(function(places[:, None])), x[passed], x[passed + 1], y[passed], y[passed + 1]
     )
     left = function(found[:, None])
@@ -57,6 +56,29 @@ def roots(function: Function) -> tuple[Array, Flags]:
     every, jumps = np.append(at_samples, found[there]), np.abs(left[there]) > _LEFT * spread
     order = np.argsort(every)
     return every[order], np.append(np.zeros(len(at_samples), dtype=bool), jumps)[order]
+
+
+def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
+    """Return a root in each bracket (n,), by inverse quadratic steps where they are safe, else halves; Chandrupatla 1997."""
+    a, b, fa, fb = high, low, f_high, f_low
+    part = np.full_like(a, 0.5)
+    for _ in range(100):
+        width = np.maximum(np.abs(b - a), 1e-300)
+        least = np.minimum(np.spacing(np.maximum(np.abs(a), np.abs(b))) / width, 0.5)
+        if ((width * least >= width / 2) | (fa == 0) | (fb == 0)).all():
+            break
+        middle = a + np.clip(part, least, 1 - least) * (b - a)
+        f_middle = function(middle)
+        same = np.sign(f_middle) == np.sign(fa)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = middle, f_middle
+        with np.errstate(all="ignore"):
+            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
+        part = np.where(safe, np.clip(step, 0.0, 1.0), 0.5)
+    return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))
 
 
 def _sampled(function: Function) -> tuple[Array, Array]:

@@ -10,8 +10,7 @@ from kurbel.render.html import page
 from kurbel.render.markup import Html, document, listed, written
 from kurbel.render.svg import css, svg
 from kurbel.render.text_tables import TextTable, texts
-from kurbel.report.document import Document, Grid, Item, Pair
-from kurbel.report.picture import Picture
+from kurbel.report.picture import Document, Grid, Item, Pair, Picture
 from kurbel.report.tables import Provenance, Report
 
 _STYLE = (

@@ -2,7 +2,9 @@
 
 import platform
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -93,9 +95,8 @@ _NOTES = (
     "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
     "zero, relative to the largest value. Of model and data it is the largest difference over the cycle, relative to "
     "the largest value. ulp: the same in units of the last place, below 1e-12.",
-    "Ratio: median time over that of kurbel's own method. Evaluations: crank angles at which the motion was computed. "
-    "Stages: functions of the solver that run.",
-    "Points: divisions of a turn, points on each piece between corners or steps of the search there, or a tolerance.",
+    "Ratio: median time over that of kurbel's own method. Points: divisions of a turn, or points on each piece between "
+    "corners, which the methods between corners are given.",
 )
 
 
@@ -108,44 +109,29 @@ def accuracy_report(
     """
     scenes = [(machine, 0)] if machine else [(loads(one.text), one.turns) for one in _SCENES if one.quick or not quick]
     parts: list[Part] = []
-    beaten: list[str] = []
+    notes = [*_NOTES]
     with np.errstate(all="ignore"):
         for one, turns in scenes:
             degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
             rows, lacking = trials.examined(one, degrees, quick)
-            parts.append(_part(one, rows, lacking, uncertain, quick))
-            beaten += [
+            tables = (
+                _table(NUMERICAL, f"{one.name}: numerical error", rows, 4),
+                _table("model_error", f"{one.name}: error of the model", [*trials.model_errors(one)], 2),
+                _table("data_error", f"{one.name}: error of the data", [*trials.data_errors(one), *uncertain], 2),
+            )
+            left_out = tuple(LeftOut(*what) for what in lacking)
+            parts.append(Part(one.name, (), left_out=left_out, place_tables=tuple(t for t in tables if t.names)))
+            notes += [
                 f"{one.name}, {row.quantity}: {row.method} ({row.points}) is more exact and faster than kurbel's own"
                 for row in trials.better(rows)
             ]
-    none = "No method listed is both more exact and faster than kurbel's own, beyond noise (20 % of time, 16 u)."
-    edge = beaten or [none for part in parts[:1] if any(table.id == NUMERICAL for table in part.place_tables)]
-    name = machine.name if machine else "built-in scenes"
+    if len(notes) == len(_NOTES) and any(table.id == NUMERICAL for table in parts[0].place_tables):
+        notes.append("No method listed is both more exact and faster than kurbel's own, beyond noise (20 %, 16 u).")
     head = (environment(), "Times are of this machine and this run; compare them only with one another.")
-    title, named = f"{name}. Accuracy and run time", machine.name if machine else None
-    report = Report(title, "accuracy", named, "scenes", tuple(parts), notes=(*_NOTES, *edge), head=head)
+    title = f"{machine.name if machine else 'built-in scenes'}. Accuracy and run time"
+    named = machine.name if machine else None
+    report = Report(title, "accuracy", named, "scenes", tuple(parts), notes=tuple(notes), head=head)
     return report._replace(provenance=provenance(machine)) if machine else report
-
-
-def _part(
-    machine: Machine,
-    rows: Sequence[trials.Row],
-    lacking: Sequence[trials.Lacking],
-    uncertain: Sequence[trials.Difference],
-    quick: bool,
-) -> Part:
-    """Return the tables of one scene."""
-    model, data = tuple(trials.model_errors(machine)), (*trials.data_errors(machine), *uncertain)
-    heavy = any(one.masses or one.pistons for one in machine.cylinders)
-    saved = tuple(trials.savings(machine, _everything, quick)) if heavy else ()
-    tables = (
-        _table(NUMERICAL, f"{machine.name}: numerical error", rows, 4),
-        _table("model_error", f"{machine.name}: error of the model", model, 2),
-        _table("data_error", f"{machine.name}: error of the data", data, 2),
-        _table("leaving_out", f"{machine.name}: what leaving out saves", saved, 1),
-    )
-    left_out = tuple(LeftOut(*one) for one in lacking)
-    return Part(machine.name, (), left_out=left_out, place_tables=tuple(table for table in tables if table.names))
 
 
 def _table(id: str, title: str, found: Sequence[NamedTuple], heads: int) -> PlaceTable:
@@ -162,30 +148,19 @@ def _column(id: str, values: Sequence[Value]) -> Column:
     return Column(id, id, id, "", tuple(values), alone=2)
 
 
-def _everything(machine: Machine) -> None:
-    """Compute all that `kurbel forces` prints: every column at 37 angles, and every key value."""
-    report_of(Case(machine), Frame("forces", tuple(np.arange(0.0, 361.0, 10.0)), None, "si"))
-
-
 def environment() -> str:
     """Return versions and processor, which the times belong to."""
     versions = []
     for package in ("kurbel", "numpy", "mpmath"):
-        try:
+        with suppress(PackageNotFoundError):  # such as kurbel where it is run from its source
             versions.append(f"{package} {version(package)}")
-        except PackageNotFoundError:
-            versions.append(f"{package} not installed")
     versions.insert(1, f"Python {platform.python_version()}")
-    return f"{', '.join(versions)}; {platform.system()} {platform.machine()}, {_processor()}"
-
-
-def _processor() -> str:
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
-            names = [line.partition(":")[2].strip() for line in file if line.startswith("model name")]
-    except OSError:
-        names = []
-    return " ".join((names[0] if names else platform.processor() or "unknown processor").split())
+    processor = platform.processor() or "unknown processor"
+    if Path("/proc/cpuinfo").exists():
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+        processor = next((line.partition(":")[2] for line in lines if line.startswith("model name")), processor)
+    system = f"{platform.system()} {platform.machine()}"
+    return f"{', '.join(versions)}; {system}, {' '.join(processor.split())}"
 
 
 # stiff and extreme cases
@@ -227,13 +202,8 @@ def answer(machine: Machine, asked: str) -> float | None:
     return None if value is None else float(value)
 
 
-_TABLE = "numerical_error"
 _LEAST = 1e-17
 """Errors below this, zero too, are drawn here."""
-_ROUNDING = 2.0**-53
-
-Dots = dict[str, dict[str, list[list[tuple[float, float]]]]]
-"""Quantity -> method -> errors and times in ms, a list for each scene."""
 
 
 def accuracy_picture(report: Report) -> Picture:
@@ -241,51 +211,41 @@ def accuracy_picture(report: Report) -> Picture:
 
     Raises UsageError where nothing was compared.
     """
-    found = dots(report)
+    # quantity -> method -> errors and times in ms, with a gap after each scene
+    found: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    for table in (table for part in report.parts for table in part.place_tables if table.id == NUMERICAL):
+        columns, here = {column.id: column.values for column in table.columns}, set()
+        for (quantity, name, _, state), error, time in zip(table.names, columns["error"], columns["median"]):
+            if error is not None and time is not None and state == "ok":
+                method = name.split(",")[0]
+                dots = found.setdefault(quantity, {}).setdefault(method, [])
+                if dots and (quantity, method) not in here:
+                    dots.append((np.nan, np.nan))
+                here.add((quantity, method))
+                dots.append((max(error, _LEAST), time))
     if not found:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
+
     methods = list(dict.fromkeys(method for every in found.values() for method in every))
-    times = [time for of in found.values() for scenes in of.values() for scene in scenes for _, time in scene]
-    span = min(times), max(times)
+    times = [time for every in found.values() for dots in every.values() for _, time in dots]
+    low, high = np.nanmin(times), np.nanmax(times)
+    rounding = Curve(Words(""), np.array([2.0**-53, 2.0**-53]), np.array([low, high]), "faint")
+    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
+    y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)
+    panels = []
+    for quantity, every in found.items():
+        curves = [rounding]
+        for name, dots in every.items():
+            errors, spans = np.array(dots).T
+            curves.append(Curve(Words(name), errors, spans, "dots", methods.index(name)))
+        panels.append(Panel(x, y, tuple(curves), title=quantity))
     return Picture(
         "accuracy",
         "time over error",
         "Time over relative error of each method, lines between its answers for one machine; the error falls to the "
         "right, the thin upright line is the rounding of one float.",
-        tuple(_panel(quantity, scenes, methods, span) for quantity, scenes in found.items()),
+        tuple(panels),
         report.title,
         across=min(4, len(found)),
         legend=tuple((Words(method), number) for number, method in enumerate(methods)),
-    )
-
-
-def dots(report: Report) -> Dots:
-    """Return what is drawn of each quantity; methods without an answer have no dots."""
-    found: Dots = {}
-    for table in (table for part in report.parts for table in part.place_tables if table.id == _TABLE):
-        columns = {column.id: column.values for column in table.columns}
-        scene: dict[tuple[str, str], list[tuple[float, float]]] = {}
-        for (quantity, method, _, state), error, time in zip(table.names, columns["error"], columns["median"]):
-            if error is not None and time is not None and state == "ok":
-                scene.setdefault((quantity, method.split(",")[0]), []).append((max(error, _LEAST), time))
-        for (quantity, method), answers in scene.items():
-            found.setdefault(quantity, {}).setdefault(method, []).append(answers)
-    return found
-
-
-def _panel(
-    quantity: str,
-    found: dict[str, list[list[tuple[float, float]]]],
-    methods: list[str],
-    span: tuple[float, float],
-) -> Panel:
-    curves = []
-    for method, scenes in found.items():
-        # a gap between scenes
-        answers = np.array([one for scene in scenes for one in (*scene, (np.nan, np.nan))])[:-1]
-        curves.append(Curve(Words(method), answers[:, 0], answers[:, 1], "dots", methods.index(method)))
-    rounding = Curve(Words(""), np.array([_ROUNDING, _ROUNDING]), np.array(span), "faint")
-    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
-    return Panel(
-        x, Axis(Words("time"), unit="ms", log=True, low=span[0], high=span[1]), (rounding, *curves), title=quantity
     )

@@ -5,9 +5,9 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
-from kurbel.report.tables import Column, KeyValue, Part, Report, Value
+from kurbel.report.tables import KeyValue, Part, Report, Value
 
-_NUMBERED = re.compile(r"(.*\D)(\d{1,9})")
+_NUMBERED = re.compile(r"(.*\D)(\d{1,9})$")
 Item = TypeVar("Item")
 
 
@@ -19,26 +19,21 @@ def together(names: Sequence[str]) -> str:
     >>> together(["pin of left 1", "pin of right 1", "pin of left 2", "pin of right 2"])
     'pin of left 1, 2, right 1, 2'
     """
-    texts = [_numbered(group) for group in grouped(names, _stem)]
+    texts = []
+    for group in grouped(names, lambda name: _NUMBERED.sub(r"\1", name)):
+        text = group[0]
+        if len(group) > 1:
+            # runs of numbers from the first to the last
+            numbers = [int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))]
+            runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
+            spans = [[number for _, number in run] for _, run in runs]
+            listed = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
+            stem = _NUMBERED.sub(r"\1", text).replace("cylinder ", "cylinders ")
+            text = f"{stem}{', '.join(listed)}"
+        texts.append(text)
     head, of, _ = texts[0].rpartition(" of ")
     shared = head + of if all(text.startswith(head + of) for text in texts) else ""
     return shared + ", ".join(text.removeprefix(shared) for text in texts)
-
-
-def _stem(name: str) -> str:
-    found = _NUMBERED.fullmatch(name)
-    return found.group(1) if found else name
-
-
-def _numbered(names: Sequence[str]) -> str:
-    """Return names of one stem with their numbers, runs of them from the first to the last."""
-    if len(names) == 1:
-        return names[0]
-    numbers = [int(found.group(2)) for name in names if (found := _NUMBERED.fullmatch(name))]
-    runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
-    spans = [[number for _, number in run] for _, run in runs]
-    texts = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
-    return f"{_stem(names[0]).replace('cylinder ', 'cylinders ')}{', '.join(texts)}"
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
@@ -52,12 +47,22 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 def shown_once(report: Report) -> Report:
     """Return the report with its equal parts as one; its title names them if no other part is left.
 
-    Pins and bearings are equal if their key values are, at whatever crank angles they are loaded.
+    Pins and bearings are equal if their key values are, at whatever crank angles they are loaded; cylinders, if their
+    tables are, too, over their own crank angle.
     """
     if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
         return report
     bearings = report.group == "bearings"
-    groups = grouped(report.parts, _bearing if bearings else _cylinder)
+
+    def content(part: Part) -> Hashable:
+        if bearings:
+            return equal_loads(str(part.name), part.of, part.key_values), tuple(part.left_out)
+        columns = [part.columns, *(one.columns for one in part.place_tables)]
+        curves = [(one.id, one.unit, _nine_digits(one.values)) for some in columns for one in some]
+        titles = [(one.title, one.names) for one in part.place_tables]
+        return *curves, _figures(part.key_values), tuple(part.left_out), *titles
+
+    groups = grouped(report.parts, content)
     if len(groups) == len(report.parts):
         return report
     parts = []
@@ -65,9 +70,8 @@ def shown_once(report: Report) -> Report:
         warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
         parts.append(group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings))
     title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
-    return report._replace(
-        parts=tuple(parts), title=title, notes=(*report.notes, _SHIFTED) if bearings else report.notes
-    )
+    notes = (*report.notes, _SHIFTED) if bearings else report.notes
+    return report._replace(parts=tuple(parts), title=title, notes=notes)
 
 
 _SHIFTED = (
@@ -75,23 +79,9 @@ _SHIFTED = (
 )
 
 
-def _bearing(part: Part) -> Hashable:
-    return equal_loads(str(part.name), part.of, part.key_values), tuple(part.left_out)
-
-
 def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
     """Return what equally loaded bearings of one kind have in common; of: the cylinder that a pin belongs to."""
     return name.removesuffix(of).rstrip("0123456789"), _figures(key_values)
-
-
-def _cylinder(part: Part) -> Hashable:
-    """Return what equal cylinders have in common, their tables over their own crank angle, too."""
-    tables = [(one.title, one.names, *map(_curve, one.columns)) for one in part.place_tables]
-    return *map(_curve, part.columns), _figures(part.key_values), tuple(part.left_out), *tables
-
-
-def _curve(column: Column) -> Hashable:
-    return column.id, column.unit, _nine_digits(column.values)
 
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:

@@ -1,14 +1,15 @@
-"""What a picture is made of, whatever draws it: curves, shades and marks on panels with two axes.
+"""What pictures and long reports are made of, whatever draws them: curves, shades and marks on panels with two axes.
 
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Union
 
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.report.tables import Provenance, Report
 
 
 class Words(NamedTuple):
@@ -147,3 +148,43 @@ class Picture(NamedTuple):
     def heading(self) -> str:
         """The line above the picture."""
         return ". ".join(filter(None, (self.machine, f"{self.title}: {self.of}" if self.of else self.title)))
+
+
+# a long report
+
+
+class Grid(NamedTuple):
+    """A table of texts; numbers, units: which of its columns are that; verdicts: which rows are good, and which bad."""
+
+    title: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: tuple[int, ...] = ()
+    units: tuple[int, ...] = ()
+    verdicts: tuple[str, ...] = ()
+
+
+class Pair(NamedTuple):
+    """A picture of each of two machines, None of one that does not have it."""
+
+    left: Picture | None
+    right: Picture | None
+
+
+Item = Union[str, Grid, Report, Picture, Pair]
+
+
+class Section(NamedTuple):
+    """A section: its word in links, its title, and its items."""
+
+    id: str
+    title: str
+    items: tuple[Item, ...]
+
+
+class Document(NamedTuple):
+    """A report on one machine, or on several next to one another."""
+
+    title: str
+    provenance: tuple[Provenance, ...]
+    sections: tuple[Section, ...]

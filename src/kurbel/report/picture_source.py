@@ -91,15 +91,16 @@ class Source:
         if self.quantities:
             self._start = results.at(np.zeros(1), np.full(1, 1e-3))
 
-    def having(self, ids: Iterable[str]) -> tuple[str, ...]:
+    def having(self, *ids: str) -> tuple[str, ...]:
         """Return those of these columns that there are."""
         return tuple(id for id in ids if id in self.quantities and self._start[id] is not None)
 
-    def values(self, ids: Sequence[str], degrees: Array, within: Array) -> Array:
+    def values(self, ids: Sequence[str], degrees: Any, within: Array | None = None) -> Array:
         """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
-        state = self.results.at(degrees, within)
+        degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
+        state = self.results.at(degrees, degrees if within is None else within)
         found = [degrees if id == PHI else np.broadcast_to(state[id], degrees.shape) for id in ids]
-        return np.stack([np.asarray(one, dtype=float) for one in found])
+        return np.array(found, dtype=float)
 
     def samples(
         self, ids: Sequence[str], also: Iterable[float] = (), values: Values | None = None, breaks: Array | None = None
@@ -126,12 +127,17 @@ class Source:
         quantity = self.quantities.get(id) or self.key_values[id]
         return Words(quantity.symbol, quantity.ascii_symbol)
 
-    def extremes(self, id: str) -> list[tuple[str, Extreme]]:
-        """Return the extremes of a column with the ids of these key values; none of a level line."""
-        named = [name for name in (f"{id}_max", f"{id}_min") if name in self.key_values]
-        found = [(name, self.results.rows.key_values[name].of(self.results)) for name in named]
-        found = [(name, extreme) for name, extreme in found if isinstance(extreme, Extreme)]
-        return found if len({extreme.value for _, extreme in found}) == len(found) else []
+    def marks(self, id: str, place: Callable[[float], Any]) -> tuple[Mark, ...]:
+        """Return the extremes of a column, none of a level line; place: takes the crank angle, returns x, or x and y.
+
+        Without y it is the value.
+        """
+        rows = self.results.rows.key_values
+        named = {name: rows[name].of(self.results) for name in (f"{id}_max", f"{id}_min") if name in self.key_values}
+        found = {name: one for name, one in named.items() if isinstance(one, Extreme)}
+        if len({one.value for one in found.values()}) < len(found):
+            return ()
+        return tuple(self.mark(name, one, *np.atleast_1d(place(one.degrees)).tolist()) for name, one in found.items())
 
     def mark(self, id: str, extreme: Extreme, x: float, y: float | None = None) -> Mark:
         """Return an extreme, which is the key value of this id, at a place; y: its value, if none is given."""
@@ -144,18 +150,23 @@ class Source:
         x, *lines = samples.values
         curves = [samples.curve(self.words(id), x, line) for id, line in zip(ids, lines)]
         curves += [level(x)] if zero else []
-        marks = []
-        for name, extreme in (one for id in ids for one in self.extremes(id)):
-            at = np.array([extreme.degrees])
-            marks.append(self.mark(name, extreme, float(self.values((over,), at, at)[0, 0])))
+        marks = [mark for id in ids for mark in self.marks(id, lambda angle: self.values((over,), angle)[0])]
         every = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
-        y = self.axis(ids[0])._replace(name=every)
-        return Panel(self.axis(over), y, tuple(curves), marks=tuple(marks), title="" if np.any(lines) else ZERO)
+        title = "" if np.any(lines) else ZERO
+        return Panel(
+            self.axis(over), self.axis(ids[0])._replace(name=every), tuple(curves), (), tuple(marks), title=title
+        )
 
     def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, as far as there are any."""
-        if self.having((over,)) or over == PHI:
-            yield from (self.panel(ids, over) for group in groups if (ids := self.having(group)))
+        if over == PHI or self.having(over):
+            yield from (self.panel(ids, over) for group in groups if (ids := self.having(*group)))
+
+    def locus(self, ids: Sequence[str], tip: Values, name: Words, marks: tuple[Mark, ...], title: str = "") -> Panel:
+        """Return the path of a point (2, n), made from these columns, with one scale for both axes."""
+        samples = self.samples(ids, values=tip)
+        curve, axis = samples.curve(name, *samples.values), Axis(Words("F"), "force")
+        return Panel(axis, axis, (curve,), marks=marks, equal=True, title=title)
 
 
 def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
@@ -168,34 +179,27 @@ def in_units(panel: Panel, system: str) -> Panel:
     across, up = panel.places
     if panel.equal:
         across = up = [*across, *up]
-    x_unit, y_unit = _unit(panel.x.kind, system, across), _unit(panel.y.kind, system, up)
     works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
-    energy = _unit("energy", system, works)
+    kinds = panel.x.kind, panel.y.kind, "energy"
+    units = []
+    for kind, values in zip(kinds, (across, up, works)):
+        largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
+        units.append(shown_unit(kind, system, largest) if kind else "")
 
-    def run(values: Any) -> Any:
-        return convert(values, panel.x.kind, x_unit)
+    def to(axis: int, values: Any) -> Any:
+        return convert(values, kinds[axis], units[axis])
 
-    def rise(values: Any) -> Any:
-        return convert(values, panel.y.kind, y_unit)
+    def shown(figure: Figure, axis: int, unit: str) -> Figure:
+        return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
-    def shown(figure: Figure, kind: str, unit: str, mark: str = "") -> Figure:
-        value = None if figure.value is None else float(convert(figure.value, kind, unit))
-        return figure._replace(value=value, unit=f"{unit} {mark}".rstrip())
-
-    curves = tuple(one._replace(x=run(one.x), y=rise(one.y)) for one in panel.curves)
-    shades = tuple(
-        Shade(run(x), rise(low), rise(high), gain, figure and shown(figure, "energy", energy))
-        for x, low, high, gain, figure in panel.shades
+    y_unit = f"{units[1]} {panel.y.mark}".rstrip()
+    return panel._replace(
+        x=panel.x._replace(unit=units[0]),
+        y=panel.y._replace(unit=y_unit),
+        curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
+        shades=tuple(
+            Shade(to(0, x), to(1, low), to(1, high), gain, figure and shown(figure, 2, units[2]))
+            for x, low, high, gain, figure in panel.shades
+        ),
+        marks=tuple(Mark(float(to(0, x)), float(to(1, y)), shown(of, 1, y_unit)) for x, y, of in panel.marks),
     )
-    marks = tuple(
-        Mark(float(run(x)), float(rise(y)), shown(figure, panel.y.kind, y_unit, panel.y.mark))
-        for x, y, figure in panel.marks
-    )
-    axes = panel.x._replace(unit=x_unit), panel.y._replace(unit=f"{y_unit} {panel.y.mark}".rstrip())
-    return Panel(*axes, curves, shades, marks, panel.equal, panel.plain, panel.title)
-
-
-def _unit(kind: str, system: str, values: Sequence[Array]) -> str:
-    """Return the unit in which values in SI of one kind are shown together."""
-    largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
-    return shown_unit(kind, system, largest) if kind else ""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -10,21 +10,19 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.reading import shown
-from kurbel.errors import NoSolutionError, UsageError
+from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme
 from kurbel.report.alike import together
 from kurbel.report.crank import equal_bearings
+from kurbel.report.frame import subjects_of
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
-from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, in_units, level
+from kurbel.report.picture_source import PHI, PictureOptions, Source, in_units, level
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
-from kurbel.solver.gas import PistonGas
 from kurbel.solver.stress import PARTS
 
-_REVERSAL = Words("force reversal")
 _CROSSING = 1e-9
 """Of the largest distance between two lines: where they cross, rounding alone is between them."""
 _MOST_NUMBERED = 24
@@ -34,8 +32,6 @@ _HIGHEST = 12
 _MODES = 4
 _LONGEST_NAME = 14
 _FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
-_PARTS = "left: gas, weight, friction; right: inertia"
-_SENSES = "left: circles with the rotation, right: against it"
 
 # one cylinder
 
@@ -43,33 +39,33 @@ _SENSES = "left: circles with the rotation, right: against it"
 def piston_force(source: Source) -> Iterator[Panel]:
     """Force P_0 of gas, weight and resistance against the line of the inertia forces over the crank angle; what is
     between them is the piston force P, shown alone below. It changes sign where both lines cross."""
-    if not source.having(("P",)):
+    if not source.having("P"):
         return
+
+    def marked(heights: Sequence[float]) -> list[Mark]:
+        figures = (Figure(Words("force reversal"), at_deg=angle) for angle in reversals)
+        return [Mark(*one) for one in zip(reversals, heights, figures)]
+
     reversals = source.results.phi_reversal or ()
-    ids = source.having(("P_start", "P_inertia"))
+    ids = source.having("P_start", "P_inertia")
     if len(ids) == 2:
-        panel = _remaining_force(source, source.samples((PHI, *ids), reversals), PHI)
-        at = np.array(reversals)
-        heights = -source.values(ids, at, at)[1]
-        yield panel._replace(marks=tuple(map(_reversal, reversals, heights.tolist())))
+        panel = _remaining_force(source, ids, PHI, also=reversals)
+        yield panel._replace(marks=tuple(marked((-source.values(ids, reversals)[1]).tolist())))
     panel = source.panel(("P",), zero=True)
-    yield panel._replace(marks=(*panel.marks, *(_reversal(angle, 0.0) for angle in reversals)))
+    yield panel._replace(marks=(*panel.marks, *marked([0.0] * len(reversals))))
 
 
-def _reversal(angle: float, height: float) -> Mark:
-    return Mark(angle, height, Figure(_REVERSAL, at_deg=angle))
-
-
-def _remaining_force(source: Source, samples: Sampled, over: str) -> Panel:
+def _remaining_force(source: Source, ids: Sequence[str], over: str, **how: Any) -> Panel:
     """Return a panel of a force and the inertia line, or the line of no force, with what is between them shaded."""
+    samples = source.samples((over, *ids), **how)
     x, force, *inertia = samples.values
     base = -inertia[0] if inertia else np.zeros_like(x)
     curves = [samples.curve(Words("P_0" if inertia else "P"), x, force)]
     curves += [samples.curve(Words("−P_b"), x, base)] if inertia else []
-    return Panel(source.axis(over), source.axis("P"), (*curves, level(x)), tuple(between(x, base, force)))
+    return Panel(source.axis(over), source.axis("P"), (*curves, level(x)), tuple(_between(x, base, force)))
 
 
-def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
+def _between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
     """Yield what is between two lines, cut where they cross; where they cross all over, what is above and below."""
     apart = line - base
     above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
@@ -88,84 +84,81 @@ def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
 def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
     """The same over the displacement of the piston, stroke by stroke (R Abb. 1055)."""
     results, drive = source.results, source.results.drive
-    if len(source.having(("P", "x"))) < 2 or drive.mechanism.turns:
+    if len(source.having("P", "x")) < 2 or drive.mechanism.turns:
         return
-    parts = source.having(("P_start", "P_inertia"))
-    ids = ("x", *(parts if len(parts) == 2 else ("P",)))
+    parts = source.having("P_start", "P_inertia")
+    ids = parts if len(parts) == 2 else ("P",)
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
     bends = [angle + turn for angle in (*results.breaks, *(results.phi_reversal or ())) for turn in (0.0, cycle)]
 
     def values(degrees: Array, within: Array) -> Array:
         turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
-        return source.values(ids, degrees - turned, within - turned)
+        return source.values(("x", *ids), degrees - turned, within - turned)
 
     ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
     for start, end in pairwise((*ends, ends[0] + cycle)):
         breaks = np.array(sorted({start, *(angle for angle in bends if start < angle < end), end}))
-        panel = _remaining_force(source, source.samples(ids, values=values, breaks=breaks), "x")
+        panel = _remaining_force(source, ids, "x", values=values, breaks=breaks)
         name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
         yield panel._replace(title=f"{name} {start:.4g}–{end:.4g}°")
 
 
-def cards(source: Source) -> Iterator[Panel]:
+def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
     """Pressure at both ends of the pistons over the displacement from the inner dead centre (R Abb. 1051)."""
-    for number, gas in enumerate(source.results.drive.gas):
-        panel = _card(source, gas, over_volume=False)
-        if number == 0 and (highest := source.results.p_max):
-            at = float(source.results.at(np.array([highest.degrees])).way[0])
-            panel = panel._replace(marks=(source.mark("p_max", highest, at),))
-        yield panel
+    results = source.results
+    for number, gas in enumerate(results.drive.gas):
+        ends = [(id, end) for id, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
+
+        def values(degrees: Array, within: Array) -> Array:
+            state = results.at(degrees, within)
+            pressures = (state.pressure(end) + gas.base for _, end in ends)  # noqa: B023 (used before the next one)
+            return np.stack([state.way, *pressures])
+
+        samples = source.samples(("x", *(id for id, _ in ends)), values=values)
+        x, *pressures = samples.values
+        places, curves = list[Array](), list[Curve]()
+        for (id, _), pressure in zip(ends, pressures):
+            place = x
+            if over_volume:
+                piston, head = gas.piston, id == "p_head"
+                chamber = piston.indicator and (piston.indicator.head_end if head else piston.indicator.crank_end)
+                clearance = getattr(chamber, "clearance", None) or 0.0
+                swept = (x if head else gas.stroke - x) + clearance * gas.stroke
+                place = np.asarray(swept * (piston.head_area if head else piston.crank_area))
+            places.append(place)
+            curves.append(samples.curve(source.words(id), place, pressure))
+        marks: tuple[Mark, ...] = ()
+        if number == 0 and not over_volume and (highest := results.p_max):
+            marks = (source.mark("p_max", highest, float(results.at(np.array([highest.degrees])).way[0])),)
+        across = Axis(Words("V"), "volume") if over_volume else source.axis("x")
+        up = Axis(Words("p"), "pressure", mark="abs" if gas.absolute else "")
+        title = gas.piston.name if len(results.drive.gas) > 1 else ""
+        curves.append(level(np.concatenate(places), gas.base))
+        yield Panel(across, up, tuple(curves), marks=marks, title=title)
 
 
 def cards_over_volume(source: Source) -> Iterator[Panel]:
     """Pressure over the volume swept in each chamber, with the clearance where that is known."""
-    return (_card(source, gas, over_volume=True) for gas in source.results.drive.gas)
-
-
-def _card(source: Source, gas: PistonGas, over_volume: bool) -> Panel:
-    """Return the pressures of both ends of a piston over its displacement, or over the volume of each chamber."""
-    ends = [(id, end) for id, end in (("p_head", gas.head), ("p_crank", gas.crank)) if end]
-
-    def values(degrees: Array, within: Array) -> Array:
-        state = source.results.at(degrees, within)
-        return np.stack([state.way, *(state.pressure(end) + gas.base for _, end in ends)])
-
-    samples = source.samples(("x", *(id for id, _ in ends)), values=values)
-    way, *pressures = samples.values
-    places = [_volume(gas, id, way) if over_volume else way for id, _ in ends]
-    curves = [samples.curve(source.words(id), x, p) for (id, _), x, p in zip(ends, places, pressures)]
-    x = Axis(Words("V"), "volume") if over_volume else source.axis("x")
-    y = Axis(Words("p"), "pressure", mark="abs" if gas.absolute else "")
-    title = gas.piston.name if len(source.results.drive.gas) > 1 else ""
-    return Panel(x, y, (*curves, level(np.concatenate(places), gas.base)), title=title)
-
-
-def _volume(gas: PistonGas, end: str, way: Array) -> Array:
-    """Return the volume in m³ of a chamber: what the piston has swept, and the clearance where it is known."""
-    indicator, head = gas.piston.indicator, end == "p_head"
-    chamber = indicator and (indicator.head_end if head else indicator.crank_end)
-    area = gas.piston.head_area if head else gas.piston.crank_area
-    clearance = getattr(chamber, "clearance", None) or 0.0
-    return np.asarray(area * ((way if head else gas.stroke - way) + clearance * gas.stroke))
+    return cards(source, over_volume=True)
 
 
 def forces(source: Source) -> Iterator[Panel]:
     """Forces in the rod, on the guide and at the crank pin over the crank angle (R Abb. 1061, 1062)."""
     offered = [one.quantity.id for one in source.results.drive.mechanism.OFFERS if one.quantity.commands == ("forces",)]
-    found = source.having(("S", "N", "D", "T", "M_out", *offered))
+    found = source.having("S", "N", "D", "T", "M_out", *offered)
     for kind in dict.fromkeys(source.quantities[id].kind for id in found):
         yield source.panel([id for id in found if source.quantities[id].kind == kind], zero=True)
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:
     """Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063)."""
-    if not source.having(("T",)):
+    if not source.having("T"):
         return
     (force,) = source.samples(("T",)).values
     size = float(np.abs(force).max()) or 1.0
     base = max(0.6 * size, 0.25 * size - float(force.min()))
 
-    def tip(degrees: Array, within: Array) -> Array:
+    def tip(degrees: Any, within: Array | None = None) -> Array:
         place = (base + source.values(("T",), degrees, within)[0]) * np.exp(1j * np.radians(degrees))
         return np.stack([place.real, place.imag])
 
@@ -176,15 +169,10 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     for angle in range(0, 360, 90):
         spoke = np.array([base, 1.04 * (base + size)]) * np.exp(1j * np.radians(angle))
         rings.append((Words(f"φ = {angle}°", f"phi = {angle}"), spoke))
-    samples = source.samples(("T", "T"), values=tip)
-    curve = samples.curve(source.words("T"), *samples.values)
     faint = [Curve(name, places.real, places.imag, "faint") for name, places in rings]
-    marks = []
-    for id, extreme in source.extremes("T"):
-        at = np.array([extreme.degrees])
-        marks.append(source.mark(id, extreme, *tip(at, at)[:, 0].tolist()))
-    axis = Axis(Words(""), "force")
-    yield Panel(axis, axis, (curve, *faint), marks=tuple(marks), equal=True, plain=True)
+    marks = source.marks("T", lambda angle: tip(angle)[:, 0])
+    panel, axis = source.locus(("T", "T"), tip, source.words("T"), marks), Axis(Words(""), "force")
+    yield panel._replace(x=axis, y=axis, curves=(*panel.curves, *faint), plain=True)
 
 
 def motion(source: Source) -> Iterator[Panel]:
@@ -204,39 +192,31 @@ def effort(source: Source) -> Iterator[Panel]:
     """Turning effort of the whole machine and the resistance, its lobes numbered with their work; below them the excess
     work and the speed (R Abb. 1064 to 1067)."""
     results = source.results
-    at_crank = bool(source.having(("T",)))
-    id, radius = ("T", results.crank) if at_crank else ("M", 1.0)
+    id, radius = ("T", results.crank) if source.having("T") else ("M", 1.0)
     samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
     x, line, load = samples.values
-    base = load / radius
     level_load = results.machine.load is None or results.machine.load.diagram is None
-    resistance = samples.curve(Words("W" if at_crank else "M_m" if level_load else "M_W"), x, base)
+    resistance = samples.curve(Words("W" if id == "T" else "M_m" if level_load else "M_W"), x, load / radius)
     curves = samples.curve(source.words(id), x, line), resistance._replace(kind="faint" if level_load else "line")
-    marks = tuple(source.mark(name, extreme, extreme.degrees) for name, extreme in source.extremes(id))
-    shades = tuple(_numbered(source, list(between(x, base, line))))
-    yield Panel(source.axis(PHI), source.axis(id), curves, shades, marks)
-    for id, mean, height in (
-        ("E", "", 0.0),
-        ("omega", "omega_mean", results.omega_mean),
-        ("M_coupling", "M_mean", results.M_mean),
-    ):
-        if source.having((id,)):
-            panel = source.panel((id,))
-            line_ = (level(panel.curves[0].x, height, source.words(mean)),) if mean else ()
-            yield panel._replace(curves=(*panel.curves, *line_))
+    shades, lobes = list(_between(x, load / radius, line)), results.lobes
+    if 0 < len(lobes) <= _MOST_NUMBERED:
+        # of a lobe that the end of the cycle cuts, the wider part has its number and work
+        widest: dict[int, int] = {}
+        for place, shade in enumerate(shades):
+            owner = int(np.searchsorted(results.phi_crossing, (shade.x[0] + shade.x[-1]) / 2) - 1) % len(lobes)
+            wide = [np.ptp(shades[one].x) for one in (place, widest.get(owner, place))]
+            widest[owner] = place if wide[0] >= wide[1] else widest[owner]
+        for owner, place in widest.items():
+            shades[place] = shades[place]._replace(figure=Figure(Words(f"A_{owner + 1}"), lobes[owner]))
+    marks = source.marks(id, lambda angle: angle)
+    yield Panel(source.axis(PHI), source.axis(id), curves, tuple(shades), marks)
 
-
-def _numbered(source: Source, shades: list[Shade]) -> Iterator[Shade]:
-    """Yield the lobes with their numbers and works; of one that the end of the cycle cuts, the wider part has them."""
-    crossings, lobes = source.results.phi_crossing, source.results.lobes
-    if not 0 < len(lobes) <= _MOST_NUMBERED:
-        yield from shades
-        return
-    owners = [int(np.searchsorted(crossings, (one.x[0] + one.x[-1]) / 2) - 1) % len(lobes) for one in shades]
-    for shade, owner in zip(shades, owners):
-        widest = max(other.x[-1] - other.x[0] for other, one in zip(shades, owners) if one == owner)
-        work = Figure(Words(f"A_{owner + 1}"), lobes[owner])
-        yield shade._replace(figure=work) if shade.x[-1] - shade.x[0] == widest else shade
+    yield from source.panels(("E",))
+    means = ("omega", "omega_mean", results.omega_mean), ("M_coupling", "M_mean", results.M_mean)
+    for id, mean, height in means:
+        for panel in source.panels((id,)):
+            mean_line = level(panel.curves[0].x, height, source.words(mean))
+            yield panel._replace(curves=(*panel.curves, mean_line))
 
 
 def throw_stress(source: Source) -> Iterator[Panel]:
@@ -247,24 +227,26 @@ def throw_stress(source: Source) -> Iterator[Panel]:
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    orders = source.results.orders[drawn]
-    yield _bars(orders, [np.abs(found.whole.amplitudes)[drawn]], Axis(Words("|M_ν|"), "torque", low=0.0), "all")
+    gas, whole = (np.abs(one.amplitudes)[drawn] for one in (found.gas, found.whole))
+    orders, name = source.results.orders[drawn], Words("|M_ν|")
+    yield _bars(orders, [whole], name, "torque", "all")
     if found.inertia is not None:
-        parts = [np.abs(one.amplitudes)[drawn] for one in (found.gas, found.inertia)]
-        yield _bars(orders, parts, Axis(Words("|M_ν|"), "torque", low=0.0), _PARTS)
+        inertia = np.abs(found.inertia.amplitudes)[drawn]
+        yield _bars(orders, [gas, inertia], name, "torque", "left: gas, weight, friction; right: inertia")
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
     """The circles of each order, with the rotation and against it."""
-    if source.having(("F_x",)):
+    if source.having("F_x"):
         omega, free = source.results.omega, source.results.free
         for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
             if vector is not None and free.orders:
                 sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
-                yield _bars(free.orders, sizes, Axis(Words(name), kind, low=0.0), _SENSES)
+                title = "left: circles with the rotation, right: against it"
+                yield _bars(free.orders, sizes, Words(name), kind, title)
 
 
-def _bars(orders: Sequence[float], sizes: Sequence[Array], y: Axis, title: str) -> Panel:
+def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: str, title: str) -> Panel:
     """Return one or two rows of sizes as bars over orders, next to each other."""
     wide = 0.76 / len(sizes)
     shades = []
@@ -274,7 +256,7 @@ def _bars(orders: Sequence[float], sizes: Sequence[Array], y: Axis, title: str) 
             shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
     x = Axis(Words("n"), low=-0.6, high=len(names) - 0.4, names=names)
-    return Panel(x, y, shades=tuple(shades), title=title)
+    return Panel(x, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
 
 
 def shaft_modes(source: Source) -> Iterator[Panel]:
@@ -300,12 +282,12 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
         (("F_x", "F_y"), "F_free_max", results.F_free_max),
         (("M_x", "M_y"), "M_free_max", results.M_free_max),
     ):
-        if source.having(ids) == ids:
-            at = np.array([largest.degrees if largest else 0.0])
-            marks = _largest(source, id, largest, source.values(ids, at, at)[:, 0])
-            samples = source.samples(ids)
-            curve = samples.curve(source.words(ids[1]), *samples.values)
-            yield Panel(source.axis(ids[0]), source.axis(ids[1]), (curve,), marks=marks, equal=True)
+        if source.having(*ids) == ids:
+            tip = partial(source.values, ids)
+            has_mark = largest and largest.value
+            marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if has_mark else ()
+            panel = source.locus(ids, tip, source.words(ids[1]), marks)
+            yield panel._replace(x=source.axis(ids[0]), y=source.axis(ids[1]))
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
@@ -315,8 +297,8 @@ def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
 
 def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod."""
-    largest = dict(source.extremes("load")).get("load_max")
-    for frame in source.having(_FRAMES):
+    largest = source.results.load_max if "load_max" in source.key_values and source.marks("load", float) else None
+    for frame in source.having(*_FRAMES):
 
         def tip(degrees: Array, within: Array, frame: str = frame) -> Array:
             """Return the load (2, n) along and across the direction from which its angle counts; of 0 there is none."""
@@ -324,19 +306,14 @@ def polar_loads(source: Source) -> Iterator[Panel]:
             angle = np.radians(np.where(load > 0, np.nan_to_num(angle), 0.0))
             return np.stack([load * np.cos(angle), load * np.sin(angle)])
 
-        at = np.full(2, largest.degrees if largest else 0.0)
-        # at a jump the largest load is on one of its sides
-        sides = tip(at, at + np.array([-1e-6, 1e-6]))
-        side = int(np.argmin(np.abs(np.hypot(*sides) - (largest.value if largest else 0.0))))
-        samples, axis = source.samples(("load", "load"), values=tip), Axis(Words("F"), "force")
-        curve = samples.curve(source.words("load"), *samples.values)
-        marks = _largest(source, "load_max", largest, sides[:, side])
-        yield Panel(axis, axis, (curve,), marks=marks, equal=True, title=_FRAMES[frame])
-
-
-def _largest(source: Source, id: str, largest: Extreme | None, tip: Array) -> tuple[Mark, ...]:
-    """Return the mark of the largest vector, whose tip (2,) is given; none where all are 0."""
-    return (source.mark(id, largest, *tip.tolist()),) if largest and largest.value else ()
+        marks: tuple[Mark, ...] = ()
+        if largest and largest.value:
+            at = np.full(2, largest.degrees)
+            # at a jump the largest load is on one of its sides
+            sides = tip(at, at + np.array([-1e-6, 1e-6]))
+            side = int(np.argmin(np.abs(np.hypot(*sides) - largest.value)))
+            marks = (source.mark("load_max", largest, *sides[:, side].tolist()),)
+        yield source.locus(("load", "load"), tip, source.words("load"), marks, _FRAMES[frame])
 
 
 # which pictures there are
@@ -383,6 +360,10 @@ PICTURES = (
 """The pictures, the one that says most of a machine first."""
 
 
+_OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion")
+"""Commands whose pictures are of the whole machine; those of others are drawn of each cylinder or bearing."""
+
+
 def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Iterator[Picture]:
     """Yield these pictures of a machine; without names the first that it has, for `all` every one.
 
@@ -392,54 +373,53 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     name, cylinders = case.machine.name, tuple(one.drive.name for one in case.cylinders)
     if options.cylinder:
         options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
-    if not names:
-        first = next(filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES)), [])
-        if not first:
-            raise UsageError(f"{name}: there is nothing to draw; kurbel check says what is missing")
-        yield from first
-    elif "all" in names:
+    known = {kind.id: kind for kind in PICTURES}
+    if not names or "all" in names:
+        found = False
         for kind in PICTURES:
-            yield from pictures_if_any(case, kind, options)
-    else:
-        known = {kind.id: kind for kind in PICTURES}
-        if unknown := [id for id in names if id not in known]:
-            hint = did_you_mean(unknown[0], tuple(known))
-            raise UsageError(f"no picture '{shown(unknown[0])}'{hint} ({name} has {_having(case, options)})")
-        for id in names:
-            if drawn := _drawn(case, known[id], options):
-                yield from drawn
-            elif options.cylinder in (None, *cylinders):
-                having = _having(case, options)
-                raise UsageError(f"{name} has no picture '{id}': what it shows is left out; it has {having}")
-            else:
-                there = ", ".join(cylinders)
-                raise UsageError(f"--cylinder: there is no '{shown(options.cylinder or '')}'; there are {there}")
+            for one in pictures_if_any(case, kind, options):
+                found = True
+                yield one
+            if found and not names:
+                return
+        if not found and not names:
+            raise UsageError(f"{name}: there is nothing to draw; kurbel check says what is missing")
+        return
 
-
-def _having(case: Case, options: PictureOptions) -> str:
-    return ", ".join(kind.id for kind in pictures_of(case, options))
+    if unknown := [id for id in names if id not in known]:
+        having = ", ".join(kind.id for kind in pictures_of(case, options))
+        hint = did_you_mean(unknown[0], tuple(known))
+        raise UsageError(f"no picture '{shown(unknown[0])}'{hint} ({name} has {having})")
+    for id in names:
+        if drawn := _drawn(case, known[id], options):
+            yield from drawn
+        elif options.cylinder in (None, *cylinders):
+            having = ", ".join(kind.id for kind in pictures_of(case, options))
+            raise UsageError(f"{name} has no picture '{id}': what it shows is left out; it has {having}")
+        else:
+            there = ", ".join(cylinders)
+            raise UsageError(f"--cylinder: there is no '{shown(options.cylinder or '')}'; there are {there}")
 
 
 def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
     """Return one picture of a machine, as often as it has it, or none; raises NoSolutionError as `pictures` does."""
-    with suppress(UsageError):
+    try:
         return _drawn(case, kind, options)
-    return []
+    except UsageError:
+        return []
 
 
-def pictures_of(case: Case, options: PictureOptions) -> tuple[PictureKind, ...]:
+def pictures_of(case: Case, options: PictureOptions) -> list[PictureKind]:
     """Return the pictures that a machine has, those without a solution among them: drawing reports why."""
-    return tuple(kind for kind in PICTURES if _has(case, kind, options))
-
-
-def _has(case: Case, kind: PictureKind, options: PictureOptions) -> bool:
-    with np.errstate(all="ignore"):
-        try:
-            return any(True for source, _ in _sources(case, kind, options) for _ in kind.panels(source))
-        except UsageError:
-            return False
-        except NoSolutionError:
-            return True
+    found = []
+    for kind in PICTURES:
+        with np.errstate(all="ignore"):
+            try:
+                has = any(True for source, _ in _sources(case, kind, options) for _ in kind.panels(source))
+            except KurbelError as error:
+                has = isinstance(error, NoSolutionError)
+        found += [kind] if has else []
+    return found
 
 
 def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:
@@ -456,7 +436,8 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     """Yield what a picture is drawn from, each with the name of its cylinder or bearing; equal ones are drawn once."""
     command = kind.command
     if command in _OF_MACHINE:
-        yield Source(_OF_MACHINE[command](case), options.angles), ""
+        results = case.torsion if command == "torsion" else subjects_of(case, command)[-1].results
+        yield Source(results, options.angles), ""
     elif command == "bearings":
         for bearings in equal_bearings(case):
             yield Source(bearings[0], options.angles), together([one.name for one in bearings])
@@ -467,13 +448,3 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
                 equal[0].refuse_locking()
             names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
             yield Source(equal[0], options.angles), names
-
-
-_OF_MACHINE: dict[str, Callable[[Case], Any]] = {
-    "flywheel": lambda case: case.flywheel,
-    "stress": lambda case: case.stress,
-    "balance": lambda case: case.balance,
-    "harmonics": lambda case: case.harmonics(),
-    "torsion": lambda case: case.torsion,
-}
-"""Command -> the result that its pictures are drawn from; those of other commands are drawn of each cylinder."""

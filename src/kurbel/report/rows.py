@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.declared.units import example, unit_factor
 from kurbel.errors import Nowhere, UnitError, UsageError
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called
 from kurbel.report.frame import Subject
@@ -48,7 +47,8 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
 def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Sequence[float]]:
     """Return a function that finds the angles, up to `end`, at which a condition such as `b = 1/6 b_max` holds.
 
-    Raises UsageError for a text that is no condition, and says what to write instead.
+    They are exact but for rounding; it raises Nowhere if there are none. Raises UsageError for a text that is no
+    condition, and says what to write instead.
     """
     name, equals, value = (part.strip() for part in plain(text).partition("="))
     number = re.match(RATIO, value) or NUMBER.match(value)
@@ -61,41 +61,31 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         raise UsageError(f"--where: {error}") from None
 
     def angles(subject: Subject) -> Sequence[float]:
-        """Return the crank angles in degrees, exact but for rounding. Raises Nowhere if there are none."""
-        column = _column(subject, command, name)
+        own, every = subject.lists.columns(command), every_quantity().columns(command)
+        ids = called(name, own.values()) or called(name, every.values())
+        if not ids:
+            near = did_you_mean(name, tuple(every))
+            raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")
+        if wrong := ambiguity(name, ids):
+            raise UsageError(f"--where: {wrong}")
+        column = own.get(ids[0])  # None for one that only other machines have
         wanted = _value(subject, command, column, factor, of, text) if column else 0.0
         found = column and subject.source.angles_where(column.id, wanted)
         if column is None or found is None:
-            raise UsageError(f"--where: '{name}' is left out for this machine{_why(subject, column)}")
+            why = "; kurbel check says why"
+            if column and column.kind in _OF_SPEED and subject.source.omega is None:
+                why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
+            raise UsageError(f"--where: '{name}' is left out for this machine{why}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
             raise Nowhere(
                 f"{subject.name}: {column.id} is nowhere {show(wanted, column.kind)}: it goes from {low} to {high}"
             )
         # a table over one turn has what a cycle of two has in either
-        every = np.sort(np.mod(found.angles, end))
-        return every[np.diff(every, prepend=-1.0) > _SAME].tolist()  # type: ignore[no-any-return]
+        turned = np.sort(np.mod(found.angles, end))
+        return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()  # type: ignore[no-any-return]
 
     return angles
-
-
-def _column(subject: Subject, command: str, name: str) -> Quantity | None:
-    """Return the column of this id or printed symbol; None for one that only other machines have."""
-    own, every = subject.lists.columns(command), every_quantity().columns(command)
-    ids = called(name, own.values()) or called(name, every.values())
-    if not ids:
-        near = did_you_mean(name, tuple(every))
-        raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")
-    if wrong := ambiguity(name, ids):
-        raise UsageError(f"--where: {wrong}")
-    return own.get(ids[0])
-
-
-def _why(subject: Subject, column: Quantity | None) -> str:
-    """Return why a column is left out, as far as the speed is the reason."""
-    if column is None or column.kind not in _OF_SPEED or subject.source.omega is not None:
-        return "; kurbel check says why"
-    return ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
 
 
 def _value(subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str) -> float:
@@ -107,21 +97,19 @@ def _value(subject: Subject, command: str, column: Quantity, factor: float | Non
     try:
         up, down = unit_factor(of, column.kind)
     except UnitError as error:
-        return (1.0 if factor is None else factor) * _key_value(subject, command, column.kind, of, str(error))
-    if factor is None:
-        raise UsageError(f"--where: {shown(of)} has no number before the unit; write {example(column.kind)}")
-    return factor * up / down
-
-
-def _key_value(subject: Subject, command: str, kind: str, name: str, no_unit: str) -> float:
-    known = {id: one for id, one in subject.lists.key_values(command).items() if one.kind == kind}
-    ids = called(name, known.values())
+        no_unit = error
+    else:
+        if factor is None:
+            raise UsageError(f"--where: {shown(of)} has no number before the unit; write {example(column.kind)}")
+        return factor * up / down
+    known = {id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind}
+    ids = called(of, known.values())
     if not ids:
         single = ", ".join(id for id, one in known.items() if not one.listed)
         raise UsageError(
-            f"--where: '{name}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
+            f"--where: '{of}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
         )
-    value: Any = subject.answer(known[ids[0]])
-    if not isinstance(value, (Extreme, float)):
-        raise UsageError(f"--where: this machine has no {name}")
-    return value.value if isinstance(value, Extreme) else value
+    value = number_of(subject.answer(known[ids[0]]))
+    if not isinstance(value, float):
+        raise UsageError(f"--where: this machine has no {of}")
+    return value if factor is None else factor * value

@@ -6,7 +6,7 @@ These are warnings, not errors, since the file may be right. Every command shows
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import chain, pairwise
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +15,6 @@ from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
-from kurbel.machine.parts import Piston
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -33,26 +32,20 @@ class Note(NamedTuple):
 def machine_notes(case: Case) -> tuple[Note, ...]:
     """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
     machine, cylinders = case.machine, case.machine.cylinders
-    found = [Note(one.name, text) for one in cylinders for text in _chamber_warnings(one)]
-    found += [Note(one.name, text) for one in cylinders for piston in one.pistons for text in _card_warnings(piston)]
+    found = [Note(one.name, text) for one in cylinders for text in _card_warnings(one)]
     found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
     found += [Note(None, text) for text in _speed_warnings(machine)]
     found += [Note(one.name, text) for one in cylinders for text in _size_warnings(one)]
     found += [Note(None, text) for text in pin_warnings(machine)]
     if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in cylinders):
         with np.errstate(all="ignore"):
-            found += _on_results(case)
+            found += [Note(one.drive.name, text) for one in case.cylinders for text in trace_warnings(one)]
+            found += [Note(None, text) for text in brake_warnings(case)]
+            for one in case.cylinders:
+                found += [Note(one.drive.name, text) for text in as_far_as_solved(cylinder_warnings(one), "forces")]
+            found += [Note(None, text) for text in as_far_as_solved(turning_warnings(case), "flywheel")]
+            found += [Note(None, text) for text in as_far_as_solved(_strength_warnings(case), "stress")]
     return tuple(dict.fromkeys(found))
-
-
-def _on_results(case: Case) -> Iterator[Note]:
-    for one in case.cylinders:
-        yield from (Note(one.drive.name, text) for text in trace_warnings(one))
-    yield from (Note(None, text) for text in brake_warnings(case))
-    for one in case.cylinders:
-        yield from (Note(one.drive.name, text) for text in as_far_as_solved(cylinder_warnings(one), "forces"))
-    yield from (Note(None, text) for text in as_far_as_solved(turning_warnings(case), "flywheel"))
-    yield from (Note(None, text) for text in as_far_as_solved(_strength_warnings(case), "stress"))
 
 
 def as_far_as_solved(found: Iterable[str], command: str) -> list[str]:
@@ -141,29 +134,27 @@ _PLAIN = 0.02
 """Lean of a card, over its range of pressures, below which it has no high end; one open for half the stroke has ¼."""
 
 
-def _chamber_warnings(cylinder: Cylinder) -> Iterator[str]:
+def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
+    """Yield what was tidied up, cards drawn from the wrong dead centre, and exponents that no gas has."""
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             for text in getattr(chamber, "notes", ()):
                 yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
-
-
-def _card_warnings(piston: Piston) -> Iterator[str]:
-    """Yield cards drawn from the wrong dead centre, and exponents that no gas has."""
-    leans = [_lean(card) for card in piston.chambers.values() if isinstance(card, Card)]
-    # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
-    if len(leans) == 2 and min(leans) < -_PLAIN and max(leans) > _PLAIN:
-        end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")
-        yield (
-            f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from its "
-            f"own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
-        )
-    least, most = _EXPONENTS
-    for end, chamber in piston.chambers.items():
-        given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
-        for value in sorted(one for one in given if not least <= one <= most):
-            text = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-            yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
+    for piston in cylinder.pistons:
+        leans = [_lean(card) for card in piston.chambers.values() if isinstance(card, Card)]
+        # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
+        if len(leans) == 2 and min(leans) < -_PLAIN and max(leans) > _PLAIN:
+            end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")
+            yield (
+                f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from "
+                f"its own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
+            )
+        least, most = _EXPONENTS
+        for end, chamber in piston.chambers.items():
+            given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
+            for value in sorted(one for one in given if not least <= one <= most):
+                text = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
+                yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
 
 
 def _lean(card: Card) -> float:
@@ -255,23 +246,24 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             f"a pressure of {show(peak, 'pressure')} is more than engines have, at most "
             f"{show(_LARGEST_PEAK, 'pressure')}; is its unit right?"
         )
-    yield from chain(_reversal_warnings(forces), _guide_warnings(forces))
-
-
-def _reversal_warnings(forces: CylinderForces) -> Iterator[str]:
-    if forces.no_compressor:
-        return
-    loads = forces.rod_loads
+    loads = None if forces.no_compressor else forces.rod_loads
     angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
-    if angle is None or ratio is None:
-        return
-    if not angle:
-        yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
-    elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
-        yield (
-            f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires 15 deg "
-            "and 3 %"
+    if angle is not None and ratio is not None:
+        if not angle:
+            yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
+        elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
+            yield (
+                f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires "
+                "15 deg and 3 %"
+            )
+    on_guide = _on_guide(forces)
+    if on_guide and forces.lifted:
+        machine = forces.drive.machine
+        other = _OTHER_SENSE[machine.rotation or "over"]
+        turned = _on_guide(
+            CylinderForces(replace(machine, rotation=other), forces.drive.cylinder), "would rest", "would lift"
         )
+        yield f"Turning {machine.rotation}, the crosshead {on_guide}; turning {other} it {turned} (R p. 602)"
 
 
 # the guide of a horizontal machine of known sense of rotation, R p. 602
@@ -282,40 +274,25 @@ _MOST_SPANS = 4
 
 def guide_notes(case: Case) -> Iterator[str]:
     """Yield of which cylinders the crosshead rests on the lower guide."""
-    resting = [forces for forces in case.cylinders if _guided(forces) and not forces.lifted]
+    resting = [forces for forces in case.cylinders if _on_guide(forces) and not forces.lifted]
     if resting:
         name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
-        yield f"{name}{_turning(resting[0])} (R p. 602)."
+        sense = resting[0].drive.machine.rotation
+        yield f"{name}Turning {sense}, the crosshead {_on_guide(resting[0])} (R p. 602)."
 
 
-def _guide_warnings(forces: CylinderForces) -> Iterator[str]:
-    """Yield that the crosshead of a cylinder lifts off the lower guide, and whether the other sense avoids it."""
-    if _guided(forces) and forces.lifted:
-        machine, cylinder = forces.drive.machine, forces.drive.cylinder
-        other = _OTHER_SENSE[machine.rotation or "over"]
-        turned = CylinderForces(replace(machine, rotation=other), cylinder)
-        yield f"{_turning(forces)}; turning {other} it {_rests(turned, 'would rest', 'would lift')} (R p. 602)"
-
-
-def _guided(forces: CylinderForces) -> bool:
-    """Whether there is a guide below, and a sense of rotation is given."""
+def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts") -> str:
+    """Return where the crosshead rests; '' without a guide below, a sense of rotation, or a guide force."""
     drive = forces.drive
-    if drive.machine.rotation is None or not drive.down or not (drive.mechanism.guided and drive.mechanism.has_rod):
-        return False
-    return forces.extremes_of("N") is not None
-
-
-def _turning(forces: CylinderForces) -> str:
-    return f"Turning {forces.drive.machine.rotation}, the crosshead {_rests(forces, 'rests', 'lifts')}"
-
-
-def _rests(forces: CylinderForces, rests: str, lifts: str) -> str:
-    lifted, cycle = forces.lifted, forces.drive.cycle
+    guided = drive.machine.rotation is not None and drive.down and drive.mechanism.guided and drive.mechanism.has_rod
+    if not guided or forces.extremes_of("N") is None:
+        return ""
+    lifted = forces.lifted
     if not lifted:
         return f"{rests} on the lower guide all round"
-    if lifted[0][1] - lifted[0][0] >= cycle:
+    if lifted[0][1] - lifted[0][0] >= drive.cycle:
         return f"{rests} on the upper guide all round"
-    spans = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in lifted)
+    spans = ", ".join(f"from {start:.4g} to {end % drive.cycle:.4g} deg" for start, end in lifted)
     return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
 
 

@@ -17,9 +17,9 @@ from kurbel.report.balance import balance_report
 from kurbel.report.check import checked
 from kurbel.report.commands import REPORTS, Command
 from kurbel.report.crank import bearings_report, forces_report, motion_report, stress_report
-from kurbel.report.document import Document, Grid, Item, Pair, Section
 from kurbel.report.frame import Frame, Subject, provenance, subjects_of
 from kurbel.report.keys import every_place, meaning
+from kurbel.report.picture import Document, Grid, Item, Pair, Section
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
 from kurbel.report.tables import Report, stepped

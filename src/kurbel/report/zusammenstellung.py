@@ -12,7 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
-from kurbel.report.tables import Column, Part, Report, Value
+from kurbel.report.tables import Column, Part, Report
 
 FACTORS = by_id(
     Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
@@ -62,34 +62,37 @@ def zusammenstellung(
     (R 286, B 25, R 291), while ψ and the forces have no such form and stay exact. `compare` sets the printed figures
     below the computed ones and marks the misprints. Raises UsageError for L/R that do not turn and unknown rows.
     """
-    ids = tuple(dict.fromkeys(_row_id(row) for row in rows))
-    ratios = tuple(dict.fromkeys(ratios))
-    parts = tuple(_part(ratio, ids, angles, formula) for ratio in ratios)
-    symbols = [column.symbol for column in parts[0].columns[1:]]
-    title = f"Zusammenstellung 112. Werte für {_listed(symbols, 'und')} am geraden Kurbeltrieb."
-    report = Report(title, "table", None, "ratios", parts, mirrored=_mirrored(parts[0], angles))
+    ids: list[str] = []
+    for row in rows:
+        found = (ROWS[row],) if row in ROWS else called(row, FACTORS.values())
+        if len(found) != 1:
+            near = did_you_mean(row, (*ROWS, *ROWS.values()))
+            raise UsageError(f"--rows: no row '{row}'{near} (known: {', '.join(ROWS)})")
+        ids += found
+    parts = []
+    for ratio in dict.fromkeys(ratios):
+        if not ratio > 1:
+            raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
+        every = {id: array("d") for id in dict.fromkeys(ids)}
+        for degrees in angles:
+            factors = _factors(CrankAngle.of(degrees), ratio, formula)
+            for id, values in every.items():
+                values.append(factors[id])
+        columns = [Column("phi", PHI.symbol, PHI.ascii_symbol, "deg", angles, PHI.text)]
+        for id, values in every.items():
+            symbols = _OTHER_SYMBOLS.get((formula, id), (FACTORS[id].symbol, FACTORS[id].ascii_symbol))
+            columns.append(Column(id, *symbols, "deg" if id == "psi" else "", values, FACTORS[id].text))
+        parts.append(Part(ratio, tuple(columns)))
+
+    shown = [column.symbol for column in parts[0].columns[1:]]
+    title = f"Zusammenstellung 112. Werte für {_listed(shown, 'und')} am geraden Kurbeltrieb."
+    mirrored = ""
+    if min(angles) >= 0 and max(angles) <= 180:
+        odd = [column.symbol for column in parts[0].columns if column.id in _ODD]
+        changes = f"{_listed(odd, 'and')} {'has' if len(odd) == 1 else 'have'} the opposite sign" if odd else ""
+        mirrored = f"On the return stroke (360° − φ) {changes or 'the values are the same'}."
+    report = Report(title, "table", None, "ratios", tuple(parts), mirrored=mirrored)
     return _with_printed(report, formula) if compare else report
-
-
-def _row_id(row: str) -> str:
-    if row in ROWS:
-        return ROWS[row]
-    if len(found := called(row, FACTORS.values())) == 1:
-        return found[0]
-    near = did_you_mean(row, (*ROWS, *ROWS.values()))
-    raise UsageError(f"--rows: no row '{row}'{near} (known: {', '.join(ROWS)})")
-
-
-def _part(ratio: float, ids: tuple[str, ...], angles: Sequence[float], formula: str) -> Part:
-    if not ratio > 1:
-        raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
-    columns = {id: array("d") for id in ids}
-    for degrees in angles:
-        found = _factors(CrankAngle.of(degrees), ratio, formula)
-        for id, values in columns.items():
-            values.append(found[id])
-    rows = (_column(FACTORS[id], values, formula) for id, values in columns.items())
-    return Part(ratio, (_column(PHI, angles, formula), *rows))
 
 
 def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
@@ -114,22 +117,6 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
         factors["velocity_factor"] = formulas.first_order_velocity(sin, cos, lam)
         factors["displacement_factor"] = formulas.first_order_displacement(sin, cos, lam)
     return factors
-
-
-def _column(quantity: Quantity, values: Sequence[Value], formula: str) -> Column:
-    symbols = _OTHER_SYMBOLS.get((formula, quantity.id), (quantity.symbol, quantity.ascii_symbol))
-    return Column(quantity.id, *symbols, "deg" if quantity.kind == "angle" else "", values, quantity.text)
-
-
-def _mirrored(part: Part, angles: Sequence[float]) -> str:
-    if min(angles) < 0 or max(angles) > 180:
-        return ""
-    odd = [column.symbol for column in part.columns if column.id in _ODD]
-    if not odd:
-        return "On the return stroke (360° − φ) the values are the same."
-    return (
-        f"On the return stroke (360° − φ) {_listed(odd, 'and')} {'has' if len(odd) == 1 else 'have'} the opposite sign."
-    )
 
 
 def _listed(words: list[str], last: str) -> str:
@@ -183,29 +170,23 @@ def _with_printed(report: Report, formula: str) -> Report:
             f"--compare: the book prints nothing for {', '.join(wrong)}; "
             "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
         )
-    parts, notes = (
-        [],
-        ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."],
-    )
+    # the small margin keeps a figure that rounds a tie the other way
+    slack, parts = _HALF_UNIT * (1 + 1e-9), []
+    notes = ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."]
     for part in report.parts:
         phi, *rows = part.columns
         columns = [phi]
         for row in rows:
-            printed = _printed(row, float(part.name))
-            columns += [row, printed]
-            for index in printed.marked:
-                value, figure = row.values[index], printed.values[index]
-                where = f"L/R = {part.name:g}, φ = {phi.values[index]:g}°"
-                notes.append(f"{where}: {row.symbol} is {value:.3f}, printed {figure:.3f}")
+            figures, misprints = _PRINTED[row.id][float(part.name)], []
+            for index, (angle, value, figure) in enumerate(zip(phi.values, row.values, figures)):
+                if value is not None and figure is not None and abs(value - figure) > slack:
+                    misprints.append(index)
+                    where = f"L/R = {part.name:g}, φ = {angle:g}°"
+                    notes.append(f"{where}: {row.symbol} is {value:.3f}, printed {figure:.3f}")
+            text = f"{row.text}, as printed"
+            columns += [
+                row,
+                Column(f"{row.id}_printed", "  printed", "  printed", "", figures, text, 3, tuple(misprints)),
+            ]
         parts.append(part._replace(columns=tuple(columns)))
     return report._replace(parts=tuple(parts), notes=tuple(notes))
-
-
-def _printed(row: Column, ratio: float) -> Column:
-    """Return the printed figures of a row, the misprints marked."""
-    figures = _PRINTED[row.id][ratio]
-    # the small margin keeps a figure that rounds a tie the other way
-    slack = _HALF_UNIT * (1 + 1e-9)
-    both = enumerate(zip(row.values, figures))
-    wrong = tuple(index for index, (a, b) in both if a is not None and b is not None and abs(a - b) > slack)
-    return Column(f"{row.id}_printed", "  printed", "  printed", "", figures, f"{row.text}, as printed", 3, wrong)

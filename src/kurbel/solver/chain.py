@@ -11,7 +11,7 @@ from there to the first mass, or from the last mass there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -59,21 +59,11 @@ class Chain:
         held = np.eye(len(self.inertias) + first + last)
         return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
 
-    @property
-    def damped(self) -> bool:
-        """Whether anything damps it."""
-        return bool(self.segment_damping.any() or self.mass_damping.any() or self.loss.any())
-
-    def each(self, change: Callable[[Array], Array], ground: str = "") -> Chain:
-        """Return the chain whose arrays are changed."""
-        inertias, stiffnesses, damping, against, loss = map(
-            change, (self.inertias, self.stiffnesses, self.segment_damping, self.mass_damping, self.loss)
-        )
-        return Chain(inertias, stiffnesses, damping, against, loss, ground)
-
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
-        return self.each(lambda one: one[::-1], {"before": "after", "after": "before"}.get(self.ground, ""))
+        ground = {"before": "after", "after": "before"}.get(self.ground, "")
+        inertias, against = self.inertias[::-1], self.mass_damping[::-1]
+        return Chain(inertias, self.stiffnesses[::-1], self.segment_damping[::-1], against, self.loss[::-1], ground)
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
@@ -280,12 +270,12 @@ class ChainEquation:
         def by_machine(numbers: Array) -> Array:
             return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
 
-        self._twists = chain.twists
+        self._twists, inertias = chain.twists, by_machine(chain.inertias)
         self._damping, self._against = by_machine(chain.segment_damping), by_machine(chain.mass_damping)
-        self._speeds = 1 / (by_machine(chain.inertias) * omega)
-        self._springs = by_machine(chain.stiffnesses) / (omega * self._order)
-        self.unknowns, self.bounded = sum(chain.twists.shape), len(chain.stiffnesses) + loaded
-        self._energy = omega / self._speeds[loaded] if law else np.full(pieces.count, np.inf)
+        self._speeds, self._springs = 1 / (inertias * omega), by_machine(chain.stiffnesses) / (omega * self._order)
+        self.unknowns = sum(chain.twists.shape)
+        self.bounded = len(chain.stiffnesses) + loaded if law else None
+        self._height = inertias[loaded] * omega**2
         unit = np.broadcast_to(np.eye(self.unknowns)[..., None], (self.unknowns, self.unknowns, pieces.count))
         self._matrix = self._flow(unit, np.arange(pieces.count))[1]
 
@@ -299,26 +289,23 @@ class ChainEquation:
         return torques, np.concatenate((self._springs[:, None, machine] * apart, masses))
 
     def known(self, pieces: Pieces) -> Array:
-        """Return the torques on the masses."""
-        return pieces.carried(self._driving, self._source)
+        """Return the torques on the masses, and J ω_n² of the one under the load: less by so much, it stands still."""
+        torques = pieces.carried(self._driving, self._source)
+        return np.concatenate((torques, np.broadcast_to(pieces.of(self._height), (1, *torques.shape[1:]))))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
-        """Return y′ and its derivative by y; eased: J ω_n² in N m that the mass under the load has in addition."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+        """Return y′ and its derivative by y."""
+        torques, height = known[:-1], known[-1]
         rate = self._flow(y, pieces.machine)[1]
-        rate[-len(known) :] += known
+        rate[-len(torques) :] += torques
         slope = self._matrix[:, :, None, pieces.machine].repeat(y.shape[1], axis=2)
         if self._law:
             # with u = (ω − ω_n)/ω_n the square of the speed is 1 + u (2 + u) of the nominal one
-            height = self.height(known, pieces, eased)
             u = y[self.bounded] / height
             rise, by_square = self._law.rise(u * (2 + u), pieces)
             rate[self.bounded] -= rise
             slope[self.bounded, self.bounded] -= by_square * 2 * (1 + u) / height
         return rate, slope
-
-    def height(self, known: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return J ω_n² of the mass under the load: less by so much, it stands still."""
-        return np.asarray(pieces.of(self._energy + eased))
 
     def torques(self, y: Array, pieces: Pieces) -> Array:
         """Return the torques in the segments less their means in N m, (segments, nodes, pieces)."""

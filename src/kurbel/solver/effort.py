@@ -150,7 +150,7 @@ class TurningEffort:
     def drives(self) -> Any:
         """Whether any piston drives; for a given effort, whether its mean does."""
         if self.given is not None:
-            return self.result(self._mean_of(self.given)) >= 0
+            return self.result(self.mean_of(self.given)) >= 0
         return any_of(group[0].drive.drives for group in self.groups)
 
     def share(self, drive: Drive | None) -> Any:
@@ -189,9 +189,10 @@ class TurningEffort:
     @cached_property
     def mean(self) -> Array:
         """Mean of M in N m, (machines,)."""
-        return self._mean_of(self.M)
+        return self.mean_of(self.M)
 
-    def _mean_of(self, torque: Array) -> Array:
+    def mean_of(self, torque: Array) -> Array:
+        """Return means in N m (…, machines) of torques (…, nodes, pieces); 0 where nothing but rounding is left."""
         return np.asarray(unless_cancelled(self.pieces.mean(torque), self.pieces.largest(torque), _ROUNDING))
 
     # the load
@@ -200,20 +201,15 @@ class TurningEffort:
     def load(self) -> Array:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
         level = np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
-        return (
-            level
-            if self._given_load is None
-            else level + (self._given_load - self.pieces.mean(self._given_load)[self.pieces.machine])
-        )
-
-    @cached_property
-    def _given_load(self) -> Array | None:
-        return torque_on(self.diagram, self.pieces) if self.diagram else None
+        if self.diagram is None:
+            return level
+        given = torque_on(self.diagram, self.pieces)
+        return np.asarray(level + (given - self.pieces.of(self.pieces.mean(given))))
 
     @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
-        given = self.mean if self._given_load is None else self.pieces.mean(self._given_load)
+        given = self.pieces.mean(torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
         return np.asarray(unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED))
 
     # the masses
@@ -246,7 +242,7 @@ class TurningEffort:
         if self.count is None and too_little.any():
             eta, mean = self.machine.efficiency, float(self.mean[0])
             indicated = self.sampled([Term(1.0, group) for group in self.groups]) if self.given is None else self.given
-            whole = float(self._mean_of(indicated)[0])
+            whole = float(self.mean_of(indicated)[0])
             runs = "with no efficiency"
             if whole >= 0:  # the mean is linear in η
                 least = 1 - (1 - eta) * whole / (whole - mean)
@@ -271,19 +267,18 @@ class TurningEffort:
 
 
 class ExcessWork:
-    """The works between the crossings of effort and load; torque: M − M_load in N m, (nodes, pieces)."""
+    """The works between the crossings of effort and load.
+
+    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces).
+    """
 
     def __init__(self, effort: TurningEffort, torque: Array) -> None:
-        self.pieces, self._size = effort.pieces, effort.pieces.largest(effort.M)
-        self.torque = np.where(self.pieces.of(self.pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
-
-    @cached_property
-    def E(self) -> Array:
-        """∫ (M − M_load) dφ in J from φ = 0, (nodes, pieces)."""
-        pieces = self.pieces
-        found = pieces.running(self.torque)
-        gained = np.append(found[-1, pieces.first[1:] - 1], found[-1, -1])  # by the rounding of the mean
-        return np.asarray(found - pieces.of(gained) * (pieces.degrees / pieces.cycle))
+        pieces = self.pieces = effort.pieces
+        self._size = pieces.largest(effort.M)
+        self.torque = np.where(pieces.of(pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
+        whole = pieces.running(self.torque)
+        gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
+        self.E = np.asarray(whole - pieces.of(gained) * (pieces.degrees / pieces.cycle))
 
     @cached_property
     def crossings(self) -> Angles:

@@ -9,7 +9,6 @@ The books take J as constant and the load as independent of the speed; the speed
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -19,11 +18,10 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.numerics.arithmetic import every, some, where
-from kurbel.numerics.collocation import Standstill, Unsettled
+from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
-from kurbel.numerics.roots import rising_root
-from kurbel.quantity import column, key_value
+from kurbel.quantity import Tabled, key_value, value
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
@@ -39,70 +37,57 @@ _MISSED = 1e-3
 """By what δ may miss the wanted one, relatively, before a warning."""
 _LARGEST_EXPONENT = 709.7
 """Its power of e is all but the largest float."""
-_DOUBLINGS = 30
-"""How many doublings of the flywheel are tried for one that turns."""
+_DOUBLINGS, _TRIALS = 30, 20
+"""How many doublings of the flywheel are tried for one that turns, and how many flywheels for one that gives a δ."""
+_CLOSE = 1e-9
+"""By what δ may miss the wanted one, relatively, with the flywheel that gives it."""
+
+
+def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Tabled:
+    """Return a column whose samples `MachineTurning.samples_of` has."""
+    return value(symbol, kind, text, lambda state: state.course(id), **words)
 
 
 class TurningState(AtAngles):
-    """The columns of the whole machine.
-
-    shown: makes of samples on pieces what is wanted, values at crank angles φ (n,) in degrees or the samples.
-    """
+    """The columns of the whole machine at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
 
     commands = ("flywheel",)
+    T = _over_the_angle(
+        "T",
+        "T",
+        "force",
+        "Tangential force at the crank pin, positive when it drives",
+        called="tangential force",
+        peak=True,
+        extremes=("flywheel",),
+    )
+    T_inertia = _over_the_angle(
+        "T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"
+    )
+    M = _over_the_angle("M", "M", "torque", "Torque on the shaft", called="torque", extremes=("flywheel",))
+    E = _over_the_angle("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0")
+    omega = _over_the_angle("omega", "ω", "angular_velocity", "Angular velocity of the shaft")
+    alpha = _over_the_angle(
+        "alpha",
+        "α",
+        "angular_acceleration",
+        "Angular acceleration of the shaft, just after a jump",
+        called="angular acceleration of the shaft",
+        extremes=("flywheel",),
+    )
+    M_coupling = _over_the_angle("M_coupling", "M_K", "torque", "Torque in the elastic coupling")
 
-    def __init__(self, turning: MachineTurning, phi: Array, shown: Callable[[Pieces, Array], Any]) -> None:
-        self._turning, self._effort, self.phi, self._shown = turning, turning.effort, phi, shown
+    def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
+        self._turning, self.phi, self._within = turning, phi, within
 
     def __getitem__(self, id: str) -> Any:
-        """Return a column by its id; None for one that there is not."""
-        return self.M_load if id == "M_load" else super().__getitem__(id)
+        """Return a column by its id, the load M_load in N m at the nominal speed among them; None for no column."""
+        return self.course(id) if id == "M_load" else super().__getitem__(id)
 
-    def _at_crank(self, torque: Array) -> Any:
-        """Return a torque in N m as a force in N at the radius of crank 1; None without a crank."""
-        crank, pieces = self._turning.crank, self._effort.pieces
-        return None if crank is None else self._shown(pieces, torque / pieces.of(crank))
-
-    @column("T", "force", extremes=("flywheel",), called="tangential force", peak=True)
-    def T(self) -> Any:
-        """Tangential force at the crank pin, positive when it drives."""
-        return self._at_crank(self._effort.M)
-
-    @column("T_b", "force")
-    def T_inertia(self) -> Any:
-        """Share of the inertia forces in T, at uniform rotation (Tolle)."""
-        terms = self._effort.inertia_terms
-        return self._at_crank(self._effort.sampled(terms)) if terms else None
-
-    @column("M", "torque", extremes=("flywheel",), called="torque")
-    def M(self) -> Any:
-        """Torque on the shaft."""
-        return self._shown(self._effort.pieces, self._effort.M)
-
-    @property
-    def M_load(self) -> Any:
-        """Load in N m at the nominal speed."""
-        return self._shown(self._effort.pieces, self._effort.load)
-
-    @column("E", "energy")
-    def E(self) -> Any:
-        """Excess of the work of M over that of the resistance since angle 0."""
-        return self._shown(self._effort.pieces, self._turning.excess.E)
-
-    @column("ω", "angular_velocity")
-    def omega(self) -> Any:
-        """Angular velocity of the shaft."""
-        return self._shown(*self._turning.speed.omega) if self._turning.speed else None
-
-    @column("α", "angular_acceleration", extremes=("flywheel",), called="angular acceleration of the shaft")
-    def alpha(self) -> Any:
-        """Angular acceleration of the shaft, just after a jump."""
-        return self._shown(*self._turning.speed.alpha) if self._turning.speed else None
-
-    @column("M_K", "torque")
-    def M_coupling(self) -> Any:
-        """Torque in the elastic coupling."""
-        return self._shown(*self._turning.elastic.torque) if self._turning.elastic else None
+    def course(self, id: str) -> Array | None:
+        """Return the values (n,) of what `MachineTurning.samples_of` has; None for what is left out."""
+        found = self._turning.samples_of(id)
+        return None if found is None else self._turning.effort.at(*found, self.phi, self._within)
 
 
 class MachineTurning(Results):
@@ -117,24 +102,36 @@ class MachineTurning(Results):
 
     def __init__(self, effort: TurningEffort) -> None:
         self.effort, self.machine, self.excess = effort, effort.machine, effort.excess
-        self.omega = effort.omega
+        self.omega, self.turns = effort.omega, effort.omega is not None and some(effort.omega != 0)
         self.crank = self.machine.cylinders[0].mechanism.crank if self.machine.cylinders else None
         self._extremes: dict[str, Extremes | None] = {}
         wheel = self.machine.flywheel
-        self._given, self._wanted, self._rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
-        self._turns = self.omega is not None and some(self.omega != 0)
+        self._given, self._wanted, self.rim = (wheel.inertia, wheel.fluctuation, wheel.rim) if wheel else (None,) * 3
+        self.law = SpeedLaw.of(effort)
         if effort.count is not None:
             _ = self.natural_order  # refuses machines of a batch before any result is read
 
     # over the crank angle
 
     def _columns(self, phi: Array, within: Array) -> TurningState:
-        return TurningState(self, phi, lambda pieces, values: self.effort.at(pieces, values, phi, within))
+        return TurningState(self, phi, within)
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column at the nodes of pieces; None for one that is left out."""
-        found: tuple[Pieces, Array] | None = TurningState(self, np.zeros(0), lambda *samples: samples)[column]
-        return found
+        effort, found = self.effort, None
+        if column in ("omega", "alpha"):
+            return None if self.speed is None else self.speed.omega if column == "omega" else self.speed.alpha
+        if column == "M_coupling":
+            return None if self.elastic is None else self.elastic.torque
+        if column == "M" or (column == "T" and self.crank is not None):
+            found = effort.M
+        elif column == "T_inertia" and self.crank is not None and effort.inertia_terms:
+            found = effort.sampled(effort.inertia_terms)
+        elif column in ("E", "M_load"):
+            found = self.excess.E if column == "E" else effort.load
+        if found is None:
+            return None
+        return effort.pieces, found / effort.pieces.of(self.crank) if column.startswith("T") else found
 
     @property
     def breaks(self) -> Array:
@@ -161,25 +158,27 @@ class MachineTurning(Results):
         """Key values of the brake."""
         return Brake(self.machine, self.effort.cylinders)
 
-    @key_value("W", "force")
-    def W(self) -> Any:
-        """Mean tangential force over the cycle: the resistance."""
-        return None if self.crank is None else self.M_mean / self.crank
-
-    @key_value("M_m", "torque")
-    def M_mean(self) -> Any:
-        """Mean torque of the turning effort: the resistance."""
-        return self.effort.result(self.effort.mean)
-
-    @key_value("A", "energy")
-    def work_shaft(self) -> Any:
-        """Work of the turning effort per cycle."""
-        return self.M_mean * math.radians(self.effort.cycle)
-
-    @key_value("N_e", "power")
-    def power_shaft(self) -> Any:
-        """Power at the shaft, mean torque times nominal angular velocity."""
-        return self.M_mean * self.omega if self._turns else None
+    W = value(
+        "W",
+        "force",
+        "Mean tangential force over the cycle: the resistance",
+        lambda one: None if one.crank is None else one.M_mean / one.crank,
+    )
+    M_mean = value(
+        "M_m",
+        "torque",
+        "Mean torque of the turning effort: the resistance",
+        lambda one: one.effort.result(one.effort.mean),
+    )
+    work_shaft = value(
+        "A", "energy", "Work of the turning effort per cycle", lambda one: one.M_mean * math.radians(one.effort.cycle)
+    )
+    power_shaft = value(
+        "N_e",
+        "power",
+        "Power at the shaft, mean torque times nominal angular velocity",
+        lambda one: one.M_mean * one.omega if one.turns else None,
+    )
 
     _searched = Searched()
 
@@ -191,41 +190,33 @@ class MachineTurning(Results):
 
     # excess work
 
-    def _of_each(self, values: Array) -> Any:
-        """Return numbers of the crossings as a tuple, of many machines one each."""
-        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
-        tuples = tuple(tuple(one.tolist()) for one in each)
-        return tuples[0] if self.effort.count is None else tuples
-
-    @key_value("φ_T=W", "angle", listed=True)
-    def phi_crossing(self) -> Any:
-        """Crank angles at which the effort crosses the resistance."""
-        return self._of_each(self.excess.crossings.degrees)
-
-    @key_value("A_1, A_2, …", "energy", plain="A_1, ...", listed=True)
-    def lobes(self) -> Any:
-        """Excess work of the lobes, from crossing to crossing."""
-        return self._of_each(self.excess.lobes)
-
-    @cached_property
-    def _summits(self) -> Extremes | None:
-        """Largest and smallest E with their angles; None where the only machine has no excess."""
-        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
-
-    @key_value("E_max", "energy")
-    def E_max(self) -> Extreme | None:
-        """Largest excess work since angle 0."""
-        return self._summits and self._summits.largest
-
-    @key_value("E_min", "energy")
-    def E_min(self) -> Extreme | None:
-        """Smallest excess work since angle 0."""
-        return self._summits and self._summits.smallest
-
-    @key_value("ΔE", "energy")
-    def dE(self) -> Any:
-        """Largest swing of the excess work, over all lobes."""
-        return self.effort.result(self.excess.dE)
+    phi_crossing = value(
+        "φ_T=W",
+        "angle",
+        "Crank angles at which the effort crosses the resistance",
+        lambda one: one.of_crossings(one.excess.crossings.degrees),
+        listed=True,
+    )
+    lobes = value(
+        "A_1, A_2, …",
+        "energy",
+        "Excess work of the lobes, from crossing to crossing",
+        lambda one: one.of_crossings(one.excess.lobes),
+        plain="A_1, ...",
+        listed=True,
+    )
+    E_max = value(
+        "E_max", "energy", "Largest excess work since angle 0", lambda one: one.summits and one.summits.largest
+    )
+    E_min = value(
+        "E_min", "energy", "Smallest excess work since angle 0", lambda one: one.summits and one.summits.smallest
+    )
+    dE = value(
+        "ΔE",
+        "energy",
+        "Largest swing of the excess work, over all lobes",
+        lambda one: one.effort.result(one.excess.dE),
+    )
 
     @key_value("ΔE/A", "ratio")
     def energy_fluctuation(self) -> Any:
@@ -236,64 +227,113 @@ class MachineTurning(Results):
         work = self.work_shaft
         return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
 
+    def of_crossings(self, values: Array) -> Any:
+        """Return numbers of the crossings as a tuple, of many machines one each."""
+        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
+        tuples = tuple(tuple(one.tolist()) for one in each)
+        return tuples[0] if self.effort.count is None else tuples
+
+    @cached_property
+    def summits(self) -> Extremes | None:
+        """Largest and smallest E with their angles; None where the only machine has no excess."""
+        return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
+
     # flywheel
 
-    @key_value("J", "inertia")
-    def J(self) -> Any:
-        """Moment of inertia of the flywheel: the given one, or that for the wanted δ."""
-        return self.J_needed if self._given is None else self._given
+    J = value(
+        "J",
+        "inertia",
+        "Moment of inertia of the flywheel: the given one, or that for the wanted δ",
+        lambda one: one.J_needed if one._given is None else one._given,
+    )
+    GD2 = value(
+        "GD²",
+        "gd2",
+        "Old form of the moment of inertia, 4gJ as a weight times an area",
+        lambda one: None if one.J is None else 4 * one.J,
+        plain="GD2",
+    )
+    J_needed = value(
+        "J_δ",
+        "inertia",
+        "Flywheel for the wanted δ, ΔE/(δ ω²)",
+        lambda one: one.flywheel_of_the_books(),
+        unless=lambda one: one.is_the_needed,
+    )
+    GD2_needed = value(
+        "GD²_δ",
+        "gd2",
+        "The same as GD² = 4gJ",
+        lambda one: None if one.J_needed is None else 4 * one.J_needed,
+        plain="GD2_delta",
+        unless=lambda one: one.is_the_needed,
+    )
+
+    @key_value("A_K", "area")
+    def rim_section(self) -> Any:
+        """Section of the rim for the wanted δ, or for J: 4 J/(π ρ D (D² + h²))."""
+        wanted = self.J if self.J_needed is None else self.J_needed
+        return None if self.rim is None or wanted is None else self.rim.section(wanted)
+
+    rim_speed = value(
+        "v_K",
+        "velocity",
+        "Speed of the middle of the rim",
+        lambda one: one.rim.speed(one.omega) if one.rim and one.turns else None,
+    )
+    rim_stress = value(
+        "σ_K",
+        "stress",
+        "Hoop stress of the rim, ρ v²",
+        lambda one: one.rim.stress(one.omega) if one.rim and one.turns else None,
+    )
 
     @property
     def is_the_needed(self) -> bool:
         """Whether the flywheel is the one for the wanted δ."""
         return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
 
-    @key_value("GD²", "gd2", plain="GD2")
-    def GD2(self) -> Any:
-        """Old form of the moment of inertia, 4gJ as a weight times an area."""
-        return None if self.J is None else 4 * self.J
-
-    @key_value("J_δ", "inertia", unless=lambda turning: turning.is_the_needed)
-    def J_needed(self) -> Any:
-        """Flywheel for the wanted δ, ΔE/(δ ω²).
-
-        What a rigid coupling adds comes off.
-        """
-        if self._wanted is None or not self._turns:
+    def flywheel_of_the_books(self) -> Any:
+        """Return ΔE/(δ ω²) in kg m², less what a rigid coupling adds; None without a wanted δ or a speed."""
+        if self._wanted is None or not self.turns:
             return None
-        return self.effort.result(np.maximum(self._needed_in_all - self._driven_rigidly, 0.0))
-
-    @property
-    def _needed_in_all(self) -> Array:
-        return np.asarray(self.excess.dE / (self._wanted * self.omega**2))
-
-    @key_value("GD²_δ", "gd2", plain="GD2_delta", unless=lambda turning: turning.is_the_needed)
-    def GD2_needed(self) -> Any:
-        """The same as GD² = 4gJ."""
-        return None if self.J_needed is None else 4 * self.J_needed
-
-    @key_value("A_K", "area")
-    def rim_section(self) -> Any:
-        """Section of the rim for the wanted δ, or for J: 4 J/(π ρ D (D² + h²))."""
-        wanted = self.J if self.J_needed is None else self.J_needed
-        return None if self._rim is None or wanted is None else self._rim.section(wanted)
-
-    @key_value("v_K", "velocity")
-    def rim_speed(self) -> Any:
-        """Speed of the middle of the rim."""
-        return self._rim.speed(self.omega) if self._rim and self._turns else None
-
-    @key_value("σ_K", "stress")
-    def rim_stress(self) -> Any:
-        """Hoop stress of the rim, ρ v²."""
-        return self._rim.stress(self.omega) if self._rim and self._turns else None
+        driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
+        return self.effort.result(np.maximum(self.excess.dE / (self._wanted * self.omega**2) - driven, 0.0))
 
     # speed line
 
-    @cached_property
-    def law(self) -> SpeedLaw | None:
-        """How the load depends on the speed; None where it does not."""
-        return SpeedLaw.of(self.effort)
+    @part(SpeedLine)
+    def speed(self) -> SpeedLine | None:
+        """The speed of the crank shaft over the turn; None without a flywheel or a speed.
+
+        Raises NoSolutionError where the machine stalls.
+        """
+        if self.J is None or not self.turns:
+            return None
+        try:
+            return self._line(1.0 if self._needs_no_inertia else self.J)
+        except Unsettled as stop:
+            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
+
+    @key_value("δ_0", "ratio", after="delta")
+    def delta_book(self) -> Any:
+        """The same after the books, ΔE/(J ω²)."""
+        driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
+        inertia = (0.0 if self.J is None else self.J) + driven
+        if not self.turns or not some(inertia != 0):
+            return None
+        return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
+
+    @key_value("μ", "ratio")
+    def multiplier(self) -> Any:
+        """What is left of a disturbance after a cycle (Floquet); below 1 it dies away.
+
+        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
+        """
+        if self.law is None or not self.speed:
+            return None
+        found = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
+        return float(found) if self.effort.count is None else found
 
     @property
     def load_ignored(self) -> bool:
@@ -308,29 +348,16 @@ class MachineTurning(Results):
         return self._wanted is not None and uniform and not some(self.J != 0)
 
     def _line(self, flywheel: Any) -> SpeedLine:
-        """Return the speed line with a flywheel in kg m²; raises Standstill, Unsettled, NoSolutionError, UsageError."""
-        coupling, count = self.machine.coupling, self.effort.count
+        """Return the speed line with a flywheel in kg m²; raises Unsettled, NoSolutionError, UsageError."""
+        coupling, effort = self.machine.coupling, self.effort
         if coupling and not self._needs_no_inertia:
-            own = self._before_coupling(flywheel)
-            if count is None and not own[0]:
+            own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
+            if effort.count is None and not own[0]:
                 raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
             if some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
-                return ElasticCoupling(self.effort, own, self.law)
+                return ElasticCoupling(effort, own, self.law)
         whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
-        return RigidLine(self.effort, self.law, np.broadcast_to(whole, self.effort.mean.shape))
-
-    @part(SpeedLine)
-    def speed(self) -> SpeedLine | None:
-        """The speed of the crank shaft over the turn; None without a flywheel or a speed.
-
-        Raises NoSolutionError where the machine stalls.
-        """
-        if self.J is None or not self._turns:
-            return None
-        try:
-            return self._line(1.0 if self._needs_no_inertia else self.J)
-        except Unsettled as stop:
-            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
+        return RigidLine(effort, self.law, np.broadcast_to(whole, effort.mean.shape))
 
     def _delta_with(self, flywheel: float) -> float:
         """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
@@ -344,7 +371,7 @@ class MachineTurning(Results):
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
         message = f"{with_this} no speed line is found that repeats under this load"
-        if isinstance(stop, Standstill):
+        if stop.degrees is not None:
             message = (
                 f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
             )
@@ -361,48 +388,35 @@ class MachineTurning(Results):
 
         flywheel: one with which it does not; more: kinetic energy in J that is known to be just enough besides.
         """
+
+        def rounded_up(inertia: float) -> float:
+            digit = 10.0 ** (math.floor(math.log10(inertia)) - 2)
+            return math.ceil(inertia / digit) * digit
+
         moving = float(self.effort.pieces.mean(self.effort.J_moving)[0])
         least = max(flywheel, 1e-6 * moving, 1e-300)
         enough = flywheel + 2 * more / self.omega**2 if more else least + self.dE / self.omega**2
         for _ in range(_DOUBLINGS):
-            if math.isfinite(self._delta_with(_rounded_up(enough))):
+            if math.isfinite(self._delta_with(rounded_up(enough))):
                 break
             least, enough = enough, 2 * enough
         else:
             return None
         while not more and enough > 1.02 * max(least, enough / 1000):
             middle = math.sqrt(max(least, enough / 4) * enough)
-            turns = math.isfinite(self._delta_with(_rounded_up(middle)))
+            turns = math.isfinite(self._delta_with(rounded_up(middle)))
             least, enough = (least, middle) if turns else (middle, enough)
-        return _rounded_up(enough)
-
-    @key_value("δ_0", "ratio", after="delta")
-    def delta_book(self) -> Any:
-        """The same after the books, ΔE/(J ω²)."""
-        inertia = (0.0 if self.J is None else self.J) + self._driven_rigidly
-        if not self._turns or not some(inertia != 0):
-            return None
-        return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
-
-    @key_value("μ", "ratio")
-    def multiplier(self) -> Any:
-        """What is left of a disturbance after a cycle (Floquet); below 1 it dies away.
-
-        μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
-        """
-        if self.law is None or not self.speed:
-            return None
-        found = np.exp(np.minimum(self.speed.growth, _LARGEST_EXPONENT))
-        return float(found) if self.effort.count is None else found
+        return rounded_up(enough)
 
     # coupling
 
     @key_value("n_e", "ratio")
     def natural_order(self) -> Any:
         """Natural frequency of the coupled masses over the angular velocity."""
-        if self.machine.coupling is None or not self._turns or (self._given is None and self._wanted is None):
+        if self.machine.coupling is None or not self.turns or (self._given is None and self._wanted is None):
             return None
-        own = self._before_coupling(self._needed_in_all if self._given is None else self._given)
+        needed = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
+        own = np.asarray(needed + self.effort.pieces.mean(self.effort.J_moving))
         if not every(own != 0):
             return None
         found = natural_order(self.machine.coupling, own, self.omega)
@@ -410,18 +424,10 @@ class MachineTurning(Results):
             self.effort.refused |= found > RIGID_ABOVE
         return self.effort.result(found)
 
-    def _before_coupling(self, flywheel: Any) -> Array:
-        """Return J₁ in kg m² (n,): the flywheel and the mean of what the moving masses add."""
-        return np.asarray(flywheel + self.effort.pieces.mean(self.effort.J_moving))
-
     @property
     def rigid(self) -> bool:
         """Whether the coupling is so stiff that it counts as rigid; that of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
-
-    @property
-    def _driven_rigidly(self) -> Any:
-        return self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
 
     @part(ElasticCoupling)
     def elastic(self) -> ElasticCoupling | None:
@@ -438,7 +444,7 @@ class MachineTurning(Results):
     @cached_property
     def delta_needed(self) -> Any:
         """δ of the speed line with the flywheel of the books for the wanted δ; None where it stalls."""
-        if self.J_needed is None or not self._turns or self._needs_no_inertia:
+        if self.J_needed is None or not self.turns or self._needs_no_inertia:
             return None
         if self.is_the_needed:
             return self.speed and self.speed.delta
@@ -458,25 +464,27 @@ class MachineTurning(Results):
     def J_exact(self) -> Any:
         """Flywheel with which δ of the speed line is the wanted one.
 
-        None where that of the books does; of many machines nan: each is searched by itself.
+        None where that of the books does, and where none is found; of many machines nan: each is searched by itself.
         """
         if not self.misses_the_wish or self._wanted is None or not some(self.J_needed != 0):
             return None
         if self.effort.count is not None:
             return np.full(self.effort.count, np.nan)
-        wanted, known = self._wanted, {self.J_needed: self.delta_needed}
-
-        def surplus(flywheel: float) -> float:
-            delta = known.get(flywheel) or self._delta_with(flywheel)
-            return wanted / delta - 1 if delta else math.inf
-
-        return rising_root(surplus, self.J_needed)
-
-
-def _rounded_up(value: float) -> float:
-    """Return the next larger number of three digits."""
-    digit = 10.0 ** (math.floor(math.log10(value)) - 2)
-    return math.ceil(value / digit) * digit
+        # wanted/δ − 1 all but rises with J, by 1 over its own size: secants
+        inertia, missed = self.J_needed, self._wanted / self.delta_needed - 1
+        slope = 1 / inertia
+        for _ in range(_TRIALS):
+            tried = min(max(inertia - missed / slope, inertia / 4), 4 * inertia)
+            delta = self._delta_with(tried)
+            left = self._wanted / delta - 1 if delta else math.inf
+            if tried == inertia or not math.isfinite(left):
+                return None
+            rise = (left - missed) / (tried - inertia)
+            slope = rise if rise > 0 else 1 / tried
+            inertia, missed, before = tried, left, missed
+            if abs(left * before) <= _CLOSE:
+                return inertia - left / slope
+        return None
 
 
 class DeadCentre(Results):

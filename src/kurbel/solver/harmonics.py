@@ -9,7 +9,6 @@ A crank that follows crank 1 by β has its orders times e^{−iνβ}. Numbers of
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -20,7 +19,7 @@ from kurbel.crank_angle import unit_vector
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import key_value
+from kurbel.quantity import key_value, value
 from kurbel.solver.effort import TurningEffort, moves, position, torque_of_inertia
 from kurbel.solver.figures import Results
 from kurbel.solver.forces import CylinderForces
@@ -98,44 +97,32 @@ class Orders(NamedTuple):
     parts: ComplexArray
     moving: bool
 
-    def _spectrum(self, part: ComplexArray) -> Spectrum:
-        return Spectrum(part[0].real, self.orders, part[1:])
+    def at_speed(self, ratio: float = 1.0, gas: float = 1.0) -> Spectrum:
+        """Return both together at a speed, over the nominal one; gas: how often what is independent of it counts."""
+        whole = gas * self.parts[0] + ratio**2 * self.parts[1]
+        return Spectrum(whole[0].real, self.orders, whole[1:])
 
     @property
     def gas(self) -> Spectrum:
         """What is independent of the speed."""
-        return self._spectrum(self.parts[0])
+        return self.at_speed(0.0)
 
     @property
     def inertia(self) -> Spectrum | None:
         """What the inertia forces give at the nominal speed; None without them."""
-        return self._spectrum(self.parts[1]) if self.moving else None
+        return self.at_speed(gas=0.0) if self.moving else None
 
     @property
     def whole(self) -> Spectrum:
         """Both together."""
-        return self._spectrum(self.parts.sum(axis=0))
-
-    def at_speed(self, ratio: float) -> Spectrum:
-        """Return both together at a speed, over the nominal one."""
-        return self._spectrum(self.parts[0] + ratio**2 * self.parts[1])
-
-    def cleared(self, size: Any) -> Orders:
-        """Return it with 0 for what is rounding of torques of this size in N m: means, cosines, and sines."""
-        return self._replace(parts=unless_cancelled(self.parts, size, _ROUNDING))
+        return self.at_speed()
 
 
 class CylinderOrders(NamedTuple):
-    """The orders of the torque of one cylinder.
-
-    own: over its own crank angle, without the losses of the machine; in_machine: over the angle of crank 1, with them;
-    share: what they leave of all of it.
-    """
+    """The orders of the torque of one cylinder over its own crank angle, without the losses of the machine."""
 
     forces: CylinderForces
     own: Orders
-    in_machine: Orders
-    share: Any
 
     @property
     def area(self) -> Any:
@@ -153,59 +140,43 @@ class MachineOrders(Results):
         self.effort = effort
         self.orders = every_order(effort.cycle) if orders is None else orders
 
-    def spectra(self, pieces: Pieces, torques: Sequence[Array]) -> ComplexArray:
-        """Return means and amplitudes of torques (nodes, pieces), (q, 1 + k), or (q, 1 + k, n).
+    def _orders_of(self, pieces: Pieces, torque: Array, inertia: Array | None, size: Any = 0.0) -> Orders:
+        """Return the orders of a torque (nodes, pieces) with the part of the inertia forces, None without any.
 
-        Torques of a shorter cycle have only some of the orders.
+        A torque of a shorter cycle has only some of the orders. What is rounding of the largest, or of the torques of
+        this size in N m that it is the sum of, is 0: means, cosines, and sines.
         """
+        moved = np.zeros(()) if inertia is None else inertia
+        values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (torque - moved, moved)])
         present = np.flatnonzero((self.orders * round(pieces.cycle / 360.0)) % 1 == 0)
-        values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in torques])
-        found = np.zeros((len(values), 1 + len(self.orders), pieces.count), dtype=complex)
+        found = np.zeros((2, 1 + len(self.orders), pieces.count), dtype=complex)
         found[:, 0], found[:, 1 + present] = pieces.mean(values), amplitudes(pieces, values, self.orders[present])
-        return found[..., 0] if self.effort.count is None else found
+        found = unless_cancelled(found, np.maximum(size, np.abs(found).max(axis=(0, 1))), _ROUNDING)
+        return Orders(self.orders, found[..., 0] if self.effort.count is None else found, inertia is not None)
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
         """Those of every cylinder in which a force acts; one is computed of all that work alike."""
         found: dict[str, CylinderOrders] = {}
         for group in self.effort.groups:
-            samples, share, lost = group[0].samples, self.effort.share(group[0].drive), self.effort.lost(group)
-            inertia = torque_of_inertia(samples) if moves(group) else np.zeros(1)
-            torques = [samples.M - inertia, inertia, *(one.quantity(samples) for one in lost)]
-            each = self.spectra(group[0].pieces, torques)
-            own = Orders(self.orders, each[:2], moves(group)).cleared(np.abs(each[:2]).max(axis=(0, 1)))
-            shared = own.parts * share
-            for term, loss in zip(lost, each[2:]):
-                shared[0] += term.factor * loss
-            for forces in group:
-                behind = np.multiply.outer(np.append(0.0, self.orders), forces.drive.cylinder.crank_position)
-                turned = np.reshape(unit_vector(-behind), (len(behind), -1) if each.ndim > 2 else -1)
-                found[forces.drive.name] = CylinderOrders(forces, own, own._replace(parts=shared * turned), share)
+            samples = group[0].samples
+            own = self._orders_of(group[0].pieces, samples.M, torque_of_inertia(samples) if moves(group) else None)
+            found |= {forces.drive.name: CylinderOrders(forces, own) for forces in group}
         return tuple(found[one.drive.name] for one in self.effort.cylinders if one.drive.name in found)
 
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        if self.effort.machine.effort:
-            known = self.spectra(self.effort.pieces, [self.effort.M])
-            parts, moving = np.concatenate((known, 0 * known)), False
-            size = np.abs(parts).max(axis=(0, 1))
-        else:
-            each = [one.in_machine for one in self.cylinders]
-            parts, moving = np.sum([one.parts for one in each], axis=0), any(one.moving for one in each)
-            size = sum(np.abs(one.parts).max(axis=(0, 1)) for one in each)
-        return Orders(self.orders, parts, moving).cleared(size)
+        effort, sizes = self.effort, [np.abs(one.own.parts).max(axis=(0, 1)) for one in self.cylinders]
+        inertia = effort.sampled(effort.inertia_terms) if effort.given is None and effort.inertia_terms else None
+        return self._orders_of(effort.pieces, effort.M, inertia, np.sum(sizes, axis=0))
 
-    @key_value("M_m", "torque")
-    def M_mean(self) -> Any:
-        """Mean torque of the turning effort: the resistance."""
-        return self.effort.result(self.effort.mean)
-
-    @property
-    def swing(self) -> Any:
-        """Mean square in N² m² of the torque less its mean."""
-        effort = self.effort
-        return effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
+    M_mean = value(
+        "M_m",
+        "torque",
+        "Mean torque of the turning effort: the resistance",
+        lambda one: one.effort.result(one.effort.mean),
+    )
 
     @key_value("Σ|M_ν|²/2", "ratio", plain="sum M_nu2/2")
     def orders_share(self) -> Any:
@@ -213,7 +184,8 @@ class MachineOrders(Results):
 
         None where the torque is uniform.
         """
-        swing, carried = self.swing, (np.abs(self.machine.whole.amplitudes) ** 2).sum(axis=0) / 2
+        effort, carried = self.effort, (np.abs(self.machine.whole.amplitudes) ** 2).sum(axis=0) / 2
+        swing = effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
         varies = swing > 1e-28 * self.M_mean**2
         return carried / where(varies, swing, math.nan) if some(varies) else None
 

@@ -21,10 +21,10 @@ import numpy as np
 from kurbel.arrays import Array, Flags
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import every
-from kurbel.numerics.collocation import Standstill, periodic
+from kurbel.numerics.collocation import Unsettled, periodic
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces, Sample, refined
-from kurbel.quantity import key_value
+from kurbel.quantity import value
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Results
 
@@ -74,20 +74,33 @@ class SpeedLine(Results):
     """The speed of the crank shaft over the turn, by u = ω/ω_n − 1 on pieces (nodes, pieces) of the cycle.
 
     mean (n,): mean speed over ω_n. failed (n,): which of a batch have none; the only machine raises UsageError, or
-    Standstill where u falls to `least`, or stands.
+    Unsettled where u falls to `least`. alpha: samples of dω/dt in rad/s² with their pieces. growth: logarithm of what
+    is left of a small disturbance after a cycle.
     """
+
+    delta = value("δ", "ratio", "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m", lambda one: one.fluctuation)
+    omega_max = value("ω_max", "angular_velocity", "Largest angular velocity", lambda one: one.extreme(0))
+    omega_min = value("ω_min", "angular_velocity", "Smallest angular velocity", lambda one: one.extreme(2))
+    omega_mean = value(
+        "ω_m",
+        "angular_velocity",
+        "Mean angular velocity over time",
+        lambda one: one.result(one.effort.omega * one.mean),
+    )
+    alpha: Any
+    growth: Any
 
     def __init__(
         self, effort: TurningEffort, pieces: Pieces, u: Array, mean: Array, failed: Flags, least: float
     ) -> None:
         beyond = ~(pieces.largest(u) < _FASTEST)
-        self.effort, self.pieces, self._mean = effort, pieces, mean
+        self.effort, self.pieces, self.mean = effort, pieces, mean
         self.u = np.where(pieces.of(failed) | ~np.isfinite(u), 0.0, u)
         self._ends = [one[0] for one in pieces.extremes(self.u[None])]
         stands = self._ends[2] <= least
         self.failed = failed | beyond | stands
         if effort.count is None and stands[0]:
-            raise Standstill(float(self._ends[3][0]))
+            raise Unsettled(degrees=float(self._ends[3][0]))
         if effort.count is None and beyond[0]:
             raise UsageError("the speed line leads beyond what can be computed with: check effort and flywheel")
 
@@ -95,38 +108,15 @@ class SpeedLine(Results):
         """Return values (n,), nan for machines without a speed line; for one machine a float."""
         return self.effort.result(np.where(self.failed, np.nan, values))
 
-    def _extreme(self, u: Array, degrees: Array) -> Extreme:
+    @property
+    def fluctuation(self) -> Any:
+        """δ, from the extremes of u: of a heavy flywheel those of ω have no digit of it left."""
+        return self.result((self._ends[0] - self._ends[2]) / self.mean)
+
+    def extreme(self, end: int) -> Extreme:
+        """Return the largest (end 0) or smallest (end 2) angular velocity in rad/s, with its angle."""
+        u, degrees = self._ends[end : end + 2]
         return Extreme(self.result(self.effort.omega * (1 + u)), self.result(degrees))
-
-    @key_value("δ", "ratio")
-    def delta(self) -> Any:
-        """Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m."""
-        return self.result((self._ends[0] - self._ends[2]) / self._mean)
-
-    @key_value("ω_max", "angular_velocity")
-    def omega_max(self) -> Extreme:
-        """Largest angular velocity."""
-        return self._extreme(*self._ends[:2])
-
-    @key_value("ω_min", "angular_velocity")
-    def omega_min(self) -> Extreme:
-        """Smallest angular velocity."""
-        return self._extreme(*self._ends[2:])
-
-    @key_value("ω_m", "angular_velocity")
-    def omega_mean(self) -> Any:
-        """Mean angular velocity over time."""
-        return self.result(self.effort.omega * self._mean)
-
-    @property
-    def growth(self) -> Any:
-        """Logarithm of what is left of a small disturbance after a cycle."""
-        raise NotImplementedError
-
-    @property
-    def alpha(self) -> tuple[Pieces, Array]:
-        """Samples of the angular acceleration dω/dt in rad/s² with their pieces."""
-        raise NotImplementedError
 
     @property
     def omega(self) -> tuple[Pieces, Array]:
@@ -137,7 +127,8 @@ class SpeedLine(Results):
 class SpeedEquation:
     """z′ = M − M_load(r), r = z/(½ J(φ) ω_n²), for `kurbel.numerics.collocation`; flywheel in kg m², (n,)."""
 
-    unknowns, bounded = 1, 0
+    unknowns = 1
+    bounded: int | None = 0
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
         self._effort, self._law, self.flywheel = effort, law, flywheel
@@ -147,26 +138,22 @@ class SpeedEquation:
         self.noise = 1e-16 * np.minimum(effort.pieces.largest(effort.M), energy)
 
     def known(self, pieces: Pieces) -> Array:
-        """Return M − M_load at uniform rotation in N m, and ½ J(φ) ω_n² in J."""
+        """Return M − M_load at uniform rotation in N m, and ½ J(φ) ω_n² in J: less by so much, it stands still."""
         excess, moving = pieces.carried(self._course, self._effort.pieces)
         return np.stack((excess, (moving + pieces.of(self.flywheel)) * pieces.of(self._effort.omega**2 / 2)))
 
-    def rate(self, known: Array, y: Array, pieces: Pieces, eased: Array) -> tuple[Array, Array]:
-        """Return z′ and its derivative by z; eased: so much more kinetic energy in J."""
+    def rate(self, known: Array, y: Array, pieces: Pieces) -> tuple[Array, Array]:
+        """Return z′ and its derivative by z."""
         assert self._law
-        energy = self.height(known, pieces, eased)
+        excess, energy = known
         rise, slope = self._law.rise(y[0] / energy, pieces)
-        return (known[0] - rise)[None], (-slope / energy)[None, None]
-
-    def height(self, known: Array, pieces: Pieces, eased: Array) -> Array:
-        """Return the kinetic energy in J at uniform rotation."""
-        return np.asarray(known[1] + pieces.of(eased))
+        return (excess - rise)[None], (-slope / energy)[None, None]
 
 
 class RigidLine(SpeedLine):
     """The speed line of machines whose flywheels (n,) in kg m² turn with the cranks.
 
-    Raises Standstill or Unsettled where the only machine has none, UsageError where nothing that turns has inertia.
+    Raises Unsettled where the only machine has none, UsageError where nothing that turns has inertia.
     """
 
     def __init__(self, effort: TurningEffort, law: SpeedLaw | None, flywheel: Array) -> None:
@@ -178,6 +165,7 @@ class RigidLine(SpeedLine):
             raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
         self.law = law
         self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))  # none of a batch stops the others
+
         if law:
             found = periodic(self._equation, effort.pieces)
             if effort.count is None:
@@ -223,7 +211,7 @@ class RigidLine(SpeedLine):
                 return pieces, u, lag
             pieces = fine
 
-    @property
+    @cached_property
     def growth(self) -> Any:
         """Logarithm of what is left of a small disturbance after a cycle: −∮ ∂M_load/∂ω/(J ω) dφ."""
         if self.law is None:

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import cached_property
-from typing import Any, NamedTuple
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,15 +25,16 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
-from kurbel.quantity import column, key_value
+from kurbel.quantity import value
 from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.harmonics import HIGHEST, MachineOrders, Spectrum, every_order
+from kurbel.solver.harmonics import HIGHEST, Spectrum, amplitudes, every_order
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
 
@@ -45,6 +46,8 @@ _PRESENT = 1e-6
 """An order whose sum of phase vectors is smaller, over the sum of their lengths, does no work."""
 _FAINT = 0.01
 """An order that excites a mode no more than this, over the order that does so most, is no danger to it."""
+_ROUNDING = 1e-14
+"""Of the largest torque on a mass: an order that is smaller is zero."""
 _MOST_WORK, _FEWEST = 3.75e4, 40
 """Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
 _LOST = 1e-4
@@ -91,45 +94,41 @@ class Excitation(NamedTuple):
     load_slope: Array
 
 
-def excitation(found: MachineOrders, line: ShaftLine) -> Excitation:
-    """Return what acts on the masses of a shaft line, order by order.
+def torques_on(effort: TurningEffort, line: ShaftLine) -> tuple[Array, Array]:
+    """Return the torques on the masses in N m, and what the inertia forces have in them, (masses, nodes, pieces).
 
-    An effort that is known from elsewhere acts on the first mass. The load takes the mean of all torques, and its own
-    orders where it varies over the turn.
+    On the pieces of the effort. Efforts have the losses of the machine, inertia forces none; an effort that is known
+    from elsewhere acts on the first mass. Where a load varies over the turn, it is in them but for its mean.
     """
-    effort, masses = found.effort, len(line.masses)
-    gas, inertia = np.zeros((2, masses, len(found.orders)), complex)
-    means, slopes = np.zeros((2, masses))
-    places = {name: index for index, mass in enumerate(line.masses) for name in mass.cylinders}
-    for one in found.cylinders:
-        place, (own, moved) = places[one.forces.drive.name], one.in_machine.parts
-        gas[place] += own[1:]
-        inertia[place] += moved[1:] / one.share  # without losses
-        means[place] += (own + moved)[0].real
-    if effort.machine.effort:
-        gas[0], means[0] = found.machine.gas.amplitudes, found.M_mean
+    whole, inertia = np.zeros((2, len(line.masses), *effort.pieces.degrees.shape))
+    terms = [*effort.terms, *effort.missing_inertia]
+    moving = [term._replace(factor=1.0) for term in effort.inertia_terms]
+    for place, mass in enumerate(line.masses):
+        for torque, each in ((whole[place], terms), (inertia[place], moving)):
+            here = [[one for one in term.cylinders if one.drive.name in mass.cylinders] for term in each]
+            torque += effort.sampled([term._replace(cylinders=own) for term, own in zip(each, here) if own])
+    if effort.given is not None:
+        whole[0] = effort.M
     if effort.diagram:
-        gas[line.load] -= found.spectra(effort.pieces, [effort.load])[0, 1:]
-    omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
+        whole[line.load] -= effort.load - effort.mean
+    return whole, inertia
+
+
+def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitation:
+    """Return what acts on the masses of a shaft line, order by order; the load takes the mean of all torques."""
+    whole, inertia = torques_on(effort, line)
+    values = np.concatenate((whole - inertia, inertia))
+    acting, parts = values.any(axis=(1, 2)), np.zeros((len(values), len(orders)), complex)
+    parts[acting] = amplitudes(effort.pieces, values[acting], orders)[..., 0]
+    parts = unless_cancelled(parts, np.abs(values).max(axis=(1, 2))[:, None], _ROUNDING)
+
+    means, slopes = effort.mean_of(whole)[:, 0], np.zeros(len(whole))
     if not line.ground:
         means[line.load] -= means.sum()
+    omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
     if law:
         slopes[line.load] = law.steepness[0] / omega
-    return Excitation(omega, found.orders, gas, inertia, means, slopes)
-
-
-def driving(effort: TurningEffort, line: ShaftLine) -> Array:
-    """Return the same torques over the angle, less their means in N m, (masses, nodes, pieces) of `effort.pieces`."""
-    found = np.zeros((len(line.masses), *effort.pieces.degrees.shape))
-    for torque, mass in zip(found, line.masses):
-        terms = [*effort.terms, *effort.missing_inertia]
-        here = [[one for one in term.cylinders if one.drive.name in mass.cylinders] for term in terms]
-        torque += effort.sampled([term._replace(cylinders=own) for term, own in zip(terms, here) if own])
-    if effort.machine.effort:
-        found[0] = effort.M
-    if effort.diagram:
-        found[line.load] -= effort.load
-    return np.asarray(found - effort.pieces.mean(found)[:, None])
+    return Excitation(omega, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
 
 
 # forced vibration
@@ -196,33 +195,21 @@ def _mean_inertia(drive: Drive) -> float:
 
 
 class SegmentTorque(NamedTuple):
-    """The torque in one segment of the shaft line at the working speed, and the stress where its section is known.
+    """The torque in one segment of the shaft line at the working speed in N m, and the stress in Pa, None if not known.
 
-    M_shaft_mean, M_shaft_max, M_shaft_min in N m; over: the torque at crank angles in degrees; factor: the stress in Pa
-    per N m.
+    M_vibratory, tau_vibratory: half of what they swing; over: the torque at crank angles (n,) in degrees; factor: the
+    stress in Pa per N m.
     """
 
     name: str
     M_shaft_mean: float
     M_shaft_max: float
     M_shaft_min: float
+    M_vibratory: float
+    tau_mean: float | None
+    tau_vibratory: float | None
     over: Callable[[Array], Array]
     factor: float | None
-
-    @property
-    def M_vibratory(self) -> float:
-        """Vibratory torque amplitude (half peak-to-peak) in N m."""
-        return (self.M_shaft_max - self.M_shaft_min) / 2
-
-    @property
-    def tau_mean(self) -> float | None:
-        """Stress of the mean torque in Pa."""
-        return None if self.factor is None else self.factor * self.M_shaft_mean
-
-    @property
-    def tau_vibratory(self) -> float | None:
-        """Vibratory stress amplitude (half peak-to-peak) in Pa."""
-        return None if self.factor is None else self.factor * self.M_vibratory
 
     def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
@@ -233,19 +220,21 @@ class SegmentState(AtAngles):
     """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
 
     commands = ("torsion",)
+    M_shaft = value(
+        "M_w",
+        "torque",
+        "Torque in the piece of shaft, mean and vibration",
+        lambda one: one.segment.over(one.phi) if one.segment else None,
+    )
+    tau = value(
+        "τ",
+        "stress",
+        "Torsional stress where the piece is thinnest",
+        lambda one: one.segment.factor * one.M_shaft if one.segment and one.segment.factor else None,
+    )
 
     def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
-        self._segment, self.phi = segment, phi
-
-    @column("M_w", "torque")
-    def M_shaft(self) -> Any:
-        """Torque in the piece of shaft, mean and vibration."""
-        return self._segment.over(self.phi) if self._segment else None
-
-    @column("τ", "stress")
-    def tau(self) -> Any:
-        """Torsional stress where the piece is thinnest."""
-        return self._segment.factor * self.M_shaft if self._segment and self._segment.factor else None
+        self.segment, self.phi = segment, phi
 
 
 # the results
@@ -274,34 +263,81 @@ class Critical(NamedTuple):
 class ShaftVibration(Results):
     """The vibrations of the shaft line of a machine; orders (k,): those of the tables. Raises UsageError.
 
-    first, last: numbers of the first mode, 0 where the shaft turns freely, and of the last.
+    first, last: numbers of the first mode, 0 where the shaft turns freely, and of the last. obstacle: why no forced
+    vibration can be computed, or an empty text.
     """
 
     command, state = "torsion", SegmentState
+
+    natural_frequency = value(
+        "f_1",
+        "frequency",
+        "Lowest natural frequency of torsional vibration",
+        lambda one: float(one.modes.omegas[1 - one.first]) / (2 * math.pi),  # the rotation of the whole is none
+    )
+    holzer_residual = value(
+        "ΣωJΘ",
+        "ratio",
+        "Torque left behind the last mass in Holzer's tables, over the largest one",
+        lambda one: max(one.modes.holzer(index).residual for index in range(len(one.modes.omegas))),
+        plain="sum w2 J Theta",
+        residual=True,
+    )
+    vibration_loss = value(
+        "N_d",
+        "power",
+        "Mean power that the damping takes",
+        lambda one: None if one.vibration is None else float(one.vibration.loss[0]),
+        after="tau_vibratory",
+    )
+    M_vibratory = value(
+        "M_w,a",
+        "torque",
+        "Largest vibratory torque of any piece, half of what it swings",
+        lambda one: max((piece.M_vibratory for piece in one.pieces), default=None),
+    )
+    tau_vibratory = value(
+        "τ_a",
+        "stress",
+        "Largest vibratory stress of any piece",
+        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.factor is not None), default=None),
+    )
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort, self.machine, self.line = effort, effort.machine, shaft_line_of(effort.machine)
         self._every = orders is None
         self.orders = every_order(effort.cycle) if orders is None else orders
-        self.chain = Chain.of(self.line, [self._inertia(mass) for mass in self.line.masses])
+        wheel, drives = self.machine.flywheel, [one.drive for one in effort.cylinders]
+        inertias = []
+        for mass in self.line.masses:
+            moving = [_mean_inertia(one) for one in drives if one.name in mass.cylinders and one.cylinder.masses]
+            inertias.append(math.fsum((mass.inertia, mass.flywheel * ((wheel and wheel.inertia) or 0.0), *moving)))
+            if not inertias[-1] > 0:
+                raise UsageError(
+                    f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'"
+                )
+        self.chain = Chain.of(self.line, inertias)
         self.modes = Modes(self.chain)
         self.first = 1 if self.chain.ground else 0
         self.last = self.first + len(self.modes.omegas) - 1
 
-    def _inertia(self, mass: ShaftMass) -> float:
-        """Return J in kg m²: what is given, the flywheel, and the mean of what the parts of the cylinders reduce to."""
-        wheel = self.machine.flywheel.inertia if self.machine.flywheel else None
-        drives = (one.drive for one in self.effort.cylinders if one.drive.name in mass.cylinders)
-        moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
-        inertia = math.fsum((mass.inertia, mass.flywheel * (wheel or 0.0), *moving))
-        if not inertia > 0:
-            raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
-        return inertia
+        if not self.machine.speed:
+            self._unexcited = "no speed given" if self.machine.speed is None else "not defined at rest"
+        else:
+            known = effort.groups or self.machine.effort
+            self._unexcited = "" if known else "no torque acts: no effort and no cylinder with a force is given"
+        damped = self.chain.segment_damping.any() or self.chain.mass_damping.any() or self.chain.loss.any()
+        undamped = "" if damped else "no damping given; at resonance nothing but damping bounds a vibration"
+        self.obstacle = self._unexcited or undamped
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
         return SegmentState(None, phi)
 
-    # natural vibrations
+    def piece_name(self, segment: int) -> str:
+        """Return what a segment is between."""
+        names = [mass.name for mass in self.line.masses]
+        ends = [*(["ground"] if self.chain.ground == "before" else []), *names, "ground"]
+        return f"{ends[segment]} – {ends[segment + 1]}"
 
     def holzer(self, mode: int) -> Holzer:
         """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
@@ -309,27 +345,25 @@ class ShaftVibration(Results):
             raise UsageError(f"--mode {mode}: the shaft line has the modes 1 to {self.last}")
         return self.modes.holzer(mode - self.first)
 
-    @key_value("f_1", "frequency")
-    def natural_frequency(self) -> float:
-        """Lowest natural frequency of torsional vibration.
-
-        The rotation of the whole is none.
-        """
-        return float(self.modes.omegas[1 - self.first]) / (2 * math.pi)
-
-    @key_value("ΣωJΘ", "ratio", plain="sum w2 J Theta", residual=True)
-    def holzer_residual(self) -> float:
-        """Torque left behind the last mass in Holzer's tables, over the largest one."""
-        return max(self.modes.holzer(index).residual for index in range(len(self.modes.omegas)))
-
     # critical speeds
 
     def critical_speeds(self, modes: int, highest: float = math.inf) -> tuple[Critical, ...]:
-        """Return the critical speeds of all orders up to the highest with the first modes."""
+        """Return the critical speeds of all orders up to the highest with the first modes.
+
+        The phase sum is |Σ Θ e^{−iνβ}| over the cranks; of an effort without cranks the amplitude where it acts. The
+        share is that of |Σ M_ν Θ|, of the torques at the working speed; of torques that are not known of the phase sum.
+        """
         found, working = [], self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            sums, shares = self._excited(angles)
+            at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
+            cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
+            amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
+            sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
+            sums = np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
+            works = sums if self._unexcited else np.abs(angles @ (self.acting.gas + self.acting.inertia))
+            shares = works / (works.max() or 1.0)
+
             for order, total, share in zip(self.orders.tolist(), sums.tolist(), shares.tolist()):
                 speed = omega / (2 * math.pi * order)
                 distance = speed / working - 1 if working else None
@@ -337,44 +371,16 @@ class ShaftVibration(Results):
                     found.append(Critical(order, mode, speed, total, distance, share))
         return tuple(found)
 
-    def _excited(self, angles: Array) -> tuple[Array, Array]:
-        """Return |Σ Θ e^{−iνβ}| over the cranks, and how strongly the orders excite a mode, over the strongest; (k,).
-
-        Of an effort without cranks the first is the amplitude where it acts. The second is |Σ M_ν Θ| of the torques at
-        the working speed, over the largest; of torques that are not known that of the first.
-        """
-        at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
-        cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
-        amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
-        sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
-        sums = np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
-        works = sums if self._unexcited else np.abs(angles @ (self.acting.gas + self.acting.inertia))
-        return sums, works / (works.max() or 1.0)
-
     def met(self, critical: Critical) -> bool:
         """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
         return not self.obstacle and critical.speed <= RUN_UP * (self.machine.speed or 0.0)
 
     # forced vibration
 
-    @property
-    def _unexcited(self) -> str:
-        """Why no torques are known, or an empty text."""
-        if not self.machine.speed:
-            return "no speed given" if self.machine.speed is None else "not defined at rest"
-        known = self.effort.groups or self.machine.effort
-        return "" if known else "no torque acts: no effort and no cylinder with a force is given"
-
-    @property
-    def obstacle(self) -> str:
-        """Why no forced vibration can be computed, or an empty text."""
-        undamped = "no damping given; at resonance nothing but damping bounds a vibration"
-        return self._unexcited or ("" if self.chain.damped else undamped)
-
     @cached_property
     def acting(self) -> Excitation:
         """The torques on the masses."""
-        return excitation(MachineOrders(self.effort, self.orders), self.line)
+        return excitation(self.effort, self.line, self.orders)
 
     def forced(self, speeds: Sequence[float]) -> Vibration:
         """Return the forced vibration at speeds in revolutions per second."""
@@ -395,7 +401,8 @@ class ShaftVibration(Results):
         if self.vibration is None or not self._every or self.chain.loss.any():
             return None
         effort, loaded = self.effort, self.line.load % len(self.line.masses)
-        order, driven = self.modes.omegas[-1] / effort.omega, driving(effort, self.line)
+        order, (driven, _) = self.modes.omegas[-1] / effort.omega, torques_on(effort, self.line)
+        driven -= effort.pieces.mean(driven)[:, None]
         equation = ChainEquation(self.chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded)
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
@@ -407,8 +414,8 @@ class ShaftVibration(Results):
         """The orders that are summed at the working speed, four times the usual ones; None where `steady` has all."""
         if self.steady or self.vibration is None or not self._every:
             return None if self.steady else self.vibration
-        orders = MachineOrders(self.effort, every_order(self.effort.cycle, 4 * HIGHEST))
-        return Vibration(self.chain, self.line, excitation(orders, self.line), self.vibration.omegas)
+        acting = excitation(self.effort, self.line, every_order(self.effort.cycle, 4 * HIGHEST))
+        return Vibration(self.chain, self.line, acting, self.vibration.omegas)
 
     @property
     def summed(self) -> Array | None:
@@ -432,45 +439,27 @@ class ShaftVibration(Results):
         """The torque in every segment at the working speed; none where no forced vibration can be computed."""
         if self.vibration is None:
             return ()
-        waves, (high, low) = self._over_the_angle(self.vibration)
-        ends = self.vibration.means[:, None] + np.stack((high, low), axis=1)
-        return tuple(
-            SegmentTorque(self.piece_name(i), float(mean), float(top), float(bottom), wave, stress(self.line, i))
-            for i, (mean, (top, bottom), wave) in enumerate(zip(self.vibration.means, ends, waves))
-        )
-
-    def _over_the_angle(self, vibration: Vibration) -> tuple[list[Callable[[Array], Array]], tuple[Array, Array]]:
-        """Return the torques of the segments by the crank angle, and the largest and smallest less their means."""
+        means = self.vibration.means.tolist()
         if self._summed:
-            orders, (high, low) = self._summed.acting.orders, self._summed.crests
-            summed = zip(vibration.means.tolist(), self._summed.torques[:, 0])
-            return [Spectrum(mean, orders, one).at for mean, one in summed], (high[:, 0], low[:, 0])
-        assert self.steady
-        pieces, torques = self.steady[0], self.steady[1] / vibration.ratios[:, None, None]
+            orders, (high, low) = self._summed.acting.orders, (one[:, 0] for one in self._summed.crests)
+            waves = [Spectrum(mean, orders, one).at for mean, one in zip(means, self._summed.torques[:, 0])]
+        else:
+            assert self.steady
+            pieces, torques = self.steady[0], self.steady[1] / self.vibration.ratios[:, None, None]
+            waves = [partial(_torque_at, pieces, mean, torque) for mean, torque in zip(means, torques)]
+            ends = pieces.extremes(torques)
+            high, low = ends.largest[:, 0], ends.smallest[:, 0]
 
-        def wave(mean: float, torque: Array) -> Callable[[Array], Array]:
-            return lambda degrees: mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
+        found = []
+        for segment, (mean, up, down, wave) in enumerate(zip(means, high.tolist(), low.tolist(), waves)):
+            factor, top, bottom = stress(self.line, segment), mean + up, mean + down
+            swing = (top - bottom) / 2
+            tau_mean, tau = (None, None) if factor is None else (factor * mean, factor * swing)
+            name = self.piece_name(segment)
+            found.append(SegmentTorque(name, mean, top, bottom, swing, tau_mean, tau, wave, factor))
+        return tuple(found)
 
-        found = pieces.extremes(torques)
-        return [wave(*one) for one in zip(vibration.means, torques)], (found.largest[:, 0], found.smallest[:, 0])
 
-    @key_value("N_d", "power", after="tau_vibratory")
-    def vibration_loss(self) -> float | None:
-        """Mean power that the damping takes."""
-        return None if self.vibration is None else float(self.vibration.loss[0])
-
-    @key_value("M_w,a", "torque")
-    def M_vibratory(self) -> float | None:
-        """Largest vibratory torque of any piece, half of what it swings."""
-        return max((piece.M_vibratory for piece in self.pieces), default=None)
-
-    @key_value("τ_a", "stress")
-    def tau_vibratory(self) -> float | None:
-        """Largest vibratory stress of any piece."""
-        return max((piece.tau_vibratory for piece in self.pieces if piece.tau_vibratory is not None), default=None)
-
-    def piece_name(self, segment: int) -> str:
-        """Return what a segment is between."""
-        names = [mass.name for mass in self.line.masses]
-        ends = [*(["ground"] if self.chain.ground == "before" else []), *names, "ground"]
-        return f"{ends[segment]} – {ends[segment + 1]}"
+def _torque_at(pieces: Pieces, mean: float, torque: Array, degrees: Array) -> Array:
+    """Return a mean and samples of what swings about it, together, at crank angles (n,) in degrees."""
+    return mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
