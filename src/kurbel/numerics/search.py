@@ -59,7 +59,7 @@ def roots(function: Function) -> tuple[Array, Flags]:
 
 
 def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
-    """Return a root in each bracket (n,), by inverse quadratic steps where they are safe, else halves; Chandrupatla 1997."""
+    """Return a root in each bracket (n,): inverse quadratic steps where they are safe, else halves (Chandrupatla)."""
     a, b, fa, fb = high, low, f_high, f_low
     part = np.full_like(a, 0.5)
     for _ in range(100):
