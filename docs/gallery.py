@@ -105,9 +105,10 @@ def page() -> str:
     for id, machine in shown():
         one = _DECLARED[id]
         heading = one.title if machine in (USUAL, BEST.get(id)) else f"{one.title}: {machine}"
+        more = f" --set {SET[id]}" if id in SET else ""
         blocks += [
             f"## {heading}",
-            f"```sh\nkurbel plot configs/{machine}.yaml {id}{f' --set {SET[id]}' if id in SET else ''} -o {id}.svg\n```",
+            f"```sh\nkurbel plot configs/{machine}.yaml {id}{more} -o {id}.svg\n```",
             embedded(id, machine),
             one.text,
         ]

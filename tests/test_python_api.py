@@ -38,6 +38,7 @@ SIGNATURES = {
     "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston'",
     "SliderCrank": "crank, rod, offset=0.0",
     "draw": "case, *names, units='metric', angles=None",
+    "find": "machine, vary, wanted=(), least='', greatest='', where=()",
     "load": "path, overrides=(), case=''",
     "loads": "text, name='<text>', overrides=()",
     "solve": "machine",

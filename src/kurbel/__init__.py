@@ -28,6 +28,7 @@ __all__ = [
     "Piston",
     "SliderCrank",
     "draw",
+    "find",
     "load",
     "loads",
     "solve",
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     import os
     from typing import Any
 
+    from kurbel.designs.asked import find as find
     from kurbel.designs.asked import sweep as sweep
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
@@ -60,6 +62,7 @@ _HOMES = {
     "Piston": "kurbel.machine.parts",
     "SliderCrank": "kurbel.mechanisms.slider_crank",
     "draw": "kurbel.notebook",
+    "find": "kurbel.designs.asked",
     "load": "kurbel.machine_file",
     "loads": "kurbel.machine_file",
     "sweep": "kurbel.designs.asked",

@@ -33,7 +33,7 @@ class Zero(Exception):
     """A reference is zero, and no error is relative to that."""
 
 
-class Row(NamedTuple):
+class Trial(NamedTuple):
     """A method; error: relative, and in units of the last place below 1e-12.
 
     median, least: of the time in seconds; ratio: of the median over that of kurbel's own method.
@@ -61,9 +61,9 @@ class Difference(NamedTuple):
 # what can be examined
 
 
-def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Row], list[tuple[str, str]]]:
+def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial], list[tuple[str, str]]]:
     """Return the rows of a machine, of its motion at crank angles, and what could not be examined and why."""
-    rows: list[Row] = []
+    rows: list[Trial] = []
     lacking: list[tuple[str, str]] = []
     with mp.workdps(DIGITS):
         for quantity, why in _quantities(machine):
@@ -288,7 +288,7 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
 # rows, and their times
 
 
-def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Row]:
+def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Trial]:
     """Yield the rows of one quantity, kurbel's own first. Raises Zero."""
     reference = np.atleast_1d(np.array(truth, dtype=object))
     if all(abs(one) <= 1e-30 for one in reference):
@@ -299,7 +299,7 @@ def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -
         median, least = timed(run, quick)
         own_median = own_median or median
         state = "blow-up" if error is None else "ok"
-        yield Row(quantity, name, points, state, error, ulp, median, least, median / own_median)
+        yield Trial(quantity, name, points, state, error, ulp, median, least, median / own_median)
 
 
 def errors(values: Array, reference: Array) -> tuple[float | None, float | None]:
@@ -328,7 +328,7 @@ def timed(run: Callable[[], Any], quick: bool) -> tuple[float, float]:
     return statistics.median(times), min(times)
 
 
-def better(found: list[Row]) -> list[Row]:
+def better(found: list[Trial]) -> list[Trial]:
     """Return the rows more exact and faster than kurbel's own, by more than 16 roundings and a fifth of the time."""
     own = {row.quantity: row for row in found if row.method == OWN}
     return [

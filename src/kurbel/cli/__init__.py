@@ -1,5 +1,6 @@
 """The command line: a thin command for every row of `COMMANDS`; it imports what it computes with when it is called."""
 
+from kurbel.cli.find import find
 from kurbel.cli.group import exit_statuses, kurbel
 from kurbel.cli.machine import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
 from kurbel.cli.pages import accuracy, check, plot, report
@@ -10,7 +11,22 @@ from kurbel.report.commands import COMMANDS
 __all__ = ["COMMANDS", "kurbel"]
 
 for _command in (
-    *(table, motion, forces, flywheel, stress, bearings, balance, harmonics, torsion, plot, report, sweep, accuracy),
+    *(
+        table,
+        motion,
+        forces,
+        flywheel,
+        stress,
+        bearings,
+        balance,
+        harmonics,
+        torsion,
+        plot,
+        report,
+        sweep,
+        find,
+        accuracy,
+    ),
     *(friction, check, example, keys, units, schema),
 ):
     assert _command.name

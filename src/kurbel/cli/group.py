@@ -27,7 +27,7 @@ _MEANINGS = {
     DONE: "done",
     BROKEN: "a limit is broken (check) or a case failed (accuracy --extremes)",
     WRONG: "wrong usage or input, or the output cannot be written",
-    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance",
+    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance, or find has nothing",
     INTERNAL: "a fault in kurbel",
     INTERRUPTED: "interrupted",
 }

@@ -1,4 +1,4 @@
-"""`kurbel.sweep`: what Python asks of many designs of a machine, as arrays."""
+"""`kurbel.sweep` and `kurbel.find`: what Python asks of many designs of a machine."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,8 +8,10 @@ import numpy as np
 
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
+from kurbel.designs.find import Solutions
+from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.sweep import Row, Spec, Sweep
+from kurbel.designs.sweep import Design, Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -38,13 +40,50 @@ def sweep(
 
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
-    machine = machine_of(machine)
-    if machine.origin is None:
-        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
-    given = tuple(_inputs(machine.origin, inputs))
+    origin = _read(machine)
+    given = tuple(_inputs(origin, inputs))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
-    found = Sweep(Spec(machine.origin, given=given, side_by_side=True, columns=names, with_angles=with_angles))
+    found = Sweep(Spec(origin, given=given, side_by_side=True, columns=names, with_angles=with_angles))
     return _arrays(found, list(rows_of(found, range(found.rows))))
+
+
+def find(
+    machine: Machine | str | os.PathLike[str],
+    vary: Mapping[str, tuple[float | str, float | str]],
+    wanted: Sequence[str] | str = (),
+    least: str = "",
+    greatest: str = "",
+    where: Sequence[str] | str = (),
+) -> Solutions:
+    """Return the values of one key or two that give wanted key values, or for which one is the least or the greatest.
+
+    machine: as `load` or `loads` returned it, or what these take; vary: dotted key of its file -> ends of the range, in
+    SI, or texts as the file would have them; wanted: as many texts `delta = 1/50`; least, greatest: id or symbol of a
+    key value instead; where: conditions such as `c_m < 5 m/s`. Solutions have `values` of the keys, in their order, and
+    `key_values`, in SI.
+
+    Raises UsageError for what cannot be read, NoSolutionError where nothing is found.
+
+    >>> import kurbel
+    >>> found = find("{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}", {"speed": ("50 rpm", "99 rpm")}, "c_m = 3 m/s")
+    >>> found.found[0].values  # revolutions per second
+    (1.5,)
+    """
+    origin = _read(machine)
+    numeric = [key for key, ends in vary.items() if not all(isinstance(one, str) for one in ends)]
+    kinds = Binder(origin, numeric, written_texts(origin, numeric)).kinds if numeric else ()
+    units = dict(zip(numeric, (SI.get(kind, "") for kind in kinds)))
+    texts = [f"{key}={low}:{high} {units.get(key, '')}".rstrip() for key, (low, high) in vary.items()]
+    equations, conditions = ([one] if isinstance(one, str) and one else [*one] for one in (wanted, where))
+    return find_in(origin, texts, equations, least, greatest, conditions)
+
+
+def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
+    """Return the file that a machine was read from. Raises UsageError where it was not."""
+    origin = machine_of(machine).origin
+    if origin is None:
+        raise UsageError("only a machine that was read can vary by its keys: take it from kurbel.load or kurbel.loads")
+    return origin
 
 
 def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
@@ -64,7 +103,7 @@ def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
         yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
 
 
-def _arrays(found: Sweep, rows: Sequence[Row]) -> dict[str, Any]:
+def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
         if head.input:

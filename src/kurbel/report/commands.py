@@ -36,6 +36,7 @@ _ROWS = (
     Command("plot", "Pictures, in the terminal or as SVG, PNG, PDF.", _STALLS),
     Command("report", "Everything on one page of HTML; two machines side by side."),
     Command("sweep", "Key values of many designs of a machine."),
+    Command("find", "The value of a key that gives a wanted key value.", _STALLS),
     Command("accuracy", "Error against run time; stiff and extreme cases.", (BROKEN, NO_SOLUTION)),
     Command("friction", "Body on an inclined plane; needs no machine file."),
     Command("check", "Read and check a machine file and its limits.", (BROKEN, NO_SOLUTION)),

@@ -14,7 +14,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Words
+from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
 from kurbel.report.picture_source import Source
 
 _USUAL = 60.0
@@ -57,7 +57,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
         place = state.along_rod * np.exp(1j * np.radians(degrees))
         return np.stack([place.real, place.imag])
 
-    symbol = Words("P + F_f") if drive.has_friction else source.words("P")
+    symbol = Words("P + F_f") if source.having("F_friction") else source.words("P")
     panel, axis = source.locus(("P", "P"), tip, symbol, ()), Axis(_NO_NAME, "force")
     all_x, all_y = panel.curves[0].x, panel.curves[0].y
     radius = _SMALL * (float(np.nanmax(np.hypot(all_x, all_y))) or 1.0)
@@ -201,7 +201,7 @@ def _curve(kind: str, *places: complex, name: Words = _NO_NAME, look: int | None
 
 
 def _mark(symbol: str, place: complex, value: float | None = None) -> Mark:
-    return Mark(place.real, place.imag, Figure(Words(symbol), value))
+    return Mark(place.real, place.imag, PageFigure(Words(symbol), value))
 
 
 def _panel(kind: str, curves: tuple[Curve, ...], marks: tuple[Mark, ...]) -> Panel:

@@ -1,0 +1,209 @@
+"""All roots, and the lowest value, of functions over an interval or a square that give many values at once.
+
+A function maps places (n, k), each from 0 to 1, to values (n,); a value is nan where there is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+
+from kurbel.arrays import Array, Flags, Indices
+
+_PLACES, _MOST = 65, 1000
+"""Places of an interval that are sampled first, and at most."""
+_SIDE, _FINE_SIDE = 17, 33
+"""Places of each side of a square at which roots are sought, and lowest values."""
+_LEAVES = 1e-3
+"""Of the spread of the samples: one farther from the cubic through its neighbours needs more samples around it."""
+_ROUNDING = 1e-12
+"""Of the largest value: by less samples differ through rounding."""
+_NARROWEST = 2.0**-20
+"""So narrow an interval is halved no further."""
+_SAME = 1e-8
+"""Roots of two functions closer together are one."""
+_LEFT = 1e-7
+"""Of the spread of the samples: if more is left at a change of sign, the function jumps there."""
+_PARTS = 16
+"""Into which an interval is divided at whose one end there is no value."""
+_CANDIDATES, _BOX = 4, 17
+"""Lowest places of a first grid round which boxes shrink, and places of a box to a side."""
+
+_CLOSE = 1e-11
+"""Half the side of a box that is small enough."""
+
+Function = Callable[[Array], Array]
+
+
+def roots(function: Function) -> tuple[Array, Flags]:
+    """Return all places (n,) in the interval where a function changes sign, in order, and whether it jumps there.
+
+    Roots closer together than 1/64 may be missed where the function looks smooth between the samples.
+    """
+    x, y = _sampled(function)
+    spread = np.nanmax(np.abs(y), initial=0.0)
+    at_samples = x[y == 0]
+    passed = np.flatnonzero(y[:-1] * y[1:] < 0)
+    if not len(passed):
+        return at_samples, np.zeros(len(at_samples), dtype=bool)
+    found = _closed(
+        lambda places: np.nan_to_num(function(places[:, None])), x[passed], x[passed + 1], y[passed], y[passed + 1]
+    )
+    left = function(found[:, None])
+    there = np.isfinite(left)
+    every, jumps = np.append(at_samples, found[there]), np.abs(left[there]) > _LEFT * spread
+    order = np.argsort(every)
+    return every[order], np.append(np.zeros(len(at_samples), dtype=bool), jumps)[order]
+
+
+def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:
+    """Return a root in each bracket (n,): inverse quadratic steps where they are safe, else halves (Chandrupatla)."""
+    a, b, fa, fb = high, low, f_high, f_low
+    part = np.full_like(a, 0.5)
+    for _ in range(100):
+        width = np.maximum(np.abs(b - a), 1e-300)
+        least = np.minimum(np.spacing(np.maximum(np.abs(a), np.abs(b))) / width, 0.5)
+        if ((width * least >= width / 2) | (fa == 0) | (fb == 0)).all():
+            break
+        middle = a + np.clip(part, least, 1 - least) * (b - a)
+        f_middle = function(middle)
+        same = np.sign(f_middle) == np.sign(fa)
+        c, fc = np.where(same, a, b), np.where(same, fa, fb)
+        b, fb = np.where(same, b, a), np.where(same, fb, fa)
+        a, fa = middle, f_middle
+        with np.errstate(all="ignore"):
+            xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+            step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+        safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
+        part = np.where(safe, np.clip(step, 0.0, 1.0), 0.5)
+    return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))
+
+
+def _sampled(function: Function) -> tuple[Array, Array]:
+    """Return places (n,) and values (n,): close where the function bends, and up to where it has values."""
+    x = np.linspace(0.0, 1.0, _PLACES)
+    y = function(x[:, None])
+    while len(x) < _MOST and len(halved := _to_halve(x, y)):
+        more = (x[halved] + x[halved + 1])[: _MOST - len(x)] / 2
+        x, y = _joined(x, y, more, function)
+    for _ in range(8):  # until the intervals without a value at one end are 1/16⁸ as wide
+        ends = np.flatnonzero(np.isfinite(y[:-1]) != np.isfinite(y[1:]))
+        ends = ends[np.diff(x)[ends] > _NARROWEST**2]
+        if not len(ends):
+            break
+        parts = np.arange(1, _PARTS) / _PARTS
+        x, y = _joined(x, y, (x[ends, None] + np.diff(x)[ends, None] * parts).ravel(), function)
+    return x, y
+
+
+def _to_halve(x: Array, y: Array) -> Indices:
+    """Return the intervals in whose neighbourhood samples leave a cubic, or might touch zero between two of them."""
+    nodes = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
+    weights = np.ones_like(nodes)
+    for one, other in product(range(4), repeat=2):
+        if one != other:
+            weights[one] *= (x[2:-2] - nodes[other]) / (nodes[one] - nodes[other])
+    cubic = (weights * np.stack([y[:-4], y[1:-3], y[3:-1], y[4:]])).sum(axis=0)
+    spread, size = np.nanmax(y, initial=-np.inf) - np.nanmin(y, initial=np.inf), np.nanmax(np.abs(y), initial=0.0)
+    bent = np.zeros(len(x), dtype=bool)
+    bent[2:-2] = np.abs(y[2:-2] - cubic) > _LEAVES * spread + _ROUNDING * size
+
+    near, before, after = y[1:-1], y[:-2], y[2:]
+    dips = (near * before > 0) & (near * after > 0) & (np.abs(near) <= np.minimum(np.abs(before), np.abs(after)))
+    bent[1:-1] |= dips & (np.abs(near) < np.maximum(np.abs(before - near), np.abs(after - near)))
+    return np.flatnonzero((bent[:-1] | bent[1:]) & (np.diff(x) > _NARROWEST))
+
+
+def _joined(x: Array, y: Array, more: Array, function: Function) -> tuple[Array, Array]:
+    """Return samples with those at more places, in order."""
+    x, y = np.append(x, more), np.append(y, function(more[:, None]))
+    order = np.argsort(x)
+    return x[order], y[order]
+
+
+def common_roots(functions: Function) -> Array:
+    """Return the places (n, 2) in the unit square at which both of two functions are zero; functions: gives (n, 2).
+
+    Newton's method starts in every cell of a grid of 16 a side in which both may be zero.
+    """
+    side = np.linspace(0.0, 1.0, _SIDE)
+    grid = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1)
+    values = functions(grid.reshape(-1, 2)).reshape(_SIDE, _SIDE, 2)
+    corners = np.stack([values[i : _SIDE - 1 + i, j : _SIDE - 1 + j] for i, j in product((0, 1), repeat=2)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    slack = (high - low) / 2  # zero may be passed between the corners
+    starts = ((low - slack <= 0) & (high + slack >= 0)).all(axis=-1)  # false where a corner has no value
+    places = grid[:-1, :-1][starts] + side[1] / 2
+    spread = np.nanmax(np.abs(values), axis=(0, 1), initial=0.0)
+    left = np.full(places.shape, np.nan)
+    for _ in range(30 if len(places) else 0):
+        left, slopes = _slopes(functions, places)
+        with np.errstate(all="ignore"):
+            determinant = slopes[:, 0, 0] * slopes[:, 1, 1] - slopes[:, 0, 1] * slopes[:, 1, 0]
+            first = (slopes[:, 1, 1] * left[:, 0] - slopes[:, 0, 1] * left[:, 1]) / determinant
+            second = (slopes[:, 0, 0] * left[:, 1] - slopes[:, 1, 0] * left[:, 0]) / determinant
+        steps = np.nan_to_num(np.stack([first, second], axis=1), posinf=0.0, neginf=0.0)
+        following = np.clip(places - np.clip(steps, -side[1], side[1]), 0.0, 1.0)
+        if np.abs(following - places).max() < 1e-15:
+            break
+        places = following
+    found = places[(np.abs(left) <= _ROUNDING * 10 * spread).all(axis=1)]
+    found = found[np.lexsort(found.T[::-1])]
+    kept: list[Array] = []
+    for one in found:
+        if all(np.abs(one - other).max() > _SAME for other in kept):
+            kept.append(one)
+    return np.array(kept).reshape(-1, 2)
+
+
+def _slopes(functions: Function, places: Array) -> tuple[Array, Array]:
+    """Return two functions (n, 2) and their slopes (n, functions, places) by central differences."""
+    step = 1e-6
+    moved = [np.clip(places + sign * step * np.eye(2)[axis], 0.0, 1.0) for axis in (0, 1) for sign in (1, -1)]
+    values = functions(np.concatenate([places, *moved])).reshape(5, -1, 2)
+    columns = [
+        (values[1 + 2 * axis] - values[2 + 2 * axis]) / (moved[2 * axis] - moved[2 * axis + 1])[:, axis, None]
+        for axis in (0, 1)
+    ]
+    return values[0], np.stack(columns, axis=-1)
+
+
+def lowest(function: Function, sides: int) -> tuple[Array, float]:
+    """Return the place (sides,) of the lowest value of a function over an interval or a square, and that value.
+
+    A value is inf or nan where it does not count; so is the value returned where none counts. Boxes shrink round the
+    lowest places of a grid; a box moves on while its lowest place is on its edge.
+    """
+    side = np.linspace(0.0, 1.0, _PLACES if sides == 1 else _FINE_SIDE)
+    grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
+    cost: Array = _cost(function, grid.reshape(-1, sides)).reshape(grid.shape[:-1])
+    around = np.pad(cost, 1, constant_values=np.inf)
+    shifts = [tuple(slice(1 + d, 1 + d + len(side)) for d in shift) for shift in product((-1, 0, 1), repeat=sides)]
+    valleys = np.isfinite(cost) & (cost <= np.min([around[shift] for shift in shifts], axis=0))
+    centres = grid[valleys][np.argsort(cost[valleys], kind="stable")[:_CANDIDATES]]
+    if not len(centres):
+        return np.full(sides, np.nan), np.inf
+
+    reach: Array = np.full(len(centres), side[1])
+    offsets = np.array([*product(np.linspace(-1.0, 1.0, _BOX if sides == 1 else 9), repeat=sides)])
+    values: Array = np.full(len(centres), np.inf)
+    for _ in range(60):
+        places = np.clip(centres[:, None] + reach[:, None, None] * offsets, 0.0, 1.0)
+        cost = _cost(function, places.reshape(-1, sides)).reshape(len(centres), -1)
+        best = np.argmin(cost, axis=1)
+        edge = (np.abs(offsets[best]) == 1).any(axis=1) & (cost[range(len(best)), best] < values)
+        centres, values = places[range(len(best)), best], cost[range(len(best)), best]
+        reach = np.where(edge, reach, reach * 3 / (_BOX if sides == 1 else 9))
+        if reach.max() < _CLOSE:
+            break
+        rivals = values <= values.min() + np.ptp(np.where(np.isfinite(cost), cost, values[:, None]), axis=1)
+        centres, values, reach = centres[rivals], values[rivals], reach[rivals]
+    first = int(np.argmin(values))
+    return centres[first], float(values[first])
+
+
+def _cost(function: Function, places: Array) -> Array:
+    values = function(places)
+    return np.where(np.isnan(values), np.inf, values)

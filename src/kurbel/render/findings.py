@@ -1,0 +1,71 @@
+"""What `kurbel find` prints of what it found: rows, JSON, and remarks on jumps, failing designs and bounds."""
+
+import kurbel
+from kurbel.declared.unit_systems import SI, convert, shown_unit
+from kurbel.designs.find import Solution, Solutions
+from kurbel.designs.sweep import Design
+
+Heads = tuple[tuple[str, str], ...]
+
+
+def heads(found: Solutions, system: str) -> Heads:
+    """Return names and units of the columns: the keys in the units of their ranges, and the key values."""
+    keys = [(one.key, one.unit) for one in found.varied]
+    largest = [max(abs(one.key_values[place]) for one in found.found) for place in range(len(found.answers))]
+    sized = zip(found.names, found.answers, largest)
+    return (*keys, *((name, shown_unit(one.kind, system, size)) for name, one, size in sized))
+
+
+def as_rows(found: Solutions, system: str) -> list[Design]:
+    """Return a row for each solution, in the order and the units of the heads."""
+    kinds = [*(one.kind for one in found.varied), *(one.kind for one in found.answers)]
+    units = [unit for _, unit in heads(found, system)]
+    return [
+        Design(
+            number,
+            tuple(float(convert(value, *unit)) for value, *unit in zip((*one.values, *one.key_values), kinds, units)),
+        )
+        for number, one in enumerate(found.found, 1)
+    ]
+
+
+def as_json(found: Solutions) -> dict[str, object]:
+    """Return what was found as JSON has it, all in SI."""
+
+    def solution(one: Solution) -> dict[str, object]:
+        key_values = [
+            {"id": name, "symbol": answer.quantity.symbol, "unit": SI[answer.kind], "value": value}
+            for name, answer, value in zip(found.names, found.answers, one.key_values)
+        ]
+        return {"values": list(one.values), "key_values": key_values, "notes": list(one.notes)}
+
+    ranges = [list(span) for span in found.met]
+    return {
+        "kurbel": kurbel.__version__,
+        "format": 1,
+        "command": "find",
+        "machine": found.machine,
+        "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
+        "wanted": [
+            {"id": name, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value}
+            for name, one in zip(found.names, found.wanted)
+        ],
+        "found": [solution(one) for one in found.found],
+        "range": ranges[0] if len(ranges) == 1 else ranges,
+        "jumps": [list(one.values) for one in found.jumps],
+        "failed": [{"low": one.low, "high": one.high, "failure": one.why} for one in found.failed],
+    }
+
+
+def remarks(found: Solutions) -> list[str]:
+    """Return what is to be said besides the solutions, a line each."""
+    key = found.varied[0]
+    lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
+    for one in found.jumps:
+        place = f"{key.key} = {key.in_unit(one.values[0]):.9g} {key.unit}".rstrip()
+        lines.append(f"{found.wanted[0].text.strip()}: passed by a jump at {place}")
+    for part in found.failed:
+        ends = [f"{key.in_unit(end):.6g}" for end in (part.low, part.high)]
+        where = f"at {ends[0]}" if ends[0] == ends[1] else f"from {ends[0]} to {ends[1]}"
+        lines.append(f"{key.key} {where} {key.unit}".rstrip() + f": designs fail: {part.why}")
+    return lines

@@ -1,0 +1,133 @@
+"""`kurbel find`: values planted, published, or known by a law are found again."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+from kurbel.designs.find import Solutions, find
+from kurbel.errors import UsageError
+from kurbel.machine_file.source import decode, read
+
+CONFIGS = Path(__file__).parents[2] / "configs"
+
+
+def run(*arguments: str, text: str | None = None) -> Result:
+    return CliRunner().invoke(kurbel, arguments, input=text)
+
+
+def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
+    return find(read(CONFIGS / f"{name}.yaml"), vary.split("; "), equations, **how)  # type: ignore[arg-type]
+
+
+def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
+    """J_δ,ω of `kurbel flywheel` is found by another way: Newton's method on the speed line of one machine."""
+    found = found_in("waterworks-two-cranks", "flywheel.inertia=10000:80000 kg m2", "delta = 1/50").found
+    told = json.loads(run("flywheel", str(CONFIGS / "waterworks-two-cranks.yaml"), "-f", "json").stdout)
+    by_id = {one["id"]: one["value"] for one in told["machine_key_values"]}
+    assert [one.values[0] for one in found] == pytest.approx([by_id["J_exact"]], rel=1e-9)
+
+
+def test_the_offset_of_least_guide_force() -> None:
+    """A kink, where N_max = −N_min: 29.237 mm and 4.0010 kN, against 5.99 kN without an offset."""
+    found = found_in("offset-engine", "offset=0:60 mm", least="N_peak").found[0]
+    assert found.values[0] == pytest.approx(29.237e-3, abs=5e-7)
+    assert found.key_values[0] == pytest.approx(4001.0, abs=0.05)
+    both = [found_in("offset-engine", "offset=28:31 mm", f"{name} = {size!r} N") for name, size in (
+        ("N_max", found.key_values[0]), ("N_min", -found.key_values[0]),
+    )]  # fmt: skip
+    for one in both:
+        assert one.found[0].values[0] == pytest.approx(found.values[0], rel=1e-8)
+
+
+def test_a_greatest_value_is_at_the_bound_of_a_condition() -> None:
+    """c_m = 2 s n: at 50/min and 1.5 m/s the stroke is 0.9 m."""
+    found = found_in("waterworks", "stroke=600:1000 mm", greatest="power", conditions=["c_m < 1.5 m/s"]).found[0]
+    assert found.values[0] == pytest.approx(0.9, rel=1e-9)
+    assert found.notes == ("beyond it: c_m < 1.5 m/s",)
+
+
+def test_a_flat_optimum_is_a_range() -> None:
+    notes = found_in("waterworks", "speed=40:60 rpm", least="stroke").found[0].notes
+    assert "as good from 40 to 60 rpm" in notes
+
+
+def test_two_planted_values_are_found_again() -> None:
+    """A machine with s = 0.8 m and L/R = 5 has these T_max and N_max: both equations give its sizes back."""
+    planted = found_in("waterworks", "rod_ratio=4.999:5.001", least="T_max", conditions=["N_max > 0 N"])
+    case = json.loads(run("forces", str(CONFIGS / "waterworks.yaml"), "-f", "json", "--set", "rod_ratio=5").stdout)
+    by_id = {one["id"]: one["value"] for one in case["cylinders"][0]["key_values"]}
+    equations = [f"{id} = {by_id[id]!r} N" for id in ("T_max", "N_max")]
+    found = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
+    assert [one.values for one in found] == [pytest.approx((0.8, 5.0), rel=1e-9)]
+    assert planted.found
+
+
+def test_all_solutions_of_a_range() -> None:
+    """P_max of a vertical machine is m g sin γ + m b: the angles on both sides of 90° give the same."""
+    text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}"
+    origin = decode("<text>", text.encode())
+    found = find(origin, ["inclination=0:180 deg"], ["P_max = 2000 N"]).found
+    angles = [one.values[0] for one in found]
+    assert len(angles) == 2
+    assert sum(angles) == pytest.approx(180.0, abs=1e-6)
+
+
+def test_parts_of_the_range_that_fail_are_reported() -> None:
+    found = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
+    assert found.failed[0].low == 0.5
+    assert found.failed[0].high == pytest.approx(1.0, abs=1e-9)
+    assert "must be more than 1" in found.failed[0].why
+    assert len(found.found) == 1
+
+
+@pytest.mark.parametrize(
+    ("vary", "equations", "how", "message"),
+    [
+        ("stroke=600:1000 mm", [], {}, "give --vary"),
+        ("stroke=600:1000 mm", ["T_max = 1 kN", "N_max = 1 kN"], {}, "give --vary"),
+        ("stroke=600:1000", ["T_max = 1 kN"], {}, "has no unit"),
+        ("stroke=1000:600 mm", ["T_max = 1 kN"], {}, "write the smaller one first"),
+        ("stroke=600 mm", ["T_max = 1 kN"], {}, "write KEY=low:high"),
+        ("strok=600:1000 mm", ["T_max = 1 kN"], {}, "stroke"),
+        ("stroke=600:1000 mm", ["T_mux = 1 kN"], {}, "did you mean"),
+        ("stroke=600:1000 mm", ["T_max = 1"], {}, "unit"),
+        ("stroke=600:1000 mm", ["phi_reversal = 3 deg"], {}, "list"),
+    ],
+)
+def test_what_cannot_be_asked(vary: str, equations: list[str], how: dict[str, str], message: str) -> None:
+    with pytest.raises(UsageError, match=message):
+        found_in("waterworks", vary, *equations, **how)
+
+
+def test_nothing_found_ends_in_3_with_what_was_met() -> None:
+    done = run("find", str(CONFIGS / "waterworks.yaml"), "--vary", "stroke=600:1000 mm", "T_max = 90 kN")
+    assert done.exit_code == 3
+    assert "T_max is 87.1581 kN to 88.2375 kN" in done.stderr
+
+
+def test_the_written_file_has_what_was_wanted(tmp_path: Path) -> None:
+    file = CONFIGS / "waterworks-two-cranks.yaml"
+    asked = ("find", str(file), "--vary", "flywheel.inertia=10000:80000 kg m2", "delta = 1/80")
+    written = run(*asked, "--write")
+    new = tmp_path / "new.yaml"
+    new.write_text(written.stdout, encoding="utf-8")
+    told = json.loads(run("flywheel", str(new), "-f", "json").stdout)
+    assert {one["id"]: one["value"] for one in told["machine_key_values"]}["delta"] == pytest.approx(1 / 80, rel=1e-10)
+    comments = [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    assert [line for line in written.stdout.splitlines() if line.startswith("#")] == comments
+    row = run(*asked, "-f", "csv").stdout.splitlines()
+    assert row[0] == "row,flywheel.inertia_kgm2,delta"
+    assert float(row[1].split(",")[1]) == json.loads(run(*asked, "-f", "json").stdout)["found"][0]["values"][0]
+
+
+def test_of_several_solutions_one_is_taken() -> None:
+    text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, masses: {piston: 100 kg}, inclination: 90 deg}\n"
+    asked = ("find", "-", "--vary", "inclination=0:180 deg", "P_max = 2000 N", "--write")
+    assert run(*asked, text=text).exit_code == 2
+    first, second = (run(*asked, "--take", str(number), text=text).stdout for number in (1, 2))
+    assert first != second
+    assert np.array([len(first), len(second)]).min() > 50
