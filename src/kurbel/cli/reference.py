@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Iterable
 
 import click
 
@@ -13,7 +14,6 @@ from kurbel.cli.options import (
     number,
     output_option,
     output_options,
-    shipped,
     units_option,
     words,
 )
@@ -29,7 +29,7 @@ def _ratio(text: str) -> float:
     return math.inf if text in ("inf", "infinite") else number(text)
 
 
-@click.command()
+@click.command(context_settings={"allow_extra_args": True})
 @click.option(
     "--ratio",
     "ratios",
@@ -84,6 +84,8 @@ def table(
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
+    if extra := click.get_current_context().args:
+        raise click.UsageError(f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R")
     ratios = ratios or RATIOS
     printed = crank_angles(step, angles, 180, len(ratios))
     output.write(zusammenstellung(ratios, rows, printed, formula, compare))
@@ -111,8 +113,14 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
     output.write(inclined_plane(incline, coefficient, direction))
 
 
+def _shipped(ctx: click.Context, begun: str) -> Iterable[str]:
+    from kurbel.machine_file.source import shipped
+
+    return shipped()
+
+
 @click.command()
-@click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
+@click.argument("name", required=False, shell_complete=completing(_shipped))
 @output_option
 def example(name: str | None, file_name: str | None) -> None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
@@ -121,6 +129,8 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
+    from kurbel.machine_file.source import shipped
+
     files = shipped()
     if name is None:
         first_lines = {each: _read(path).partition("\n")[0].lstrip("# ") for each, path in files.items()}

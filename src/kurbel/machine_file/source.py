@@ -15,6 +15,18 @@ _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uff
 """As YAML has it, without the surrogates, which no UTF-8 holds."""
 
 
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+# a wheel carries the machines inside the package; a checkout has them next to src
+_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
+
+
+def shipped() -> dict[str, str]:
+    """Return the machines that come with kurbel: the path of each file by its name."""
+    folder = next(filter(os.path.isdir, _PLACES))
+    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
+    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
+
+
 def read(path: str | os.PathLike[str]) -> Origin:
     """Return the machine file at a path, or standard input for "-".
 
@@ -29,7 +41,9 @@ def read(path: str | os.PathLike[str]) -> Origin:
         with open(name, "rb") as file:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
-        what = f"{name or 'the empty name'}: there is no such file; 'kurbel example' lists machines to start from"
+        writes = f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
+        hint = writes if name in shipped() else "'kurbel example' lists machines to start from"
+        what = f"{name or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
         what = f"{name} is a folder; name the machine file in it"
     except PermissionError:
