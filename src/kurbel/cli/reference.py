@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections.abc import Iterable
 
 import click
 
@@ -23,6 +22,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
 from kurbel.report.tables import crank_angles
+from kurbel.shipped import shipped
 
 
 def _ratio(text: str) -> float:
@@ -113,14 +113,8 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
     output.write(inclined_plane(incline, coefficient, direction))
 
 
-def _shipped(ctx: click.Context, begun: str) -> Iterable[str]:
-    from kurbel.machine_file.source import shipped
-
-    return shipped()
-
-
 @click.command()
-@click.argument("name", required=False, shell_complete=completing(_shipped))
+@click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
 @output_option
 def example(name: str | None, file_name: str | None) -> None:
     """List the machines that come with kurbel, or print the file of the machine NAME.
@@ -129,8 +123,6 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    from kurbel.machine_file.source import shipped
-
     files = shipped()
     if name is None:
         first_lines = {each: _read(path).partition("\n")[0].lstrip("# ") for each, path in files.items()}

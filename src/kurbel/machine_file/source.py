@@ -7,24 +7,13 @@ import sys
 from kurbel.declared.numerals import SPACES
 from kurbel.errors import Fault, MachineFileError, UnreadableFileError
 from kurbel.machine.origin import Origin, lines_of
+from kurbel.shipped import shipped
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
 _SPACE = dict.fromkeys(map(ord, SPACES), " ")  # YAML takes them for letters
 _UNPRINTABLE = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ufffe\uffff]")
 """As YAML has it, without the surrogates, which no UTF-8 holds."""
-
-
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# a wheel carries the machines inside the package; a checkout has them next to src
-_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
-
-
-def shipped() -> dict[str, str]:
-    """Return the machines that come with kurbel: the path of each file by its name."""
-    folder = next(filter(os.path.isdir, _PLACES))
-    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
-    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
 
 
 def read(path: str | os.PathLike[str]) -> Origin:
