@@ -65,6 +65,12 @@ class Angles(NamedTuple):
         """Return those of every machine."""
         return np.split(self.degrees, np.searchsorted(self.machine, np.arange(1, count)))
 
+    def listed(self, count: int | None) -> tuple[Any, ...]:
+        """Return them as a tuple; of many machines one tuple each."""
+        if count is None:
+            return tuple(self.degrees.tolist())
+        return tuple(tuple(one.tolist()) for one in self.of_each(count))
+
 
 class SampledExtremes(NamedTuple):
     """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
