@@ -13,7 +13,7 @@ import pytest
 
 from imported import modules_after
 from kurbel.accuracy import trials
-from kurbel.accuracy.trials import Row, better, by_fit, by_gauss, equidistant, errors, examined, float_roots, savings
+from kurbel.accuracy.trials import Trial, better, by_fit, by_gauss, equidistant, errors, examined, float_roots, savings
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
@@ -26,7 +26,7 @@ BARE = "{name: bare, speed: 60 rpm, crank: 400 mm, rod: 2000 mm}"
 
 
 @pytest.fixture(scope="module")
-def rows() -> list[Row]:
+def rows() -> list[Trial]:
     """All rows of a machine without corners but at the dead centres, and with friction."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
@@ -35,7 +35,7 @@ def rows() -> list[Row]:
 
 
 @pytest.mark.parametrize("quantity", ["x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"])
-def test_methods_converge(rows: list[Row], quantity: str) -> None:
+def test_methods_converge(rows: list[Trial], quantity: str) -> None:
     """Equal divisions slowly; methods between the corners, and kurbel, to rounding."""
     found = {(row.method, row.points): row.error or 0.0 for row in rows if row.quantity == quantity}
     own = next(error for (method, _), error in found.items() if method == "kurbel")
@@ -53,7 +53,7 @@ def test_methods_converge(rows: list[Row], quantity: str) -> None:
     assert found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
 
 
-def test_evaluations_are_counted(rows: list[Row]) -> None:
+def test_evaluations_are_counted(rows: list[Trial]) -> None:
     """37 angles of a closed formula, as many samples of a turn as divisions; kurbel's own are those of its solver."""
     used = {(one.quantity, one.method, one.points): one.evaluations for one in rows}
     assert used["x", "kurbel", "closed"] == used["x", "textbook, radians", "closed"] == 37
@@ -110,8 +110,8 @@ def test_errors_of_arrays() -> None:
     assert errors(np.array([math.nan]), of(1)) == (None, None)
 
 
-def row(method: str, error: float | None, time: float) -> Row:
-    return Row("x", method, "1", "ok", 1, error, None, time, time, 1.0)
+def row(method: str, error: float | None, time: float) -> Trial:
+    return Trial("x", method, "1", "ok", 1, error, None, time, time, 1.0)
 
 
 def test_better_needs_both_error_and_time() -> None:

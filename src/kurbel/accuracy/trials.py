@@ -35,7 +35,7 @@ class Zero(Exception):
     """A reference is zero, and no error is relative to that."""
 
 
-class Row(NamedTuple):
+class Trial(NamedTuple):
     """A method; evaluations: crank angles of the motion; error: relative, and in units of the last place below 1e-12.
 
     median, least: of the time in seconds; ratio: of the median over that of kurbel's own method.
@@ -62,7 +62,7 @@ class Difference(NamedTuple):
 
 
 class Saving(NamedTuple):
-    """A machine with something left out; stages: functions of the solver that run for it; times as in `Row`."""
+    """A machine with something left out; stages: functions of the solver that run for it; times as in `Trial`."""
 
     machine: str
     stages: int
@@ -74,9 +74,9 @@ class Saving(NamedTuple):
 # what can be examined
 
 
-def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Row], list[tuple[str, str]]]:
+def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial], list[tuple[str, str]]]:
     """Return the rows of a machine, of its motion at crank angles, and what could not be examined and why."""
-    rows: list[Row] = []
+    rows: list[Trial] = []
     lacking: list[tuple[str, str]] = []
     with mp.workdps(DIGITS):
         for quantity, why in _quantities(machine):
@@ -301,7 +301,7 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
 # rows, and their times
 
 
-def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Row]:
+def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Trial]:
     """Yield the rows of one quantity, kurbel's own first. Raises Zero."""
     reference = np.atleast_1d(np.array(truth, dtype=object))
     if all(abs(one) <= 1e-30 for one in reference):
@@ -313,7 +313,7 @@ def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -
         median, least = timed(run, quick)
         own_median = own_median or median
         state = "blow-up" if error is None else "ok"
-        yield Row(quantity, name, points, state, evaluations, error, ulp, median, least, median / own_median)
+        yield Trial(quantity, name, points, state, evaluations, error, ulp, median, least, median / own_median)
 
 
 def errors(values: Array, reference: Array) -> tuple[float | None, float | None]:
@@ -361,7 +361,7 @@ def watched(run: Callable[[], Any]) -> tuple[Any, int, int]:
         sys.setprofile(before)
 
 
-def better(found: list[Row]) -> list[Row]:
+def better(found: list[Trial]) -> list[Trial]:
     """Return the rows more exact and faster than kurbel's own, by more than 16 roundings and a fifth of the time."""
     own = {row.quantity: row for row in found if row.method == OWN}
     return [
