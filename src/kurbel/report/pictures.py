@@ -473,7 +473,7 @@ PICTURES = (
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
     PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
-    PictureKind("construction", "Displacement and velocity by construction", "motion", construction),
+    PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the one that says most of a machine first."""
 
