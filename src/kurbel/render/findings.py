@@ -66,13 +66,11 @@ def picture(found: Solutions, system: str) -> Picture:
     key, wanted = found.varied[0], found.wanted[0]
     numbers, values, kind = found.places[:, 0], found.values[:, 0], wanted.answer.kind
     unit = shown_unit(kind, system, float(np.nanmax(np.abs(values))))
-    gaps = np.searchsorted(numbers, [one.values[0] for one in found.jumps])
-    numbers, values = np.insert(numbers, gaps, np.nan), np.insert(values, gaps, np.nan)
-    numbers = np.where(np.isnan(values), np.nan, convert(numbers, key.kind, key.unit))
-    # of several failing designs in a row one parts the curve, none at its ends
-    kept = ~np.isnan(values) | np.append(False, ~np.isnan(values[:-1]))
-    kept &= np.cumsum(~np.isnan(values[::-1]))[::-1] > 0
-    x, y = numbers[kept], np.asarray(convert(values[kept], kind, unit))
+    # one nan at a jump, two for a design that fails
+    numbers, values = (np.repeat(one, 1 + np.isnan(values)) for one in (numbers, values))
+    jumps = np.searchsorted(numbers, [one.values[0] for one in found.jumps])
+    numbers, values = np.insert(numbers, jumps, np.nan), np.insert(values, jumps, np.nan)
+    x, y = np.where(np.isnan(values), np.nan, convert(numbers, key.kind, key.unit)), convert(values, kind, unit)
     symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
     if wanted.value is not None:
