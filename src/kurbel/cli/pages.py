@@ -99,7 +99,7 @@ def progress_of(command: str) -> Callable[[str], None]:
     "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
 )
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
-@click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
+@click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
 @cylinder_option
 @units_option
 @number_options
