@@ -69,9 +69,11 @@ class Trace(Indivisible):
     column: int = 0
 
     def __post_init__(self) -> None:
-        rising = self.samples.shape[1:] == self.angles.shape and self.period and (np.diff(self.angles) >= 0).all()
+        if self.angles.ndim != 1 or len(self.angles) < 2 or self.samples.shape[1:] != self.angles.shape:
+            refused("a trace needs as many pressures as angles, two or more")
+        rising = (np.diff(self.angles) >= 0).all() and self.period  # nan is not
         if not rising or not np.isfinite(self.samples).all():
-            refused("a trace has as many finite pressures as angles, which rise over one whole cycle, 360 or 720 deg")
+            refused("a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg")
 
     @cached_property
     def pressures(self) -> Array:
