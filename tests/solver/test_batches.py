@@ -32,6 +32,7 @@ LOCOMOTIVE = (
     "hammer_speed",
     "hammer_train_speed",
     "share_allowed",
+    "counterweight_wheel",
 )
 DIRECTION = "_angle"
 

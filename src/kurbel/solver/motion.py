@@ -317,7 +317,23 @@ class Motion(Results):
         if not self.mechanism.slides:
             return None
         pieces, (_, curvature, *_) = self._turn
-        found = pieces.zeros(curvature)
+        return self._angles(pieces.zeros(curvature))
+
+    @key_value("φ_b0=0", "angle", listed=True, on_request=("forces",))
+    def phi_b_zero_book(self) -> tuple[Any, ...] | None:
+        """The same by the acceleration of first order, cos φ + R/L cos 2φ = 0 (R 291).
+
+        None where the book has no such acceleration, and with the infinite rod, of which it is exact.
+        """
+        offer = next((one for one in self.mechanism.OFFERS if one.quantity.id == "b_book"), None)
+        if offer is None or offer.factor(self.mechanism, CrankAngle.of(0.0)) is None or every(self.mechanism.lam == 0):
+            return None
+        turn = self._turn[0]
+        mechanism = self.mechanism if self._count is None else taken(self.mechanism, turn.machine)
+        return self._angles(turn.zeros(np.asarray(offer.factor(mechanism, CrankAngle.at_nodes(turn)))))
+
+    def _angles(self, found: Angles) -> tuple[Any, ...]:
+        """Return crank angles in degrees, of many machines a tuple of each."""
         if self._count is None:
             return tuple(found.degrees.tolist())
         return tuple(tuple(one.tolist()) for one in found.of_each(self._count))
