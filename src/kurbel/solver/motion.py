@@ -171,6 +171,14 @@ class Motion(Results):
     b_max = value("b_max", "acceleration", "Largest acceleration")
     b_min = value("b_min", "acceleration", "Smallest acceleration: the largest deceleration, negative")
     phi_b_zero = value("φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True)
+    phi_b_zero_book = value(
+        "φ_b0=0",
+        "angle",
+        "The same by the acceleration of first order, cos φ + R/L cos 2φ = 0 (R 291)",
+        lambda motion: motion.roots_of_the_book(),
+        listed=True,
+        on_request=("forces",),
+    )
     of_the_mechanism = Searched()
 
     def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
@@ -205,6 +213,18 @@ class Motion(Results):
             found["c_work_max"], found["c_return_max"] = fastest, Extreme(-slowest.value, slowest.degrees)
         found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
         return found
+
+    def roots_of_the_book(self) -> tuple[Any, ...] | None:
+        """Return where the acceleration of first order is zero, in degrees.
+
+        None where the book has none, and with the infinite rod, of which it is exact.
+        """
+        mechanism, turn = self.mechanism, self._turn[0]
+        offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(mechanism.lam == 0):
+            return None
+        taken_on = mechanism if self._count is None else taken(mechanism, turn.machine)
+        return turn.zeros(np.asarray(offer.factor(taken_on, CrankAngle.at_nodes(turn)))).listed(self._count)
 
     # the extremes over a turn
 
