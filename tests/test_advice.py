@@ -82,7 +82,7 @@ def test_a_resistance_of_another_mean(load: int, says: str) -> None:
 def test_quotients_before_a_unit(length: str, metres: float) -> None:
     text = f"crank: 100 mm\nrod: {length}\n"
     (cylinder,) = loads(text).cylinders
-    assert cylinder.mechanism.rod == pytest.approx(metres, rel=1e-15)  # type: ignore[attr-defined]
+    assert cylinder.mechanism.rod == pytest.approx(metres, rel=1e-15)
     jsonschema = pytest.importorskip("jsonschema")
     jsonschema.Draft7Validator(whole_schema()).validate({"crank": "100 mm", "rod": length})
 

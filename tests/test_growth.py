@@ -39,7 +39,7 @@ def calls(*words: str) -> int:
     """How many functions a command calls, once all that it imports is there."""
     profile = cProfile.Profile()
     profile.runcall(run, *words)
-    return int(pstats.Stats(profile).total_calls)  # type: ignore[attr-defined]
+    return int(pstats.Stats(profile).total_calls)
 
 
 def peak(*words: str) -> int:

@@ -77,7 +77,6 @@ DIAGRAM = "effort: {unit: N m, points: [[0, 0], [90, 4000], [180, 0], [270, 4000
 
 def test_a_flywheel_by_mass_and_radius_of_gyration() -> None:
     machine = loads(DIAGRAM + "flywheel: {mass: 2 t, radius_of_gyration: 1.2 m}\n")
-    assert machine.flywheel is not None
     assert machine.flywheel.inertia == pytest.approx(2000 * 1.44, rel=1e-15)
     for others, says in (
         ("mass: 2 t", "'mass' needs 'radius_of_gyration' beside it"),

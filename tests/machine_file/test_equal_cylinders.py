@@ -100,9 +100,8 @@ def test_a_cylinder_is_like_another_but_for_what_stands_there() -> None:
     )
     _, second, low = machine.cylinders
     assert [one.name for one in machine.cylinders] == ["HP", "cylinder 2", "LP"]
-    assert (second.mechanism.crank, second.mechanism.rod, second.pistons[0].bore) == (0.3, 2, 0.45)  # type: ignore[attr-defined]
-    assert (low.mechanism.rod, low.pistons[0].bore, low.crank_position) == (1.5, 0.7, 90)  # type: ignore[attr-defined]
-    assert low.masses is not None
+    assert (second.mechanism.crank, second.mechanism.rod, second.pistons[0].bore) == (0.3, 2, 0.45)
+    assert (low.mechanism.rod, low.pistons[0].bore, low.crank_position) == (1.5, 0.7, 90)
     assert low.masses.parts == 100
 
 
@@ -115,7 +114,7 @@ def test_equal_cylinders_are_those_written_out() -> None:
 
 def _numbers(machine: Machine) -> list[tuple[object, ...]]:
     return [
-        (one.name, one.crank_position, one.axial_position, one.mechanism.crank, one.pistons[0].bore, one.masses.parts)  # type: ignore[union-attr]
+        (one.name, one.crank_position, one.axial_position, one.mechanism.crank, one.pistons[0].bore, one.masses.parts)
         for one in machine.cylinders
     ]
 

@@ -28,8 +28,8 @@ def test_any_white_space_is_a_space(space: str) -> None:
     odd = loads(text.replace(" ", space))
     assert repr(odd.cylinders[0].mechanism) == "SliderCrank(crank=0.4, rod=2.0)"
     assert odd.speed == 50 / 60
-    head = odd.cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert head.lines[0].pressures == (5 * 98066.5, 2 * 98066.5)  # type: ignore[union-attr]
+    head = odd.cylinders[0].pistons[0].indicator.head_end
+    assert head.lines[0].pressures == (5 * 98066.5, 2 * 98066.5)
 
 
 @pytest.mark.parametrize(

@@ -22,9 +22,9 @@ def test_a_value_of_any_depth_is_set() -> None:
     )
     (cylinder,) = machine.cylinders
     assert machine.speed == 1  # the last one holds
-    assert machine.flywheel.fluctuation == 1 / 80  # type: ignore[union-attr]
-    assert cylinder.masses.parts == 9  # type: ignore[union-attr]
-    assert cylinder.pistons[0].indicator.head_end.lines[0].fractions[1] == 0.3  # type: ignore[union-attr]
+    assert machine.flywheel.fluctuation == 1 / 80
+    assert cylinder.masses.parts == 9
+    assert cylinder.pistons[0].indicator.head_end.lines[0].fractions[1] == 0.3
 
 
 def test_what_is_like_the_changed_one_changes_with_it() -> None:

@@ -25,7 +25,7 @@ NO_NUMBERS = {  # beside those of the bad files
 @pytest.mark.parametrize("text", NUMBERS)
 def test_numbers_are_those_of_yaml_1_2(text: str) -> None:
     mechanism = loads(f"crank: 1 m\nrod_ratio: {text}").cylinders[0].mechanism
-    assert float(mechanism.rod) / mechanism.crank == NUMBERS[text]  # type: ignore[attr-defined]
+    assert float(mechanism.rod) / mechanism.crank == NUMBERS[text]
 
 
 def refused(text: str) -> str:

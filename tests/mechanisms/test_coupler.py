@@ -57,7 +57,7 @@ def expected(far: object, crank: str, along: mp.mpf, across: mp.mpf, degrees: fl
     R = mp.mpf(crank)
 
     def line(phi: mp.mpf) -> mp.mpc:
-        return mp.mpc(*far(phi)) - R * mp.expj(phi)  # type: ignore[operator]
+        return mp.mpc(*far(phi)) - R * mp.expj(phi)
 
     def place(phi: mp.mpf) -> mp.mpc:
         return R * mp.expj(phi) + mp.mpc(along, across) * line(phi) / abs(line(phi))
@@ -100,10 +100,6 @@ def test_no_rod_no_point(text: str) -> None:
 def test_mean_speeds_of_the_strokes_after_redtenbacher() -> None:
     """c_a : c_r = β : α (R p. 615), and each is the stroke over its time."""
     motion = Case(load(str(Path(__file__).parents[2] / "configs" / "shaper.yaml"))).cylinders[0].motion
-    assert motion.c_work_m is not None
-    assert motion.c_return_m is not None
-    assert motion.stroke is not None
-    assert motion.speed is not None
     assert motion.c_return_m / motion.c_work_m == pytest.approx(motion.time_ratio, rel=1e-14)
     assert motion.stroke / motion.c_work_m + motion.stroke / motion.c_return_m == pytest.approx(1 / motion.speed)
     alpha = math.radians(motion.phi_work) / 2

@@ -31,7 +31,6 @@ def test_crank_pin_speed() -> None:
 def test_largest_inertia_force(mass: float, printed: float) -> None:
     """R 298 at the inner dead centre; the book takes v = 2,095 m/s and g = 9,81: 0.1 % more than exact."""
     smallest = one_cylinder(TAFEL_I, 50, masses=Masses(mass)).P_inertia_min
-    assert smallest is not None
     assert smallest.degrees == 0
     assert -smallest.value / GRAVITY == pytest.approx(printed, rel=1.5e-3)
 
@@ -49,7 +48,6 @@ def test_crank_train_carries_the_difference_and_the_dead_centre_the_sum() -> Non
     at = [10.0, 100.0, 200.0, 350.0]
     assert pytest.approx(steam.at(at).P + pump.at(at).P, rel=1e-14) == both.at(at).P
     found = both.extremes_of("P")
-    assert found
     # just before the inner dead centre: head end compressed to 9,5 at, crank end released to 2,2 at, pump pushing
     steam_end = (9.5 * STEAM.head_area - 2.2 * STEAM.crank_area) * AT
     assert found.largest.value == pytest.approx(steam_end + pump.at([270]).P[0], rel=1e-14)

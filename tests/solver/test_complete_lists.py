@@ -58,8 +58,6 @@ def force_along(forces: CylinderForces) -> Evaluate:
 
 def missing_reversals(forces: CylinderForces) -> int:
     found, extremes = forces.phi_reversal, forces.extremes_of("P")
-    assert found is not None
-    assert extremes is not None
     both = extremes.largest.value > 0 > extremes.smallest.value
     return wrong_signs(np.array(found), forces.breaks, force_along(forces)) + int(bool(found) != both)
 
@@ -67,8 +65,6 @@ def missing_reversals(forces: CylinderForces) -> int:
 def missing_crossings(forces: CylinderForces) -> int:
     shaft = Case(Machine((forces.drive.cylinder,), speed=forces.drive.machine.speed)).flywheel
     found = shaft.extremes_of("T")
-    assert found is not None
-    assert shaft.W is not None
     mean = shaft.W
 
     def evaluate(degrees: np.ndarray, within: np.ndarray) -> np.ndarray:
@@ -82,13 +78,10 @@ def missing_crossings(forces: CylinderForces) -> int:
 def test_a_short_druckwechsel_is_found(summit: float) -> None:
     """A constant pressure that leaves P_max of a few newtons beside a P_min of thousands."""
     lowest = single_acting(0.4, 0.4 / 0.3, 0.3, 0.0, 120, 100).motion.b_min
-    assert lowest is not None
     pressure = (summit + 100 * lowest.value) / (math.pi / 4 * 0.3**2)
     forces = single_acting(0.4, 0.4 / 0.3, 0.3, pressure, 120, 100)
     found = forces.extremes_of("P")
-    assert found is not None
     assert found.largest.value == pytest.approx(summit, abs=1e-11)
-    assert forces.phi_reversal is not None
     assert len(forces.phi_reversal) == 4
     assert np.abs(forces.at(forces.phi_reversal).P).max() <= 1e-12 * -found.smallest.value
 

@@ -109,7 +109,7 @@ def test_energy_balance_closes(engine: str, rubs: str) -> None:
 
 @pytest.mark.parametrize("name", ["crank_pin", "crosshead_pin", "journals"])
 def test_energy_balance_sees_a_fault(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = CylinderForces.friction_works.func  # type: ignore[attr-defined]
+    right = CylinderForces.friction_works.func
 
     def wrong(forces: CylinderForces) -> dict[str, Any]:
         works = right(forces)

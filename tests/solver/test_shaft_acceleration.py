@@ -32,8 +32,6 @@ def test_over_a_constant_inertia_it_is_the_excess_torque() -> None:
     assert turning.at(np.array([10.0, 100.0, 190.0, 280.0])).alpha == pytest.approx(
         [expected, -expected, expected, -expected], rel=1e-11
     )
-    assert turning.alpha_max is not None
-    assert turning.alpha_min is not None
     assert (turning.alpha_max.value, turning.alpha_min.value) == pytest.approx((expected, -expected), rel=1e-11)
 
 
@@ -60,10 +58,6 @@ def test_it_is_the_slope_of_half_the_square_of_the_speed(name: str) -> None:
     degrees, step = np.arange(3.3, 360.0, 7.1), 1e-3
     before, here, after = (turning.at(degrees + by).omega for by in (-step, 0.0, step))
     alpha = turning.at(degrees).alpha
-    assert before is not None
-    assert after is not None
-    assert here is not None
-    assert alpha is not None
     slope = (after - before) / np.radians(2 * step)
     speed = turning.omega if turning.elastic else here
     assert alpha == pytest.approx(slope * speed, abs=1e-5 * np.abs(alpha).max())

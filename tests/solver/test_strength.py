@@ -151,7 +151,6 @@ class TestBearings:
         solved = strength(shaft(), ScotchYoke(0.3), rpm=200)
         pressure = 1e6 * math.pi / 4 * 0.4**2 / (0.18 * 0.2)
         largest = solved.pressure_max("pin")
-        assert largest is not None
         assert largest.value == pytest.approx(pressure, rel=1e-14)
         assert solved.pressure_mean("pin") == pytest.approx(pressure, rel=1e-14)
         assert solved.pressure_velocity("pin") == pytest.approx(pressure * math.pi * 0.18 * 200 / 60, rel=1e-14)
@@ -164,7 +163,6 @@ def test_safety_counts_dead_centre_and_cycle() -> None:
     for part in PARTS:
         worst = max(solved.sigma_dc(part), solved.sigma_max(part).value)
         safety = solved.safety(part)
-        assert safety is not None
         assert safety.value == pytest.approx(60e6 / worst, rel=1e-15)
 
 
