@@ -151,6 +151,6 @@ class TestReversalsInTheNoise:
     def test_a_noisy_trace_has_the_reversals_of_the_clean_one(self) -> None:
         """cos⁵ lies flat round its zeros at 90° and 270°: noise of 0.02 bar crosses there many times."""
         noisy = self.traced(0.02, 0.0, 5.0)
-        assert noisy.reversals_in_noise > 10
+        assert noisy.changes_of_force[1] > 10
         assert noisy.phi_reversal == pytest.approx([90.0, 270.0], abs=20.0)
         assert len(noisy.phi_reversal or ()) == 2

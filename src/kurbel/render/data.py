@@ -169,7 +169,7 @@ def _results(part: Part, look: Look) -> dict[str, Any]:
             rounded(value, look.digits) for value in (one.value if isinstance(one.value, tuple) else (one.value,))
         ]
         value = values if isinstance(one.value, tuple) else values[0]
-        at = {} if one.at_deg is None else {"at_deg": rounded(one.at_deg, None)}
+        at = {} if one.at_deg is None else {"at_deg": rounded(one.at_deg, look.digits)}
         key_values.append({"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **at})
     return {
         "columns": list(part.columns),
