@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -89,12 +88,6 @@ def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
     for row, degrees in zip(found, ANGLES):
         along, across = mp.mpf("0.25"), mp.mpf("-0.08")
         assert row == pytest.approx(expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12)
-
-
-@pytest.mark.parametrize("text", ["crank: 300 mm\nrod: infinite\n", "mechanism: scotch-yoke\ncrank: 300 mm\n"])
-def test_no_rod_no_point(text: str) -> None:
-    with pytest.raises(MachineFileError, match="has no connecting rod"):
-        loads(text + POINT)
 
 
 def test_mean_speeds_of_the_strokes_after_redtenbacher() -> None:

@@ -14,10 +14,8 @@ from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftPart, line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
-from kurbel.numerics.pieces import Pieces
 from kurbel.solver.case import Case
 from kurbel.solver.chain import Chain, response
-from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.torsion import ShaftVibration
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -70,11 +68,6 @@ def machine_of(load: Load | None = None, effort: Any = None, damping: float = 60
     return Machine((), effort=effort, speed=1.0, flywheel=Flywheel(60.0), coupling=coupling, load=load)
 
 
-def orders_over_the_angle(pieces: Pieces, torques: np.ndarray, orders: np.ndarray) -> np.ndarray:
-    """The complex amplitudes (q, k) of torques (q, nodes, pieces) of one machine."""
-    return amplitudes(pieces, torques, orders)[..., 0]
-
-
 @pytest.mark.parametrize(
     "load",
     [
@@ -94,44 +87,6 @@ def test_the_coupling_of_the_flywheel_where_the_effort_jumps(load: Load | None) 
     assert piece.at(angles).M_shaft == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
     assert piece.M_shaft_max == pytest.approx(case.flywheel.elastic.M_coupling_max.value, rel=1e-12)
     assert piece.M_shaft_min == pytest.approx(case.flywheel.elastic.M_coupling_min.value, rel=1e-12)
-
-
-PISTONS = """
-name: two cylinders behind a gear
-speed: 300 rpm
-efficiency: 0.85
-cylinders:
-  - {name: one, crank: 100 mm, rod: 400 mm, bore: 200 mm, masses: {reciprocating: 20 kg},
-     indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}}
-  - {name: two, like: one, crank_position: 90 deg}
-load: {slip: 0.1}
-shaft:
-  - {cylinder: one, inertia: 2 kg m2}
-  - {stiffness: 40 kN m/rad, damping: 12 N m s/rad}
-  - {cylinder: two, inertia: 2 kg m2, damping: 3 N m s/rad}
-  - {stiffness: 60 kN m/rad, damping: 4 N m s/rad}
-  - {inertia: 3 kg m2}
-  - {gear: 2}
-  - {stiffness: 5 kN m/rad, damping: 9 N m s/rad}
-  - {inertia: 1 kg m2}
-"""
-
-
-PUMP = """
-     tandem: [{bore: 100 mm, indicator: {head_end: {constant: {expansion: 0 bar, compression: 4 bar}}}}],
-     indicator"""
-
-
-@pytest.mark.parametrize("text", [PISTONS, PISTONS.replace("\n     indicator", PUMP)], ids=["driving", "with pumps"])
-def test_all_orders_of_a_shaft_line_hold_each_of_them(text: str, tmp_path: Path) -> None:
-    """Cylinders, efficiency, a gear, and a load that slips: over the angle the same orders as order by order."""
-    (tmp_path / "machine.yaml").write_text(text)
-    found = Case(load(tmp_path / "machine.yaml")).torsion
-    assert found.remainder is None
-    size = np.abs(found.vibration.torques).max()
-    ratios = np.array([piece.ratio for piece in found.line.pieces])
-    over_the_angle = orders_over_the_angle(*found.steady, found.orders) / ratios[:, None]
-    assert over_the_angle == pytest.approx(found.vibration.torques[:, 0], abs=1e-12 * size)
 
 
 def test_the_damping_takes_what_the_torques_give() -> None:

@@ -126,23 +126,6 @@ def test_journals_bear_the_flywheel_too() -> None:
     assert heavy.friction_works.get("crank_pin") == pytest.approx(light.friction_works.get("crank_pin"), rel=1e-13)
 
 
-BAD = {
-    "friction: {crank_pin: 0.05}": "'crank_pin' needs a diameter: write for instance 'crank_pin_diameter: 120 mm'",
-    "friction: {journals: 0.05}": "or give 'journal_diameter' in 'crankshaft'",
-    "friction: {crosshead_pin: 0.05}": "'crosshead_pin' needs 'crosshead_pin_diameter' beside it",
-    "friction: {crank_pin: -0.05, crank_pin_diameter: 60 mm}": "friction.crank_pin: -0.05 is too small",
-    "friction: {crank_pin_diameter: 60 mm, crosshead: 0.1}": "'crank_pin_diameter' needs 'crank_pin' beside it",
-    "friction: {}": "'crank_pin', 'crosshead_pin' or 'journals'",
-}
-
-
-@pytest.mark.parametrize("friction", BAD)
-def test_what_is_wrong_is_told(friction: str) -> None:
-    with pytest.raises(MachineFileError) as caught:
-        loads(PLAIN[: PLAIN.index("friction")] + friction + "\n")
-    assert BAD[friction] in str(caught.value)
-
-
 def test_a_diameter_stands_in_one_place_only() -> None:
     with pytest.raises(MachineFileError, match="'pin_diameter' in 'crankshaft' says the same; leave one of them out"):
         loads(ENGINE + "friction: {crank_pin: 0.05, crank_pin_diameter: 210 mm}\n")
