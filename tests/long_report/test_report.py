@@ -55,6 +55,25 @@ def test_the_waterworks_machine_is_whole_and_small() -> None:
         assert words in page
 
 
+@pytest.mark.parametrize("name", ["waterworks-two-cranks", "marine-diesel", "shaper"])
+def test_the_first_page_says_most(name: str) -> None:
+    """The mechanism, eight key values as the commands print them, verdicts and warnings; input comes last."""
+    page = page_of(name)
+    sections = re.findall(r'<section id="([^"]*)">', page)
+    assert (sections[0], sections[-1]) == ("summary", "input")
+    summary = page[page.index('<section id="summary">') : page.index("</section>")]
+    assert summary.count("<figure>") == 1
+    facts = re.findall(r"<b>([^<]*)</b>", summary)
+    assert len(facts) == 8
+    rest = page[page.index("</section>") :]
+    assert sum(f">{one}" in rest or one.split(".")[0] in rest for one in facts) == 8
+
+
+def test_a_title_of_the_users() -> None:
+    page = run(str(CONFIGS["shaper"]), "--title", "Offer 7 <a>").stdout
+    assert "<h1>Offer 7 &lt;a&gt;</h1>" in page
+
+
 def test_the_energy_balance_closes_on_the_page() -> None:
     """What goes in less what friction takes reaches the shaft, in the printed figures."""
     rows = re.search(r'id="energy".*?<tbody>(.*?)</tbody>', page_of("waterworks"), re.DOTALL)

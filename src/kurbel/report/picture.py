@@ -164,6 +164,22 @@ class Grid(NamedTuple):
     verdicts: tuple[str, ...] = ()
 
 
+class Fact(NamedTuple):
+    """A key value that says much of a machine: what it is, its number and unit, its symbol, its crank angle or part."""
+
+    title: str
+    value: str
+    unit: str
+    symbol: str
+    where: str = ""
+
+
+class Facts(NamedTuple):
+    """Key values next to one another."""
+
+    facts: tuple[Fact, ...]
+
+
 class Pair(NamedTuple):
     """A picture of each of two machines, None of one that does not have it."""
 
@@ -171,7 +187,7 @@ class Pair(NamedTuple):
     right: Picture | None
 
 
-Item = Union[str, Grid, Report, Picture, Pair]
+Item = Union[str, Grid, Facts, Report, Picture, Pair]
 
 
 class Section(NamedTuple):
@@ -183,8 +199,9 @@ class Section(NamedTuple):
 
 
 class Document(NamedTuple):
-    """A report on one machine, or on several next to one another."""
+    """A report on one machine, or on several next to one another; subtitle: what kind of machine it is."""
 
     title: str
     provenance: tuple[Provenance, ...]
     sections: tuple[Section, ...]
+    subtitle: str = ""
