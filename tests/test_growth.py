@@ -1,5 +1,4 @@
 """How the work of a command grows with what it is given: counted calls, which are the same at every run."""
-"""
 
 from __future__ import annotations
 
@@ -65,9 +64,3 @@ def test_check_takes_the_samples_of_a_file_together(noise: float) -> None:
 def test_a_picture_has_no_piece_for_every_crossing_in_the_noise() -> None:
     """A picture of 1000 dots across shows no more than it has dots, whatever crosses between them."""
     assert per_sample(lambda file: ("plot", file, "-o", "m.svg"), lambda n: traced(n, 3.0), 1000, 2000) < 5
-
-
-# mechanisms and cylinders
-
-
-# sweeps

@@ -298,6 +298,3 @@ def test_moments_about_another_place() -> None:
 def test_what_cannot_be_balanced_is_refused(text: str, message: str) -> None:
     with pytest.raises(UsageError, match=message):
         _ = balance_of(text).free
-
-
-# numerics
