@@ -266,6 +266,23 @@ def test_a_locomotive() -> None:
     assert found.train_speed == pytest.approx(10 * math.pi * 1.7)
 
 
+def test_the_whole_counterweight_in_each_wheel() -> None:
+    """Khurmi & Gupta, Theory of Machines, 22.1: 105 kg at 0.6 m in each wheel, 20° from opposite the crank."""
+    found = balance_of(
+        "{speed: 300 rpm, cylinders: [{name: B, crank: 300 mm, rod: infinite, axial_position: -350 mm, masses: "
+        "{reciprocating: 180 kg, rotating: 150 kg}}, {like: B, axial_position: 350 mm, crank_position: 90 deg}]}",
+        "counterweights={share: 2/3}",
+        "locomotive={wheel_distance: 1.5 m}",
+    )
+    weights = np.array(found.in_wheels("counterweights"))
+    product = 270 * 0.3 * math.hypot(1.1, 0.4) / 1.5
+    assert_allclose(np.abs(weights), product)
+    assert found.counterweight_wheel == pytest.approx(product)
+    assert round(product / 0.6) == 105
+    aside = math.degrees(math.atan(0.4 / 1.1))  # crank B leads here, in the book it follows
+    assert_allclose(sorted(np.degrees(np.angle(weights)) % 360), [90 + aside, 180 - aside])
+
+
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert longest(found.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)

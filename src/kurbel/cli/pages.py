@@ -125,7 +125,7 @@ def plot(
     and pdf need typst. FILE may be - for standard input.
     """
     from kurbel.cli.request import case_of
-    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.drawing import check_file, draw
     from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
 
@@ -144,11 +144,7 @@ def plot(
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, options)
-    if file_name is None:
-        draw_stdout(drawn, look)
-    else:
-        draw_file(list(drawn), look, file_name)
+    draw(pictures(case, names, options), look, file_name)
 
 
 @click.command()
