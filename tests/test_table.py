@@ -65,6 +65,9 @@ def textbook(ratio: float, phi: float) -> dict[str, mpmath.mpf]:
         "S": 1 / cos_psi,
         "N": mpmath.tan(psi),
         "D": mpmath.cos(angle + psi) / cos_psi,
+        "T_b": -(mpmath.cos(angle + psi) / cos_psi + lam * mpmath.cos(angle) ** 2 / cos_psi**3)
+        * (mpmath.sin(angle + psi) / cos_psi),
+        "x/s": (1 - mpmath.cos(angle) + (1 - cos_psi) / lam) / 2,
     }
 
 
@@ -97,7 +100,8 @@ def test_infinite_rod_is_harmonic(phi: float) -> None:
     report = zusammenstellung((math.inf,), tuple(ROWS), (phi,), "exact")
     angle = math.radians(phi)
     expected = {"b": math.cos(angle), "c": math.sin(angle), "x": 1 - math.cos(angle), "psi": 0, "S": 1, "N": 0,
-                "D": math.cos(angle)}  # fmt: skip
+                "D": math.cos(angle), "T_b": -math.sin(2 * angle) / 2,
+                "x/s": (1 - math.cos(angle)) / 2}  # fmt: skip
     for name, value in expected.items():
         assert values(report, math.inf, ROWS[name])[phi] == pytest.approx(value, abs=1e-14)
 
@@ -136,6 +140,6 @@ def test_wrong_usage_is_named(arguments: list[str], said: str) -> None:
 
 @pytest.mark.parametrize("ratio", ["1.0000000000000002", "1e300", "1.7976931348623157e308"])
 def test_extreme_ratios_stay_finite(ratio: str) -> None:
-    content = json.loads(run("--ratio", ratio, "--rows", "b,c,x,psi,S,N,D", "-f", "json"))
+    content = json.loads(run("--ratio", ratio, "--rows", "b,c,x,psi,S,N,D,T_b,x/s", "-f", "json"))
     for column in content["ratios"][0]["columns"]:
         assert all(math.isfinite(value) for value in column["values"])

@@ -6,8 +6,10 @@ import math
 
 import pytest
 
+import kurbel
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
+from kurbel.report.zusammenstellung import zusammenstellung
 
 MINUTE = 1 / 60
 
@@ -33,6 +35,19 @@ def test_example_31(degrees, printed):
 def test_example_32(degrees, printed, unit):
     # 45°: 0.35539; Blau rounds 1.0625 up to 1.063 on the way
     assert displacement(degrees, 1 / 4) == pytest.approx(printed, abs=unit * 0.62)
+
+
+@pytest.mark.parametrize(("ratio", "printed", "unit"), [(5, 79 + 20 * MINUTE, 5 * MINUTE), (4, 77.0, 1.0)])
+def test_example_33_in_table_and_motion(ratio, printed, unit):
+    root = math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4))
+    (exact, first_order) = zusammenstellung((ratio,)).whole.place_tables[0].columns
+    motion = kurbel.solve(f"{{crank: 1 m, rod_ratio: {ratio}, speed: 1 Hz}}").cylinders[0].motion
+    assert [*first_order.values] == pytest.approx([root], rel=1e-14)
+    assert motion.phi_b_zero_book == pytest.approx((root, 360 - root), rel=1e-13)
+    assert (exact.values[0], 360 - exact.values[0]) == pytest.approx(motion.phi_b_zero, rel=1e-13)
+    assert root == pytest.approx(printed, abs=unit)
+    assert 0 < root - exact.values[0] < 0.3
+    assert kurbel.solve("{crank: 1 m, rod: infinite, speed: 1 Hz}").cylinders[0].motion.phi_b_zero_book is None
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def _ratio(text: str) -> float:
     type=words,
     default="b,c",
     metavar="ROW,ROW,...",
-    help="Of b, c, x, psi, S, N, D; b,c if not given.",
+    help="Of b, c, x, psi, S, N, D, T_b, x/s; b,c if not given.",
 )
 @click.option(
     "--formula",
@@ -79,8 +79,11 @@ def table(
       S    rod force over piston force    1/cos psi
       N    guide force over piston force  tan psi
       D    radial force over piston force cos(phi+psi)/cos psi
+      T_b  tangential inertia force over m R omega^2  -b c
+      x/s  share of the stroke
 
-    v is the crank-pin speed, R the crank radius, L the rod length.
+    v is the crank-pin speed, R the crank radius, L the rod length. Below b: where it is zero, exactly and by first
+    order.
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 

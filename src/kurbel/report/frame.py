@@ -73,9 +73,9 @@ class Subject:
         return row and row.of(self.results)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
-        """Yield the key values of a command that it has, in SI."""
+        """Yield the key values of a command that it has, in SI, but for those on request."""
         for quantity in self.lists.key_values(command).values():
-            value = self.answer(quantity) if self.says(quantity) else None
+            value = self.answer(quantity) if command not in quantity.on_request and self.says(quantity) else None
             if value is not None:
                 yield quantity, value
 
