@@ -36,7 +36,7 @@ SIGNATURES = {
     "Case": "machine, count=None",
     "Cylinder": CYLINDER,
     "Machine": MACHINE,
-    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston'",
+    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston', lever_ratio=1.0",
     "SliderCrank": "crank, rod, offset=0.0",
     "draw": "case, *names, units='metric', angles=None",
     "find": "machine, vary, wanted=(), least='', greatest='', where=()",
