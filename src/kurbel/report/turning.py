@@ -11,6 +11,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
+from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.frame import ENDLESS, Frame, Row, Subject, place_table, report_on, subjects_of
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
@@ -173,8 +174,9 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
             raise UsageError(
                 f"--orders {order:g}: an order is more than 0 and at most {_HIGHEST_ORDER} periods per turn"
             )
-        if (order * machine.revolutions) % 1:
-            known = "½, 1, 1½, …" if machine.revolutions == 2 else "1, 2, 3, …"
+        if not is_whole(order * machine.revolutions):
+            turns = machine.revolutions
+            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
             degrees = 360 * machine.revolutions
             raise UsageError(
                 f"--orders {order:g}: the cycle repeats after {degrees} degrees and has the orders {known}"
@@ -293,7 +295,7 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     rows: list[Row] = []
     names = [mass.name for mass in found.line.masses]
     for index, omega in enumerate(found.modes.omegas.tolist()):
-        mode, where = found.first + index, ["at the ground"] if found.chain.ground else []
+        mode, where = found.first + index, ["at the ground"] * sum(found.chain.held)
         for mass, share in found.modes.nodes(index) if mode else ():
             where.append(f"{names[mass]} + {share:.2f}" if share else names[mass])
         nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}" if mode else "rotation"
