@@ -68,7 +68,7 @@ def test_a_path_may_be_that_of_a_message(path: str) -> None:
 
 def test_a_key_that_is_not_there() -> None:
     result = CliRunner().invoke(kurbel, ["keys", "share"])
-    assert (result.exit_code, "it stands at masses.connecting_rod.share" in result.stderr) == (2, True)
+    assert (result.exit_code, "it is at masses.connecting_rod.share" in result.stderr) == (2, True)
     assert "did you mean 'bore'" in CliRunner().invoke(kurbel, ["keys", "boore"]).stderr
 
 

@@ -42,7 +42,7 @@ UNEQUAL = {"phi_work", "phi_return", "time_ratio"}
 SWING = {"swing", "theta_min", "theta_max"}
 TURNING = {"theta_dot_max", "theta_dot_min", "theta_ddot_max", "theta_ddot_min"}
 FITTING: dict[str, tuple[set[str], set[str]]] = {
-    "slider-crank": ({"psi", *SLIDES}, STROKES),
+    "slider-crank": ({"psi", *SLIDES}, {*STROKES, "phi_b_zero_book"}),
     "infinite rod": ({"psi", *SLIDES}, STROKES),
     "offset": ({"psi", *SLIDES}, {*STROKES, *UNEQUAL, "c_work_m", "c_return_m", "c_min"}),
     "scotch-yoke": ({*SLIDES, "c_block"}, STROKES),
@@ -63,7 +63,7 @@ FITTING: dict[str, tuple[set[str], set[str]]] = {
         {*SWINGS, "x_coupler", "y_coupler", "bx_coupler", "by_coupler"},
         {"phi_idc", "phi_odc", "v", "b_coupler"},
     ),
-    "yoke-frame": ({"psi", *SLIDES}, STROKES),
+    "yoke-frame": ({"psi", *SLIDES}, {*STROKES, "phi_b_zero_book"}),
 }
 
 

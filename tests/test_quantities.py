@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ from kurbel.machine.parts import Masses
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, ambiguity, by_id, called, for_each, key_value, placed
+from kurbel.quantity import Quantity, ambiguity, by_id, called, key_value, placed, values_for
 from kurbel.report.crank import forces_report
 from kurbel.report.frame import Frame
 from kurbel.report.whole import report_of
@@ -75,14 +74,18 @@ def test_rows_are_attributes_that_are_computed_once() -> None:
             """A pump."""
             return Pump() if self.first else None
 
-        @for_each({"left": ("l", "on the left"), "right": ("r", "on the right")}, "n_*", "ν_*", "ratio")
-        def side(self, which: str) -> int:
-            """Number of what is *."""
-            return len(which)
+        side = values_for(
+            {"left": ("l", "on the left"), "right": ("r", "on the right")},
+            "n_*",
+            "ν_*",
+            "ratio",
+            "Number of what is *",
+            of=lambda plant, which: len(which),
+        )
 
     plant = Plant()
     assert list(plant.rows.key_values) == ["first", "swept", "n_left", "n_right"]
-    assert [plant["V_s"].value, plant["n_left"].value, plant.side("right")] == [0.5, 4, 5]
+    assert [plant["V_s"].value, plant["n_left"].value, plant["n_right"].value] == [0.5, 4, 5]
     assert plant["V_s"].quantity.text == "Volume that the piston of an own pump sweeps"
     assert plant["V_s"].quantity.commands == ("forces", "flywheel")
     assert plant["ν_r"].quantity.text == "Number of what is on the right"
@@ -134,14 +137,6 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
     members |= {"coordinate": None, "slope": None, "curvature": None}
     with pytest.raises(UsageError, match=rf"mechanism Half does not define {missing}$"):
         type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})
-
-
-def test_a_mechanism_may_build_on_another() -> None:
-    @dataclass(frozen=True, eq=False)
-    class Wide(ScotchYoke):
-        extra: float = 0.0
-
-    assert Wide(0.1).stroke == 0.2
 
 
 def test_weight_on_the_guide_of_an_inclined_yoke() -> None:

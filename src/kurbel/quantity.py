@@ -234,12 +234,26 @@ class Row(NamedTuple):
         return Row(self.quantity, partial(of_part, self.of), unless)
 
 
-class Computed(Generic[V]):
-    """An attribute that is computed once for each object, and the row of the quantity that it is."""
+ITS_OWN = ("those of its class",)
+"""Commands of a quantity that does not say which."""
 
-    def __init__(self, function: Callable[[Any], V], quantity: Quantity, unless: Condition | None = None) -> None:
-        self.function, self.name, self.__doc__ = function, function.__name__, function.__doc__
+
+class Computed(Generic[V]):
+    """An attribute that is computed once for each object, and the row of the quantity that it is.
+
+    Its id is its name in the class. function: takes the object; None where the value is in its mapping `answers`.
+    """
+
+    def __init__(
+        self, function: Callable[[Any], V] | None, quantity: Quantity, unless: Condition | None = None
+    ) -> None:
+        self.function = function or (lambda one: one.answers.get(self.name))
+        self.name, self.__doc__ = quantity.id, quantity.text
         self.rows: tuple[Row, ...] = (Row(quantity, self.value_of, unless),)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        (row,) = self.rows
+        self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
 
     def value_of(self, one: Any) -> V:
         """Return the value of an object."""
@@ -256,117 +270,22 @@ class Computed(Generic[V]):
         return self if one is None else self.value_of(one)
 
 
-class ForEach(Generic[V]):
-    """A method that computes a quantity for each of several parts, with a row for each."""
-
-    def __init__(self, function: Callable[[Any, str], V], rows: tuple[Row, ...]) -> None:
-        self.function, self.rows, self.__doc__ = function, rows, function.__doc__
-
-    @overload
-    def __get__(self, one: None, owner: type) -> ForEach[V]: ...
-    @overload
-    def __get__(self, one: object, owner: type) -> Callable[[str], V]: ...
-    def __get__(self, one: object | None, owner: type) -> Callable[[str], V] | ForEach[V]:
-        return self if one is None else partial(self.function, one)
-
-
-ITS_OWN = ("those of its class",)
-"""Commands of a quantity that does not say which."""
-
-
 def key_value(
-    symbol: str,
-    kind: str,
-    *,
-    plain: str = "",
-    group: str = "",
-    after: str = "",
-    unless: Condition | None = None,
-    listed: bool = False,
-    residual: bool = False,
-    wanted_large: bool = False,
-    gauge: bool = False,
-    commands: tuple[str, ...] = ITS_OWN,
-    on_request: tuple[str, ...] = (),
-    extremes: tuple[str, ...] = (),
-    called: str = "",
-    peak: bool = False,
+    symbol: str, kind: str, *, unless: Condition | None = None, **words: Any
 ) -> Callable[[Callable[[Any], V]], Computed[V]]:
-    """Return what makes a method a key value or column of its class; the words are those of `Quantity` and `Row`."""
+    """Return what makes a method a key value or column of its class; the words are those of `Quantity`.
+
+    The first paragraph of its docstring is the sentence that users read.
+    """
 
     def made(function: Callable[[Any], V]) -> Computed[V]:
-        quantity = Quantity(
-            function.__name__,
-            symbol,
-            kind,
-            _sentence(function),
-            plain,
-            commands,
-            extremes,
-            called,
-            after=after,
-            residual=residual,
-            listed=listed,
-            peak=peak,
-            on_request=on_request,
-            wanted_large=wanted_large,
-            gauge=gauge,
-            group=group,
-        )
-        return Computed(function, quantity, unless)
+        text = " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+        return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
 
     return made
 
 
 column = key_value
-
-
-Parts = Mapping[str, tuple[str, str]]
-"""Parts of which each has the same quantity: the index of the symbol of each, and what it is called in a sentence."""
-
-
-def for_each(
-    parts: Parts,
-    id: str,
-    symbol: str,
-    kind: str,
-    *,
-    group: Callable[[str], str] = lambda part: "",
-    after: str = "",
-    unless: Condition | None = None,
-) -> Callable[[Callable[[Any, str], V]], ForEach[V]]:
-    """Return what makes a method of a part a key value, or a column, of each of these parts.
-
-    `*` in the id, the symbol, the sentence and `after` stands for the part. group: returns the group of the quantity of
-    a part.
-    """
-
-    def made(function: Callable[[Any, str], V]) -> ForEach[V]:
-        text = _sentence(function)
-
-        def row(part: str, index: str, called: str) -> Row:
-            texts = (id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called))
-            quantity = Quantity(*texts, commands=ITS_OWN, after=after.replace("*", part), group=group(part))
-            return Row(quantity, lambda one: function(one, part), unless)
-
-        return ForEach(function, tuple(row(part, *words) for part, words in parts.items()))
-
-    return made
-
-
-class Tabled(Computed[Any]):
-    """A quantity that one expression gives, in a line of the table at the head of its class; see `value`."""
-
-    def __init__(
-        self, of: Callable[[Any], Any] | None, texts: tuple[str, str, str], unless: Condition | None, words: Any
-    ):
-        function = of or (lambda one: one.answers.get(self.name))
-        super().__init__(function, Quantity("", *texts, **({"commands": ITS_OWN} | words)), unless)
-        self.__doc__ = texts[2]
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        (row,) = self.rows
-        self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
 
 
 def value(
@@ -377,17 +296,27 @@ def value(
     *,
     unless: Condition | None = None,
     **words: Any,
-) -> Tabled:
+) -> Computed[Any]:
     """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
 
     of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,
     by id, or there is none. words: those of `Quantity`.
     """
-    return Tabled(of, (symbol, kind, text), unless, words)
+    return Computed(of, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
+
+
+class ForEach:
+    """One quantity of several parts, a method of the part; its rows are attributes of the class, named by their ids."""
+
+    def __init__(self, of: Callable[[Any, str], Any], rows: tuple[Row, ...]) -> None:
+        self.of, self.rows = of, rows
+
+    def __get__(self, one: object | None, owner: type) -> Any:
+        return self if one is None else partial(self.of, one)
 
 
 def values_for(
-    parts: Parts,
+    parts: Mapping[str, tuple[str, str]],
     id: str,
     symbol: str,
     kind: str,
@@ -396,20 +325,25 @@ def values_for(
     of: Callable[[Any, str], Any] | None = None,
     group: Callable[[str], str] = lambda part: "",
     after: str = "",
-) -> ForEach[Any]:
-    """Return a key value or column of each of several parts, as `value` of one; of: takes object and part."""
+    **words: Any,
+) -> ForEach:
+    """Return a key value or column of each of several parts, as `value` of one; of: takes object and part.
+
+    parts: the index of the symbol of each, and what it is called in a sentence; they take the place of `*` in id,
+    symbol, sentence and `after`. group: returns the group of the quantity of a part; words: those of
+    `Quantity`, the same for all.
+    """
 
     def answer(one: Any, part: str) -> Any:
-        return one.answers.get(id.replace("*", part))
+        return of(one, part) if of else one.answers.get(id.replace("*", part))
 
-    function = of or answer
-    function.__doc__ = text
-    return for_each(parts, id, symbol, kind, group=group, after=after)(function)
+    def row(part: str, index: str, called: str) -> Row:
+        texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
+        own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
+        quantity = Quantity(*texts, **(own | words))
+        return Computed(partial(answer, part=part), quantity).rows[0]  # computed once, as any other
 
-
-def _sentence(function: Callable[..., Any]) -> str:
-    """Return the first paragraph of a docstring, without the dot at its end."""
-    return " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+    return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))
 
 
 def in_order(rows: Iterable[Row]) -> dict[str, Row]:

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.designs.find import Findings, find
+from kurbel.designs.find import Solutions, find
 from kurbel.errors import UsageError
 from kurbel.machine_file.source import decode, read
 
@@ -19,7 +19,7 @@ def run(*arguments: str, text: str | None = None) -> Result:
     return CliRunner().invoke(kurbel, arguments, input=text)
 
 
-def found_in(name: str, vary: str, *equations: str, **how: object) -> Findings:
+def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
     return find(read(CONFIGS / f"{name}.yaml"), vary.split("; "), equations, **how)  # type: ignore[arg-type]
 
 

@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel as command
 from kurbel.designs import workers
-from kurbel.designs.sweep import Row, Sweep
+from kurbel.designs.sweep import Design, Sweep
 from kurbel.errors import KurbelError
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -140,7 +140,7 @@ def test_what_cannot_begin_leaves_the_old_file(
 def lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweeps that get no further than 20 rows."""
 
-    def chunk(self: Sweep, company: range, wanted: range) -> Sequence[Row]:
+    def chunk(self: Sweep, company: range, wanted: range) -> Sequence[Design]:
         if wanted.start >= 20:
             raise KurbelError("a worker process was killed (SIGKILL)")
         return whole(self, company, wanted)

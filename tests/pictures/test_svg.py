@@ -21,7 +21,7 @@ from kurbel.render.html import PAPER as PAGE_PAPER
 from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.picture import LOOKS, Label, PanelFrame
 from kurbel.render.svg import FAINT, GAIN, INK, LOSS, PAPER, PAPER_SIZES, STROKES, css, subscripts, svg_file
-from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Words
+from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
 from representative import CONFIGS, case_of, few
@@ -184,7 +184,7 @@ def test_labels_of_a_steep_bundle_are_clear_of_it_and_lines_lead_to_them() -> No
     """Five marks within 15° of the left edge: their labels once were on the curves, and one on the next."""
     x = np.linspace(0.0, 40.0, 80)
     curves = tuple(Curve(Words("σ"), x, -30.0 * k - 4 * x) for k in range(5))
-    marks = [Mark(2.0 + 3 * k, -42.0 * k - 38, Figure(Words("σ_pin,max"), 51.24, "N/mm^2", 1.65)) for k in range(5)]
+    marks = [Mark(2.0 + 3 * k, -42.0 * k - 38, PageFigure(Words("σ_pin,max"), 51.24, "N/mm^2", 1.65)) for k in range(5)]
     axis = Axis(Words("φ"), unit="deg", high=700.0)
     frame = frame_of(Panel(axis, Axis(Words("σ"), unit="N/mm^2"), curves, marks=tuple(marks)))
     labels = frame.labels(named=False)

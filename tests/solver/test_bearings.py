@@ -286,7 +286,7 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     rubs = "friction: {crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm, journals: 0.04}\n"
     case = Case(loads(ENGINE + rubs))
     pin, crosshead, A, B = case.bearings.parts
-    work_of = case.cylinders[0].pin_work_of
+    work_of = case.cylinders[0].friction_works.get
     assert pin.work_rubbing == work_of("crank_pin")
     assert crosshead.work_rubbing == work_of("crosshead_pin")
     assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)

@@ -101,17 +101,6 @@ def test_no_angle_is_missing_in_random_cylinders() -> None:
         assert missing_crossings(forces) == 0
 
 
-@pytest.mark.slow
-def test_no_angle_is_missing_in_many_cylinders() -> None:
-    """benchmarks/random_cylinders.py does the same with thousands, and another seed every day."""
-    lost = [
-        (number, missing)
-        for number, forces in enumerate(cylinders(77, 40))
-        if (missing := missing_reversals(forces) + missing_crossings(forces))
-    ]
-    assert not lost
-
-
 @pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-10])
 def test_a_pair_of_zeros_is_found_wherever_it_stands(depth: float) -> None:
     """cos(φ − φ₀) less nearly its summit, on pieces of 45°: closed, ± arccos(1 − depth) round φ₀."""

@@ -17,10 +17,6 @@ from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.measured import Measured
 from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.crank import forces_report
-from kurbel.report.frame import Frame
-from kurbel.report.tables import stepped
-from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, constant_pressure
 
@@ -118,19 +114,6 @@ def test_extremes_are_those_of_a_fine_search_over_both_turns() -> None:
     signs = np.sign(fine.P)
     changes = np.flatnonzero(signs[1:] * signs[:-1] < 0)
     assert len(forces.phi_reversal or ()) == len(changes)
-
-
-def test_columns_repeat_after_720_degrees_and_not_before() -> None:
-    forces = engine()
-    assert forces.at([33.0]).T[0] == forces.at([753.0]).T[0]
-    assert forces.at([33.0]).T[0] != forces.at([393.0]).T[0]
-
-
-def test_the_report_runs_over_the_cycle() -> None:
-    forces = engine()
-    report = forces_report(Case(forces.drive.machine), Frame("forces", stepped(10, 720), None, "si"))
-    assert report.parts[0].columns[0].values[-1] == 720
-    assert not report.parts[0].warnings
 
 
 @pytest.mark.parametrize("missing", list(LINES))

@@ -62,14 +62,15 @@ def exact(state: State) -> ExactRod:
     return state.drive.rod
 
 
+LOSSES = State.pin_losses.func  # type: ignore[attr-defined]
 COUPLE = State.rod_couple.func  # type: ignore[attr-defined]
 FAULTS: dict[str, tuple[Any, str, Any]] = {
     "side of the guide friction in N": (State, "below", property(wrong_side)),
     "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),
     "turning of the rod on the pin": (
         State,
-        "crank_pin_loss",
-        property(lambda state: state.rubbing.at_crank * (1 - state.rod_slope)),
+        "pin_losses",
+        property(lambda state: (state.rubbing.at_crank * (1 - state.rod_slope), *LOSSES(state)[1:])),
     ),
     "couple of the rod": (State, "rod_couple", property(lambda state: COUPLE(state) * (1 + 1e-6))),
     "radial pull in S at the crank pin": (State, "S_crank", property(more_pull)),

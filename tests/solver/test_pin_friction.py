@@ -41,17 +41,17 @@ def test_constant_piston_force_against_elliptic_integrals() -> None:
     """S = P/cos ψ: ∮ dφ/cos ψ = 4 K(λ²) on crank pin and journals, ∮ |dψ|/cos ψ = 4 artanh λ on the crosshead pin."""
     forces = solved(PLAIN)
     turned, swung = float(4 * ellipk(0.16)), float(4 * atanh(0.4))
-    assert forces.pin_work_of("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * turned, rel=1e-13)
-    assert forces.pin_work_of("crosshead_pin") == pytest.approx(0.06 * 0.020 * FORCE * swung, rel=1e-13)
-    assert forces.pin_work_of("journals") == pytest.approx(0.03 * 0.035 * FORCE * turned, rel=1e-13)
+    assert forces.friction_works.get("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * turned, rel=1e-13)
+    assert forces.friction_works.get("crosshead_pin") == pytest.approx(0.06 * 0.020 * FORCE * swung, rel=1e-13)
+    assert forces.friction_works.get("journals") == pytest.approx(0.03 * 0.035 * FORCE * turned, rel=1e-13)
 
 
 @pytest.mark.filterwarnings("error")
 def test_infinite_rod_does_not_swing() -> None:
     """A load that does not vary has no slope to divide by where its size is searched."""
     forces = solved(PLAIN.replace("250 mm", "infinite"))
-    assert forces.pin_work_of("crosshead_pin") == 0
-    assert forces.pin_work_of("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * 2 * math.pi, rel=1e-13)
+    assert forces.friction_works.get("crosshead_pin") == 0
+    assert forces.friction_works.get("crank_pin") == pytest.approx(0.05 * 0.030 * FORCE * 2 * math.pi, rel=1e-13)
 
 
 def test_shares_are_of_the_work_that_drives() -> None:
@@ -59,7 +59,7 @@ def test_shares_are_of_the_work_that_drives() -> None:
     work = 2 * FORCE * 0.2
     for name in ("crank_pin", "crosshead_pin", "journals"):
         assert forces[f"loss_{name}"].value == pytest.approx(forces[f"work_{name}"].value / work, rel=1e-13)
-    lost = math.fsum(map(forces.pin_work_of, ("crank_pin", "crosshead_pin", "journals")))
+    lost = math.fsum(map(forces.friction_works.get, ("crank_pin", "crosshead_pin", "journals")))
     assert forces.friction_work == pytest.approx(lost, rel=1e-14)
     assert pytest.approx((work - lost) / (0.2 * math.pi), rel=1e-13) == forces.W
 
@@ -130,8 +130,8 @@ def test_energy_balance_sees_a_fault(name: str, monkeypatch: pytest.MonkeyPatch)
 def test_journals_bear_the_flywheel_too() -> None:
     without = ENGINE.replace("  flywheel_mass: 4 t\n", "").replace("  flywheel_position: 450 mm", "#")
     heavy, light = solved(ENGINE + RUBS), solved(without + RUBS)
-    assert heavy.pin_work_of("journals") > 1.2 * light.pin_work_of("journals")
-    assert heavy.pin_work_of("crank_pin") == pytest.approx(light.pin_work_of("crank_pin"), rel=1e-13)
+    assert heavy.friction_works.get("journals") > 1.2 * light.friction_works.get("journals")
+    assert heavy.friction_works.get("crank_pin") == pytest.approx(light.friction_works.get("crank_pin"), rel=1e-13)
 
 
 BAD = {

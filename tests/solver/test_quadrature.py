@@ -89,7 +89,7 @@ def errors_of_bearings(forces: CylinderForces) -> list[float]:
     strength = Case(Machine((forces.drive.cylinder,), speed=machine.speed, crankshaft=shaft())).stress
     turn = math.radians(forces.drive.cycle)
     breaks = edges_of(forces)
-    if forces.drive.has_friction:  # where the guide changes sides, every force has a kink
+    if forces.drive.cylinder.friction:  # where the guide changes sides, every force has a kink
         breaks = with_least(friction_power(forces), breaks)
     errors = []
     for bearing, diameter, length in (("pin", 0.18, 0.2), ("journal_A", 0.19, 0.3), ("journal_B", 0.19, 0.3)):

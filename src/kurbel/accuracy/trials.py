@@ -1,18 +1,20 @@
-"""What `kurbel accuracy` measures on a machine: methods by error and time, and errors of model and data."""
+"""What `kurbel accuracy` measures on a machine: methods by error and time, errors of model and data, what is saved."""
 
 import math
 import statistics
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from types import FrameType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel import crank_formulas
-from kurbel.accuracy.textbook import DIGITS, Number, TextbookMotion, mp, mpf, reference, stance
+from kurbel.accuracy.textbook import DIGITS, Number, Stance, TextbookMotion, mp, mpf, reference, stance
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError
@@ -33,8 +35,8 @@ class Zero(Exception):
     """A reference is zero, and no error is relative to that."""
 
 
-class Row(NamedTuple):
-    """A method; error: relative, and in units of the last place below 1e-12.
+class Trial(NamedTuple):
+    """A method; evaluations: crank angles of the motion; error: relative, and in units of the last place below 1e-12.
 
     median, least: of the time in seconds; ratio: of the median over that of kurbel's own method.
     """
@@ -43,6 +45,7 @@ class Row(NamedTuple):
     method: str
     points: str
     state: str
+    evaluations: int
     error: float | None
     ulp: float | None
     median: float
@@ -58,12 +61,22 @@ class Difference(NamedTuple):
     error: float
 
 
+class Saving(NamedTuple):
+    """A machine with something left out; stages: functions of the solver that run for it; times as in `Trial`."""
+
+    machine: str
+    stages: int
+    median: float
+    least: float
+    ratio: float
+
+
 # what can be examined
 
 
-def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Row], list[tuple[str, str]]]:
+def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial], list[tuple[str, str]]]:
     """Return the rows of a machine, of its motion at crank angles, and what could not be examined and why."""
-    rows: list[Row] = []
+    rows: list[Trial] = []
     lacking: list[tuple[str, str]] = []
     with mp.workdps(DIGITS):
         for quantity, why in _quantities(machine):
@@ -288,18 +301,19 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
 # rows, and their times
 
 
-def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Row]:
+def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Trial]:
     """Yield the rows of one quantity, kurbel's own first. Raises Zero."""
     reference = np.atleast_1d(np.array(truth, dtype=object))
     if all(abs(one) <= 1e-30 for one in reference):
         raise Zero
     own_median = None
     for name, points, run in methods:
-        error, ulp = errors(np.atleast_1d(np.asarray(run(), dtype=float)), reference)
+        values, _, evaluations = watched(run)
+        error, ulp = errors(np.atleast_1d(np.asarray(values, dtype=float)), reference)
         median, least = timed(run, quick)
         own_median = own_median or median
         state = "blow-up" if error is None else "ok"
-        yield Row(quantity, name, points, state, error, ulp, median, least, median / own_median)
+        yield Trial(quantity, name, points, state, evaluations, error, ulp, median, least, median / own_median)
 
 
 def errors(values: Array, reference: Array) -> tuple[float | None, float | None]:
@@ -328,7 +342,26 @@ def timed(run: Callable[[], Any], quick: bool) -> tuple[float, float]:
     return statistics.median(times), min(times)
 
 
-def better(found: list[Row]) -> list[Row]:
+def watched(run: Callable[[], Any]) -> tuple[Any, int, int]:
+    """Return what a computation gives, how many functions of the solver run, and of how many crank angles."""
+    functions, evaluations = set(), 0
+
+    def watch(frame: FrameType, event: str, result: Any) -> None:
+        nonlocal evaluations
+        if event == "call" and frame.f_globals.get("__name__", "").startswith("kurbel.solver"):
+            functions.add(frame.f_code)
+        elif event == "return" and frame.f_code.co_name in ("of", "at_nodes", "stance"):
+            evaluations += np.size(result[1]) if isinstance(result, (CrankAngle, Stance)) else 0
+
+    before = sys.getprofile()
+    sys.setprofile(watch)
+    try:
+        return run(), len(functions), evaluations
+    finally:
+        sys.setprofile(before)
+
+
+def better(found: list[Trial]) -> list[Trial]:
     """Return the rows more exact and faster than kurbel's own, by more than 16 roundings and a fifth of the time."""
     own = {row.quantity: row for row in found if row.method == OWN}
     return [
@@ -419,3 +452,31 @@ def _changes(whole: dict[str, float], other: dict[str, float], cause: str) -> It
     for quantity, value in whole.items():
         if abs(value) > 1e-12 * max(map(abs, whole.values())):
             yield Difference(quantity, cause, abs(other[quantity] / value - 1))
+
+
+# what leaving out saves
+
+
+def savings(machine: Machine, compute: Callable[[Machine], Any], quick: bool) -> Iterator[Saving]:
+    """Yield the whole machine, and the same without friction, masses, cards and speed, one after another.
+
+    compute: all that a command prints.
+    """
+    stages, every = {"everything": machine}, machine.cylinders
+    less: tuple[tuple[str, bool, dict[str, Any]], ...] = (
+        ("no friction", any(one.friction for one in every), {"friction": None}),
+        ("no masses either", any(one.masses for one in every), {"masses": None, "inclination": None}),
+        ("no cards either: motion alone", any(one.pistons for one in every), {"pistons": ()}),
+    )
+    for name, given, change in less:
+        if given:
+            lighter = (replace(one, **change) for one in machine.cylinders)
+            machine = stages[name] = replace(machine, cylinders=tuple(lighter), limits=())
+    if machine.speed is not None:
+        stages["no speed either: positions alone"] = replace(machine, speed=None)
+    whole = None
+    for name, one in stages.items():
+        _, count, _ = watched(partial(compute, one))
+        median, least = timed(partial(compute, one), quick)
+        whole = whole or median
+        yield Saving(name, count, median, least, median / whole)

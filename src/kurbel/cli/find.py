@@ -17,7 +17,7 @@ from kurbel.cli.options import (
 from kurbel.render import Look
 
 if TYPE_CHECKING:
-    from kurbel.designs.find import Findings, Solution
+    from kurbel.designs.find import Solution, Solutions
     from kurbel.machine.origin import Origin
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".md": "markdown"}
@@ -101,7 +101,7 @@ def find(
         to_stderr(one)
 
 
-def _taken(found: "Findings", take: int | None) -> "Solution":
+def _taken(found: "Solutions", take: int | None) -> "Solution":
     """Return the solution that is written. Raises click.UsageError where several are found, or none of this number."""
     count = len(found.found)
     if count > 1 and not take:
@@ -118,7 +118,7 @@ def _taken(found: "Findings", take: int | None) -> "Solution":
     return found.found[(take or 1) - 1]
 
 
-def _with_values(origin: "Origin", found: "Findings", one: "Solution") -> str:
+def _with_values(origin: "Origin", found: "Solutions", one: "Solution") -> str:
     """Return the text of the machine file with what was set over it, and what was found."""
     from kurbel.machine_file.rewrite import rewritten
 

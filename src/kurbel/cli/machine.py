@@ -1,22 +1,52 @@
 """The commands on one machine that print tables: motion, forces, flywheel, stress, bearings, balance and the rest."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from functools import wraps
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kurbel.cli.options import (
+    Output,
     Spreads,
-    machine_places,
-    machine_table,
+    angle_options,
+    columns_option,
+    machine_file,
     orders_option,
+    output_options,
+    part_options,
     row_options,
     speeds_option,
+    stacked,
     uncertainty_option,
+    units_option,
     where_option,
 )
+from kurbel.declared.unit_systems import told_in
 
 if TYPE_CHECKING:
     from kurbel.cli.request import Request
+
+
+def _with_request(command: Callable[..., None]) -> Callable[..., None]:
+    @wraps(command)
+    def with_request(units: str | None, output: Output, **options: Any) -> None:
+        from kurbel.cli.request import Request
+
+        own = {name: options.pop(name) for name in Request.__annotations__ if name in options}
+        with told_in(units or "metric"):
+            system = units or ("si" if output.look.format in ("csv", "json") else "metric")
+            command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
+
+    return with_request
+
+
+machine_places = stacked(machine_file, part_options, units_option, output_options, _with_request)
+"""Gives a command FILE and the options of one that has nothing over the crank angle; see `machine_table`."""
+machine_table = stacked(
+    machine_file, angle_options, columns_option, part_options, units_option, output_options, _with_request
+)
+"""Gives a command FILE and all options of a table, which reach it as one `Request`."""
 
 
 @click.command()

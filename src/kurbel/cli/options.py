@@ -9,7 +9,6 @@ from typing import Any, NamedTuple, TypeVar
 import click
 
 from kurbel.declared.numerals import parse_ratio
-from kurbel.declared.unit_systems import told_in
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity, called, joined
@@ -99,17 +98,6 @@ def spread(text: str) -> tuple[str, str]:
 
 
 # --- what a shell completes, looked up when TAB is pressed
-
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
-_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
-
-
-def shipped() -> dict[str, str]:
-    """Return the machines that come with kurbel: the path of each file by its name."""
-    folder = next(filter(os.path.isdir, _PLACES))
-    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
-    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
 
 
 def _quantities() -> Lists:
@@ -237,7 +225,7 @@ columns_option = click.option(
 cylinder_option = click.option(
     "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
 )
-_part_options = stacked(
+part_options = stacked(
     cylinder_option,
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
 )
@@ -366,24 +354,3 @@ def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
         return
     with click.progressbar(items, file=sys.stderr, label=label, **how) as bar:
         yield from bar
-
-
-def _with_request(command: Callable[..., None]) -> Callable[..., None]:
-    @wraps(command)
-    def with_request(units: str | None, output: Output, **options: Any) -> None:
-        from kurbel.cli.request import Request
-
-        own = {name: options.pop(name) for name in Request.__annotations__ if name in options}
-        with told_in(units or "metric"):
-            system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-            command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
-
-    return with_request
-
-
-machine_places = stacked(machine_file, _part_options, units_option, output_options, _with_request)
-"""Gives a command FILE and the options of one that has nothing over the crank angle; see `machine_table`."""
-machine_table = stacked(
-    machine_file, angle_options, columns_option, _part_options, units_option, output_options, _with_request
-)
-"""Gives a command FILE and all options of a table, which reach it as one `Request`."""

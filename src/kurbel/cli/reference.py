@@ -13,7 +13,6 @@ from kurbel.cli.options import (
     number,
     output_option,
     output_options,
-    shipped,
     units_option,
     words,
 )
@@ -23,13 +22,14 @@ from kurbel.near_words import did_you_mean
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
 from kurbel.report.tables import crank_angles
+from kurbel.shipped import shipped
 
 
 def _ratio(text: str) -> float:
     return math.inf if text in ("inf", "infinite") else number(text)
 
 
-@click.command()
+@click.command(context_settings={"allow_extra_args": True})
 @click.option(
     "--ratio",
     "ratios",
@@ -87,6 +87,8 @@ def table(
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
+    if extra := click.get_current_context().args:
+        raise click.UsageError(f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R")
     ratios = ratios or RATIOS
     printed = crank_angles(step, angles, 180, len(ratios))
     output.write(zusammenstellung(ratios, rows, printed, formula, compare))

@@ -11,7 +11,7 @@ from kurbel.cli.group import to_stderr
 from kurbel.cli.options import format_of, with_bar
 from kurbel.designs.chosen import read_aim, read_condition, summary, summary_heads, unbettered
 from kurbel.designs.plan import MOST_ROWS, shard
-from kurbel.designs.sweep import Row, Spec, Sweep
+from kurbel.designs.sweep import Design, Spec, Sweep
 from kurbel.designs.workers import likely_jobs, rows_of
 from kurbel.machine_file import source
 from kurbel.render import Look
@@ -93,7 +93,7 @@ def run(wanted: Options) -> None:
 
     jobs = wanted.jobs or (1 if wanted.shard else likely_jobs(len(rows)))
     with closing(rows_of(sweep, rows, jobs, wanted.dask or "", to_stderr)) as computed:
-        found: Iterable[Row] = computed
+        found: Iterable[Design] = computed
         # else the rows themselves go to the terminal
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
             found = with_bar(found, "designs", length=len(rows), update_min_steps=100)

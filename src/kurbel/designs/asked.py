@@ -8,10 +8,10 @@ import numpy as np
 
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
-from kurbel.designs.find import Findings
+from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.sweep import Row, Spec, Sweep
+from kurbel.designs.sweep import Design, Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -54,7 +54,7 @@ def find(
     least: str = "",
     greatest: str = "",
     where: Sequence[str] | str = (),
-) -> Findings:
+) -> Solutions:
     """Return the values of one key or two that give wanted key values, or for which one is the least or the greatest.
 
     machine: as `load` or `loads` returned it, or what these take; vary: dotted key of its file -> ends of the range, in
@@ -103,7 +103,7 @@ def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
         yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
 
 
-def _arrays(found: Sweep, rows: Sequence[Row]) -> dict[str, Any]:
+def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
         if head.input:

@@ -40,7 +40,7 @@ class Lot(NamedTuple):
         return changed(self.machine, lambda numbers: numbers[place].item())  # type: ignore[no-any-return]
 
 
-class Bound(NamedTuple):
+class Batches(NamedTuple):
     """What rows make, counted from 0: machines, those of one structure in one record, or the reason why none."""
 
     lots: list[Lot]
@@ -69,9 +69,9 @@ class Binder:
             self.kinds.append(form.kind or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
-    def bound(self, rows: Sequence[Sequence[str]]) -> Bound:
+    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
         """Return the machines of rows of texts, those of one structure in one record, and why other rows make none."""
-        found = Bound([], {})
+        found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
         for place, row in enumerate(rows):
             words = tuple(text for text, number in zip(row, self._numeric) if not number)
@@ -101,7 +101,7 @@ class Binder:
         set_over(tree, origin)
         return ROOT.read(reading, {"name": origin.stem, **without_zeros(tree, reading)}, ())
 
-    def _bind_alone(self, row: int, texts: Sequence[str], found: Bound) -> None:
+    def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
         """Make the machine of one row, or tell why there is none."""
         reading = reading_of(self._origin)
         try:

@@ -13,7 +13,7 @@ from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.sweep import KEPT, Head, Row
+from kurbel.designs.sweep import KEPT, Design, Head
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
@@ -38,13 +38,13 @@ _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
 class Condition(NamedTuple):
-    """A comparison of a column with a value in the unit of its head, or with a text; place: or a `Row.text`."""
+    """A comparison of a column with a value in the unit of its head, or with a text; place: or a `Design.text`."""
 
     place: int | str
     relation: str
     value: Any
 
-    def holds(self, row: Row) -> bool:
+    def holds(self, row: Design) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
         value = row.text(self.place) if isinstance(self.place, str) else row.values[self.place]
         known = value if isinstance(self.value, str) else _number(value)
@@ -102,7 +102,7 @@ class Aim(NamedTuple):
     place: int
     most: bool
 
-    def of(self, row: Row) -> tuple[bool, float]:
+    def of(self, row: Design) -> tuple[bool, float]:
         """Return whether there is no number, and one that is the less the better: what is less is better."""
         value = _number(row.values[self.place])
         return value is None, (value or 0.0) * (-1 if self.most else 1)
@@ -117,7 +117,7 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     return Aim(place, name.startswith("-"))
 
 
-def unbettered(rows: Iterable[Row], aims: Sequence[Aim]) -> Iterator[Row]:
+def unbettered(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the rows than which no other one is better in one aim and as good in all: the front of Pareto."""
     given = list(rows)
     found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}
@@ -146,7 +146,7 @@ def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
     return tuple((name, "") for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs))
 
 
-def summary(rows: Iterable[Row], heads: Sequence[Head]) -> Iterator[Row]:
+def summary(rows: Iterable[Design], heads: Sequence[Head]) -> Iterator[Design]:
     """Yield a row for every column of numbers, over the rows that have a value there."""
     numbers = [
         np.array([one if isinstance(one, (int, float)) else np.nan for one in column], dtype=float)
@@ -157,7 +157,7 @@ def summary(rows: Iterable[Row], heads: Sequence[Head]) -> Iterator[Row]:
         there = values[np.isfinite(values)]
         if head.kind and len(there):
             figures = (Unit(head.unit), len(there), float(there.mean()), *np.quantile(there, QUANTILES).tolist())
-            yield Row(head.id, (*figures, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
+            yield Design(head.id, (*figures, *(_rank_correlation(values, one) for one in inputs)))  # type: ignore[arg-type]
 
 
 def _rank_correlation(first: Array, second: Array) -> float | None:

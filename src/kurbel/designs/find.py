@@ -17,7 +17,7 @@ from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Answer, answers_of, asked_answers
 from kurbel.designs.binding import Binder
 from kurbel.designs.chosen import Condition, read_condition
-from kurbel.designs.sweep import Head, Row, limit_answers
+from kurbel.designs.sweep import Design, Head, limit_answers
 from kurbel.errors import MachineFileError, NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.numerics.search import common_roots, lowest, roots
@@ -44,7 +44,7 @@ class Varied(NamedTuple):
         return float(convert(value, self.kind, self.unit))
 
 
-class Wanted(NamedTuple):
+class Target(NamedTuple):
     """A key value that is to have a value in SI (aim `=`), or to be the `least` or the `greatest`."""
 
     text: str
@@ -69,7 +69,7 @@ class Failed(NamedTuple):
     why: str
 
 
-class Findings(NamedTuple):
+class Solutions(NamedTuple):
     """What was found: solutions in the order of the first key, and places where the wanted value is passed by a jump.
 
     machine: its name. names, answers: of the key values of a solution, those that are wanted first. met: least and
@@ -79,7 +79,7 @@ class Findings(NamedTuple):
 
     machine: str
     varied: tuple[Varied, ...]
-    wanted: tuple[Wanted, ...]
+    wanted: tuple[Target, ...]
     names: tuple[str, ...]
     answers: tuple[Answer, ...]
     found: tuple[Solution, ...]
@@ -97,7 +97,7 @@ def find(
     least: str = "",
     greatest: str = "",
     conditions: Sequence[str] = (),
-) -> Findings:
+) -> Solutions:
     """Return the values of keys of a machine file that give wanted key values, or an extreme one.
 
     vary: one or two texts `KEY=low:high unit`; equations: as many texts `KEY_VALUE = value`, or none and the name of a
@@ -132,7 +132,7 @@ class _Designs:
         self.binder, self.answers = _begun(origin, spans, self.names)
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.binder.kinds)]
         self.wanted = [
-            Wanted(text, answer, "=" if equals else aim, _parsed(text, value, answer.kind) if equals else None)
+            Target(text, answer, "=" if equals else aim, _parsed(text, value, answer.kind) if equals else None)
             for text, answer, (_, equals, value) in zip(wanted, self.answers, parts)
         ]
         heads = [Head(one.key, SI[one.kind], True, one.kind) for one in self.varied]
@@ -167,12 +167,12 @@ class _Designs:
                 judged = ((*limit, value) for limit, value in zip(self.limits, own[count:]) if value is not None)
                 broken = [f"limits.{name}" for name, one, bound, value in judged if breaks(one.quantity, bound, value)]
                 over[number] = ", ".join(broken)
-                whole = Row(number, (*row, *own[:count]))
+                whole = Design(number, (*row, *own[:count]))
                 against[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
             self.computed.append((tuple(row), values[number], own if isinstance(own, str) else ""))
         return values, over, against
 
-    def findings(self, solutions: Sequence[Solution], jumps: Sequence[Solution]) -> Findings:
+    def findings(self, solutions: Sequence[Solution], jumps: Sequence[Solution]) -> Solutions:
         """Return what was found together with what was computed."""
         computed = sorted(self.computed, key=lambda one: one[0])
         values = np.array([one[1] for one in computed])
@@ -185,7 +185,7 @@ class _Designs:
             inside = list(part)
             if fails and len(self.varied) == 1:
                 failed.append(Failed(inside[0][0][0], inside[-1][0][0], inside[0][2]))
-        return Findings(
+        return Solutions(
             self.binder.machine.name,
             tuple(self.varied),
             tuple(self.wanted),
@@ -268,7 +268,7 @@ def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _nothing(findings: Findings) -> str:
+def _nothing(findings: Solutions) -> str:
     """Return that nothing was found, with what was met."""
     ranges = " and ".join(
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.in_unit(one.high):.6g} {one.unit}".rstrip()

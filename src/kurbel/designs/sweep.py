@@ -67,7 +67,7 @@ class Head(NamedTuple):
     listed: bool = False
 
 
-class Row(NamedTuple):
+class Design(NamedTuple):
     """One design: its number from 1 on, values under the heads (texts, numbers, tuples or None), and why it has none.
 
     keeps: whether all limits of the file are kept, None where there are none; broken: the first one that is not.
@@ -103,7 +103,7 @@ class Sweep:
         self._binder, self.asked, self._limits = self._started(self._keys)
         self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
-        """Heads of the texts after the values, as `Row.text` has them."""
+        """Heads of the texts after the values, as `Design.text` has them."""
 
     def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[tuple[str, Answer, float]]]:
         """Return what binds texts, who answers what is wanted, and each limit with who answers that, and its bound.
@@ -157,7 +157,7 @@ class Sweep:
         sized = [(one.kind, one.quantity.family, size) for one, size in zip(self.asked, sizes, strict=True)]
         return tuple(units_of(sized, self.spec.system))
 
-    def chunk(self, company: range, wanted: range) -> list[Row]:
+    def chunk(self, company: range, wanted: range) -> list[Design]:
         """Return the wanted rows of a chunk, counted from 0."""
         bound = self._binder.bound([self.plan.texts(row) for row in company])
         own = range(wanted.start - company.start, wanted.stop - company.start)
@@ -170,9 +170,9 @@ class Sweep:
             row = number - company.start
             if row in answered:
                 keeps, broken, unjudged = self._judged(answered[row][len(self.asked) :])
-                rows.append(Row(number + 1, (*inputs, *values[row]), keeps, broken, unjudged))
+                rows.append(Design(number + 1, (*inputs, *values[row]), keeps, broken, unjudged))
             else:
-                rows.append(Row(number + 1, (*inputs, *[None] * len(self.asked)), failure=str(found[row])))
+                rows.append(Design(number + 1, (*inputs, *[None] * len(self.asked)), failure=str(found[row])))
         return rows
 
     def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
@@ -257,6 +257,6 @@ def limit_answers(machine: Machine) -> Iterator[tuple[str, Answer, float]]:
 _sweep = lru_cache(maxsize=4)(Sweep)
 
 
-def computed(spec: Spec, company: range, wanted: range) -> list[Row]:
+def computed(spec: Spec, company: range, wanted: range) -> list[Design]:
     """Return rows of a sweep, in whatever process; a sweep is made once in each."""
     return _sweep(spec).chunk(company, wanted)

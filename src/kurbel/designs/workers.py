@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from kurbel.designs.sweep import Row, Spec, Sweep, computed
+from kurbel.designs.sweep import Design, Spec, Sweep, computed
 from kurbel.errors import KurbelError, UsageError
 
 _FOR_ONE = 5_000
@@ -26,7 +26,7 @@ _ANSWERS_WITHIN = 10.0
 _LOOKED_EVERY = 1.0
 """Seconds after which a chunk that is not there yet raises the question whether the cluster has workers at all."""
 
-Answer = Callable[[], list[Row]]
+Answer = Callable[[], list[Design]]
 """Waits for the rows of a chunk and returns them."""
 Submit = Callable[[Spec, range, range], Answer]
 """Has a chunk computed: see `computed`."""
@@ -34,7 +34,7 @@ Submit = Callable[[Spec, range, range], Answer]
 
 def rows_of(
     sweep: Sweep, rows: range, jobs: int = 1, dask: str = "", note: Callable[[str], None] = lambda _: None
-) -> Generator[Row, None, None]:
+) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
     jobs: processes of this machine; dask: address of a cluster; note: is called with what a user should know meanwhile.
@@ -58,7 +58,7 @@ def likely_jobs(rows: int) -> int:
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], int]) -> Iterator[Row]:
+def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], int]) -> Iterator[Design]:
     """Yield the rows that others compute, in order, with few chunks of them ahead; workers: how many there are now."""
     waiting: deque[Answer] = deque()
     for company, wanted in sweep.chunks(rows):
@@ -86,7 +86,7 @@ def _processes(jobs: int) -> Iterator[Submit]:
         idle.put(process)
     threads = ThreadPoolExecutor(jobs)
 
-    def answer(*task: Any) -> list[Row]:
+    def answer(*task: Any) -> list[Design]:
         process = idle.get()
         try:
             return _answered(process, task)
@@ -103,7 +103,7 @@ def _processes(jobs: int) -> Iterator[Submit]:
             process.communicate()
 
 
-def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list[Row]:
+def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list[Design]:
     """Return the rows that a process computes; raises what it meets, and KurbelError where it ends instead."""
     assert process.stdin
     assert process.stdout
@@ -173,7 +173,7 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
         key = f"kurbel-{hash(spec)}-{wanted}"
         future = client.submit(computed, spec, company, wanted, retries=_RETRIES, key=key)
 
-        def answer() -> list[Row]:
+        def answer() -> list[Design]:
             waiting = False
             while True:
                 try:

@@ -109,7 +109,7 @@ def kind_of(part: Part) -> str:
     return "gear"
 
 
-class Section(NamedTuple):
+class ShaftSection(NamedTuple):
     """A section of shaft: diameter and bore in m."""
 
     diameter: float
@@ -147,7 +147,7 @@ class ShaftPiece:
     stiffness: float
     damping: float = 0.0
     loss_factor: float = 0.0
-    sections: tuple[Section, ...] = ()
+    sections: tuple[ShaftSection, ...] = ()
     ratio: float = 1.0
 
 
@@ -297,7 +297,7 @@ def _piece(part: Part, ratio: float) -> ShaftPiece:
         assert part.length is not None
         modulus = STEEL if part.shear_modulus is None else part.shear_modulus
         stiffness = modulus * math.pi * (part.diameter**4 - bore**4) / (32 * part.length)
-    sections = () if part.diameter is None else (Section(part.diameter, bore),)
+    sections = () if part.diameter is None else (ShaftSection(part.diameter, bore),)
     square, loss = ratio**2, part.loss_factor or 0.0
     return ShaftPiece(square * stiffness, square * (part.damping or 0.0), loss, sections, ratio)
 

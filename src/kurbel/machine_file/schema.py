@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, Figure, Figures
+from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, FigureForm, Figures
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.forms.values import Form, Number, Schema, Text
 from kurbel.declared.keys import required
@@ -60,7 +60,7 @@ def _of(form: Form, definitions: Schema) -> Schema:
         cases = form.cases.items()
         each = [{**one, "required": [name], "properties": {name: _of(case, definitions)}} for name, case in cases]
         return {"anyOf": [*each, _of(form.otherwise, definitions)]}
-    if isinstance(form, Figure):
+    if isinstance(form, FigureForm):
         name = f"figure_{form.size.kind}"
         two = {"type": "array", "items": _of(form.size, definitions), "minItems": 2, "maxItems": 2}
         definitions[name] = {

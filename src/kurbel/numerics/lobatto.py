@@ -9,7 +9,7 @@ from numpy.polynomial import legendre
 from kurbel.arrays import Array
 
 
-class Rule:
+class LobattoRule:
     """Lobatto nodes in [−1, 1], both ends included, and matrices that act on the values of a polynomial there.
 
     weights (n,): of its integral; series (n, n): turns values into Chebyshev coefficients; slope: those into the
@@ -35,7 +35,7 @@ class Rule:
         self.scan_slope = chebyshev(self.places, count - 1) @ self.slope @ self.series
 
 
-rule = lru_cache(Rule)
+rule = lru_cache(LobattoRule)
 """The rule of so many nodes; it integrates polynomials of degree 2n − 3 exactly."""
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from kurbel.arrays import Array, Flags, Indices, Number
 from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.lobatto import Rule, rule, series_at, slope_of_series
+from kurbel.numerics.lobatto import LobattoRule, rule, series_at, slope_of_series
 from kurbel.numerics.roots import bracketed_roots
 
 ROUNDING = 1e-14
@@ -65,6 +65,12 @@ class Angles(NamedTuple):
         """Return those of every machine."""
         return np.split(self.degrees, np.searchsorted(self.machine, np.arange(1, count)))
 
+    def listed(self, count: int | None) -> tuple[Any, ...]:
+        """Return them as a tuple; of many machines one tuple each."""
+        if count is None:
+            return tuple(self.degrees.tolist())
+        return tuple(tuple(one.tolist()) for one in self.of_each(count))
+
 
 class SampledExtremes(NamedTuple):
     """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
@@ -95,7 +101,7 @@ class Pieces:
     machine: Indices
     count: int
     cycle: float
-    rule: Rule
+    rule: LobattoRule
 
     @classmethod
     def between(cls, breaks: Angles, count: int, cycle: float, nodes: int = 16) -> Pieces:
@@ -445,7 +451,7 @@ def _first_summits(
     return found
 
 
-def _turning_points(values: Array, of: Rule) -> tuple[Indices, Array, Array]:
+def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Array]:
     """Return columns, places in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
     slopes = of.scan_slope @ values
     i, rows = np.nonzero((slopes[1:] < 0) != (slopes[:-1] < 0))
@@ -454,7 +460,7 @@ def _turning_points(values: Array, of: Rule) -> tuple[Indices, Array, Array]:
     return rows, places, series_at(series, places)
 
 
-def _crossings(values: Array, of: Rule, tiny: Array) -> tuple[Indices, Array]:
+def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Array]:
     """Return columns and places in [−1, 1] where polynomials through samples (nodes, n) pass tiny (n,), nearly zero."""
     fine = of.scan @ values
     below = fine < tiny

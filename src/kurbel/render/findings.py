@@ -2,13 +2,13 @@
 
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.designs.find import Findings, Solution
-from kurbel.designs.sweep import Row
+from kurbel.designs.find import Solution, Solutions
+from kurbel.designs.sweep import Design
 
 Heads = tuple[tuple[str, str], ...]
 
 
-def heads(found: Findings, system: str) -> Heads:
+def heads(found: Solutions, system: str) -> Heads:
     """Return names and units of the columns: the keys in the units of their ranges, and the key values."""
     keys = [(one.key, one.unit) for one in found.varied]
     largest = [max(abs(one.key_values[place]) for one in found.found) for place in range(len(found.answers))]
@@ -16,12 +16,12 @@ def heads(found: Findings, system: str) -> Heads:
     return (*keys, *((name, shown_unit(one.kind, system, size)) for name, one, size in sized))
 
 
-def as_rows(found: Findings, system: str) -> list[Row]:
+def as_rows(found: Solutions, system: str) -> list[Design]:
     """Return a row for each solution, in the order and the units of the heads."""
     kinds = [*(one.kind for one in found.varied), *(one.kind for one in found.answers)]
     units = [unit for _, unit in heads(found, system)]
     return [
-        Row(
+        Design(
             number,
             tuple(float(convert(value, *unit)) for value, *unit in zip((*one.values, *one.key_values), kinds, units)),
         )
@@ -29,7 +29,7 @@ def as_rows(found: Findings, system: str) -> list[Row]:
     ]
 
 
-def as_json(found: Findings) -> dict[str, object]:
+def as_json(found: Solutions) -> dict[str, object]:
     """Return what was found as JSON has it, all in SI."""
 
     def solution(one: Solution) -> dict[str, object]:
@@ -57,7 +57,7 @@ def as_json(found: Findings) -> dict[str, object]:
     }
 
 
-def remarks(found: Findings) -> list[str]:
+def remarks(found: Solutions) -> list[str]:
     """Return what is to be said besides the solutions, a line each."""
     key = found.varied[0]
     lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]

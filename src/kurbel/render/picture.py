@@ -10,7 +10,7 @@ from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
 from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
 from kurbel.render.text import width
-from kurbel.report.picture import Axis, Figure, Panel, Picture, Words
+from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
@@ -34,7 +34,7 @@ def axis_text(axis: Axis, look: Look) -> str:
     return " in ".join(filter(None, (symbol(axis.name, look), look.unit(axis.unit))))
 
 
-def figure_text(figure: Figure, look: Look) -> str:
+def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     at = "" if figure.at_deg is None else angle(figure.at_deg, look.comma) + look.text("°")
     if figure.value is None:

@@ -16,7 +16,7 @@ from itertools import chain, islice
 from typing import Any, BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Row, Sweep
+from kurbel.designs.sweep import Design, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -53,7 +53,7 @@ class Titles(NamedTuple):
         heads = [f"{name}_{unit.replace(' ', '')}" if unit else name for name, unit in self.names]
         return [self.row, *heads, *self.last]
 
-    def values(self, row: Row) -> list[Any]:
+    def values(self, row: Design) -> list[Any]:
         """Return the values of a row under the heads."""
         return [row.number, *row.values, *map(row.text, self.last)]
 
@@ -61,7 +61,7 @@ class Titles(NamedTuple):
 # rows as lines of text
 
 
-def lines_of(titles: Titles, look: Look, first: Sequence[Row] = ()) -> tuple[str, Callable[[Row], str]]:
+def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[str, Callable[[Design], str]]:
     """Return the lines of the heads, and what makes the line of a row.
 
     first: rows that decide the widths of a table.
@@ -76,14 +76,14 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Row] = ()) -> tuple[str
     if look.format == "json":
         heads = titles.whole
 
-        def json_row(row: Row) -> str:
+        def json_row(row: Design) -> str:
             texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
             found = {name: texts.get(name, value) for name, value in zip(heads, titles.values(row))}
             return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
         return "", json_row
 
-    def cells(row: Row) -> list[str]:
+    def cells(row: Design) -> list[str]:
         return [_cell(value, look) for value in titles.values(row)]
 
     names = [titles.row, *(look.text(name) for name, _ in titles.names), *titles.last]
@@ -134,7 +134,7 @@ class Kept(NamedTuple):
 
 
 def write_rows(
-    rows: Iterable[Row],
+    rows: Iterable[Design],
     titles: Titles,
     look: Look,
     file_name: str | None,
@@ -198,7 +198,7 @@ def _write_lines(file: BinaryIO, heads: str, lines: Iterable[str], encoding: str
         put()
 
 
-def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Row], wrote: Callable[[int], None]) -> None:
+def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design], wrote: Callable[[int], None]) -> None:
     """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
     try:
         import pyarrow
@@ -274,7 +274,9 @@ def kept_rows(
                 some = parsed([line.decode("utf-8", "replace") for line in lines], len(names))
                 known = [row for cells in some if (row := int(cells[0]) - 1) in rows]
                 inputs = zip(known, sweep.inputs(known))
-                now = dict(zip(known, parsed([line_of_inputs(Row(row + 1, values)) for row, values in inputs], width)))
+                now = dict(
+                    zip(known, parsed([line_of_inputs(Design(row + 1, values)) for row, values in inputs], width))
+                )
                 for cells in some:
                     row = int(cells[0]) - 1
                     if row not in rows:

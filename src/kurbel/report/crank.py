@@ -30,7 +30,7 @@ from kurbel.report.warnings import (
 from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.indicated import CYCLE_ROWS
+from kurbel.solver.indicated import OF_CYCLES
 from kurbel.solver.trace import TracePressure
 
 STRESSES = by_id(
@@ -94,9 +94,8 @@ def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if not cycles:
         return []
-    quantities = (row.quantity for row in CYCLE_ROWS)
-    declared = {one.id: one.absolute() if gas and gas.absolute else one for one in quantities}
-    columns = zip(*(row.of(cycles).tolist() for row in CYCLE_ROWS))
+    declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
+    columns = zip(*(one.tolist() for one in cycles))
     rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
     return [place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)]
 

@@ -224,6 +224,8 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     near = ""
     for some in (there, known):
         near = near or did_you_mean(name, tuple(word for one in some.values() for word in (one.id, one.symbol)))
+    if not near and len(name) > 2 and (ids := [one.id for one in there.values() if name.lower() in one.text.lower()]):
+        near = f"; it is in the sentences of {', '.join(ids)}"
     others = ", ".join(id for id in known if id not in there)
     listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
     return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, listed))})"

@@ -86,7 +86,7 @@ def motion_left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
 
 def forces_left_out(machine: Machine, forces: CylinderForces) -> list[LeftOut]:
     """Return everything that the computed forces of a cylinder leave out."""
-    cylinder, in_noise = forces.drive.cylinder, forces.reversals_in_noise
+    cylinder, (_, in_noise) = forces.drive.cylinder, forces.changes_of_force
     no_crosshead = not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None
     no_share = forces.friction_work is not None and not forces.work_driving
     computed = {

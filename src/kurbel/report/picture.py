@@ -70,7 +70,7 @@ class Curve(NamedTuple):
         return self if self.x.ndim == 1 else self._replace(x=self.x[moment], y=self.y[moment])
 
 
-class Figure(NamedTuple):
+class PageFigure(NamedTuple):
     """A figure written into a picture: symbol, value with unit, and its crank angle."""
 
     name: Words
@@ -84,7 +84,7 @@ class Mark(NamedTuple):
 
     x: float
     y: float
-    figure: Figure
+    figure: PageFigure
 
 
 class Shade(NamedTuple):
@@ -97,7 +97,7 @@ class Shade(NamedTuple):
     low: Array
     high: Array
     gain: bool = True
-    figure: Figure | None = None
+    figure: PageFigure | None = None
 
 
 class Panel(NamedTuple):

@@ -10,7 +10,7 @@ from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity
 from kurbel.report.frame import too_large
-from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Shade, Words
+from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.solver.figures import Results
 
 PHI = "phi"
@@ -141,7 +141,7 @@ class Source:
 
     def mark(self, id: str, extreme: Extreme, x: float, y: float | None = None) -> Mark:
         """Return an extreme, which is the key value of this id, at a place; y: its value, if none is given."""
-        figure = Figure(self.words(id), extreme.value, at_deg=extreme.degrees)
+        figure = PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees)
         return Mark(x, extreme.value if y is None else y, figure)
 
     def panel(self, ids: Sequence[str], over: str = PHI, zero: bool = False) -> Panel:
@@ -189,7 +189,7 @@ def in_units(panel: Panel, system: str) -> Panel:
     def to(axis: int, values: Any) -> Any:
         return convert(values, kinds[axis], units[axis])
 
-    def shown(figure: Figure, axis: int, unit: str) -> Figure:
+    def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
         return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
     y_unit = f"{units[1]} {panel.y.mark}".rstrip()

@@ -17,7 +17,7 @@ from kurbel.report.alike import together
 from kurbel.report.crank import equal_bearings
 from kurbel.report.frame import subjects_of
 from kurbel.report.mechanism_picture import mechanism
-from kurbel.report.picture import Axis, Curve, Figure, Mark, Panel, Picture, Shade, Words
+from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Source, in_units, level
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
@@ -43,7 +43,7 @@ def piston_force(source: Source) -> Iterator[Panel]:
         return
 
     def marked(heights: Sequence[float]) -> list[Mark]:
-        figures = (Figure(Words("force reversal"), at_deg=angle) for angle in reversals)
+        figures = (PageFigure(Words("force reversal"), at_deg=angle) for angle in reversals)
         return [Mark(*one) for one in zip(reversals, heights, figures)]
 
     reversals = source.results.phi_reversal or ()
@@ -207,7 +207,7 @@ def effort(source: Source) -> Iterator[Panel]:
             wide = [np.ptp(shades[one].x) for one in (place, widest.get(owner, place))]
             widest[owner] = place if wide[0] >= wide[1] else widest[owner]
         for owner, place in widest.items():
-            shades[place] = shades[place]._replace(figure=Figure(Words(f"A_{owner + 1}"), lobes[owner]))
+            shades[place] = shades[place]._replace(figure=PageFigure(Words(f"A_{owner + 1}"), lobes[owner]))
     marks = source.marks(id, lambda angle: angle)
     yield Panel(source.axis(PHI), source.axis(id), curves, tuple(shades), marks)
 

@@ -32,7 +32,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.quantity import Tabled, value
+from kurbel.quantity import Computed, value
 from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
@@ -166,7 +166,9 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 # over the crank angle
 
 
-def _vector(name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False) -> Tabled:
+def _vector(
+    name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False
+) -> Computed[Any]:
     """Return a column that is a part, or the size, of a vector of BalanceColumns; asked: printed on request alone."""
 
     def part(columns: BalanceColumns) -> Any:

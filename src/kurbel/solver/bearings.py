@@ -241,7 +241,7 @@ class RodPin(Bearing):
     def _rubbing(self) -> tuple[Extreme, Any, Any]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
         forces = self._own.forces
-        state, work = forces.samples, forces.pin_work_of(self._pin)
+        state, work = forces.samples, forces.friction_works.get(self._pin)
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
         rate = self._own.carried(self._common, 1 + slope if self._pin == "crank_pin" else slope)

@@ -107,11 +107,11 @@ def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
 
     def before(some: Pieces) -> Array:
         state = State.on(drive, some).unrubbed
-        return _stacked(some, _sense(state), state.curvature, state.P_gas, state.P)
+        return _stacked(some, state.rod_angle and state.guide_sense, state.curvature, state.P_gas, state.P)
 
     def rubbed(some: Pieces) -> Array:
         state = State.on(drive, some)
-        return _stacked(some, _sense(state), *(state.rubbing or ()))
+        return _stacked(some, state.rod_angle and state.guide_sense, *(state.rubbing or ()))
 
     pieces, (sense, *_) = refined(pieces, before)
     if drive.rubs:
@@ -146,11 +146,6 @@ def _smooth(state: State, pieces: Pieces) -> Array:
     return _stacked(pieces, state.curvature, *forces, *offered)
 
 
-def _sense(state: State) -> Any:
-    """Return what has the sign of the guide force in N; None without a connecting rod."""
-    return None if state.rod_angle is None else state.guide_sense
-
-
 def _stacked(pieces: Pieces, *values: Any) -> Array:
     """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
     return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
@@ -163,7 +158,7 @@ def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:
     """
     changes = pieces.zeros(values)
     if drive.count is not None:
-        return tuple(tuple(one.tolist()) for one in changes.of_each(drive.count))
+        return changes.listed(drive.count)
     return tuple(lasting(pieces, values, changes.degrees, _SURE * drive.noise).tolist())
 
 

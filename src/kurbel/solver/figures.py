@@ -7,7 +7,7 @@ the extremes of the columns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -137,9 +137,8 @@ class Rows(NamedTuple):
 class Part(Computed[V]):
     """Results that are a part of others; their rows stand in the place of the attribute."""
 
-    def __init__(self, function: Callable[[Any], V], kind: type[Results], unless: Condition | None) -> None:
-        super().__init__(function, Quantity(function.__name__, "", "", ""))
-        self.kind, self.unless = kind, unless
+    kind: type[Results]
+    unless: Condition | None
 
 
 def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], Part[V]]:
@@ -147,7 +146,13 @@ def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Call
 
     unless: takes the results; where it is true, all of the part says nothing new.
     """
-    return lambda function: Part(function, kind, unless)
+
+    def made(function: Callable[[Any], V]) -> Part[V]:
+        found = Part(function, Quantity("", "", "", function.__doc__ or ""))
+        found.kind, found.unless = kind, unless
+        return found
+
+    return made
 
 
 class Searched:
@@ -229,14 +234,6 @@ class Results(Shown):
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
 
-def _definitions(kind: type) -> Iterator[Any]:
-    """Yield what a class has by definition, its own and inherited, in the order in which each was defined first."""
-    found: dict[str, Any] = {}
-    for one in reversed(kind.__mro__):
-        found |= vars(one)
-    yield from found.values()
-
-
 def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()) -> Rows:
     """Return the rows of a class of results, with the columns and key values that mechanisms add."""
     if (kind, offers, key_offers) in _ROWS:
@@ -244,7 +241,10 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
     found: list[Row] = []
-    for item in _definitions(kind):
+    definitions: dict[str, Any] = {}
+    for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
+        definitions |= vars(one)
+    for item in definitions.values():
         if isinstance(item, Part):
             inner = rows_of(item.kind, offers, key_offers).key_values.values()
             seen = (row.through(item.value_of) for row in inner)

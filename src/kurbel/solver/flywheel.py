@@ -22,7 +22,7 @@ from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Tabled, key_value, value
+from kurbel.quantity import Computed, key_value, value
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
@@ -44,7 +44,7 @@ _CLOSE = 1e-9
 """By what δ may miss the wanted one, relatively, with the flywheel that gives it."""
 
 
-def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Tabled:
+def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Computed[Any]:
     """Return a column whose samples `MachineTurning.samples_of` has."""
     return value(symbol, kind, text, lambda state: state.course(id), **words)
 

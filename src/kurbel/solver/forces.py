@@ -15,71 +15,73 @@ from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
-from kurbel.quantity import Quantity, for_each, key_value
+from kurbel.quantity import Quantity, value, values_for
 from kurbel.solver.cycle import SampledCylinder, reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
-from kurbel.solver.friction import redtenbacher_loss
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
+_SLIDING = {"crosshead": ("K", "at the crosshead"), "rings": ("R", "at the piston rings")}
 _RUBBING = {
     "crank_pin": ("Z", "in the crank pin"),
     "crosshead_pin": ("H", "in the crosshead pin"),
     "journals": ("J", "in the journals of the throw"),
 }
-"""Key of the coefficient of friction -> index of the symbols, and where it rubs."""
+"""Key of a coefficient of friction -> index of the symbols, and where it rubs."""
 
 
 class Brake(Results):
     """What the brake has measured against what the indicator shows; None without a brake or an indicated power.
 
-    A machine that is driven takes more at the shaft than its pistons give to the gas: there the efficiency is the
-    other way round.
+    A machine that is driven takes more at the shaft than its pistons give to the gas: there p_r is p_e less |p_i|, and
+    the efficiency indicated over brake power. indicated: power in W of all cylinders, negative where they are driven;
+    None where one has none.
     """
 
+    mean_pressure_brake = value("p_e", "pressure", "Mean effective pressure: brake work over the swept volume")
+    mean_pressure_friction = value("p_r", "pressure", "Friction mean pressure, p_i less p_e")
+    eta_m = value("η_m", "ratio", "Mechanical efficiency: brake power over indicated power")
+
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
-        self.machine = machine
-        # each once in a turn, a cycle of two turns in every other one
-        gases = [(one.drive.own_gas, one.drive.revolutions) for one in cylinders]
-        swept = _sum_of_all([None if gas is None else gas.swept_volume / turns for gas, turns in gases])
+        self.machine, self.cylinders = machine, cylinders
         self.indicated: Any = _sum_of_all([one.power for one in cylinders])
-        """Indicated power in W of all cylinders, negative where they are driven; None where one has none."""
-        rate = None if swept is None or machine.speed is None else swept * machine.speed
-        self._swept: Any = None if rate is None or every(rate == 0) else rate
-        """Volume in m³ that the cylinders' own pistons sweep per second against their pressures; None at rest."""
 
-    @key_value("p_e", "pressure")
-    def mean_pressure_brake(self) -> Any:
-        """Mean effective pressure: brake work over the swept volume."""
-        power = self.machine.brake_power
-        return None if power is None or self._swept is None else power / self._swept
+    @cached_property
+    def answers(self) -> dict[str, Any]:
+        """The key values."""
+        found, power, indicated = dict[str, Any](), self.machine.brake_power, self.indicated
+        if power is None:
+            return found
+        # each cylinder sweeps once in a turn, in a cycle of two turns in every other one
+        gases = [(one.drive.own_gas, one.drive.revolutions) for one in self.cylinders]
+        swept = _sum_of_all([None if gas is None else gas.swept_volume / turns for gas, turns in gases])
+        rate = None if swept is None or self.machine.speed is None else swept * self.machine.speed
+        if rate is not None and not every(rate == 0):
+            found["mean_pressure_brake"] = brake = power / rate
+            if indicated is not None:
+                sense = where(indicated < 0, -1.0, 1.0)
+                found["mean_pressure_friction"] = sense * (abs(indicated) / rate - brake)
+        if indicated is not None and not every(power == 0) and not every(indicated == 0):
+            drives = indicated > 0
+            found["eta_m"] = where(drives, power, -indicated) / where(drives, indicated, power)
+        return found
 
-    @key_value("p_r", "pressure")
-    def mean_pressure_friction(self) -> Any:
-        """Friction mean pressure, p_i less p_e.
 
-        p_e less |p_i| where the machine is driven.
-        """
-        brake, indicated = self.mean_pressure_brake, self.indicated
-        if brake is None or indicated is None:
-            return None
-        return where(indicated < 0, -1.0, 1.0) * (abs(indicated) / self._swept - brake)
+def share_of_driving(forces: CylinderForces, name: str) -> Any:
+    """Return a work of friction over that of the driving pistons; nan for those of many machines without any."""
+    lost, driving = forces.friction_works.get(name), forces.work_driving
+    if lost is None or driving is None or every(driving == 0):
+        return None
+    return lost / where(driving == 0, math.nan, driving)
 
-    @key_value("η_m", "ratio")
-    def eta_m(self) -> Any:
-        """Mechanical efficiency: brake power over indicated power.
 
-        Indicated over brake power where the machine is driven.
-        """
-        power, indicated = self.machine.brake_power, self.indicated
-        if power is None or indicated is None or every(power == 0) or every(indicated == 0):
-            return None
-        drives = indicated > 0
-        return where(drives, power, -indicated) / where(drives, indicated, power)
+def _works_one_way(forces: CylinderForces) -> bool:
+    """Return whether the pistons of the rod all drive or are all driven, so that `work` is the only work."""
+    return not (forces.work_driving and forces.work_driven)
 
 
 class CylinderForces(SampledCylinder, Results):
@@ -93,6 +95,8 @@ class CylinderForces(SampledCylinder, Results):
 
     def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
         self.drive = Drive(machine, cylinder, count)
+        self.mechanism: Mechanism = cylinder.mechanism
+        self.omega = self.drive.omega
 
     @property
     def rows(self) -> Rows:
@@ -100,16 +104,6 @@ class CylinderForces(SampledCylinder, Results):
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
         of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
         return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
-
-    @property
-    def mechanism(self) -> Mechanism:
-        """The mechanism."""
-        return self.drive.mechanism
-
-    @property
-    def omega(self) -> Any:
-        """Angular velocity in rad/s."""
-        return self.drive.omega
 
     @property
     def _of(self) -> str:
@@ -122,54 +116,186 @@ class CylinderForces(SampledCylinder, Results):
         """
         return State.at(self.drive, crank_angles(degrees), within)
 
+    # the key values, in the order in which they are printed
+
     @part(Motion)
     def motion(self) -> Motion:
         """What the mechanism does."""
         return Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
 
-    @key_value("A_H", "area")
-    def A_head(self) -> Any:
-        """Piston area at the head end."""
-        pistons = self.drive.cylinder.pistons
-        return pistons[0].head_area if pistons else None
-
-    @key_value("A_C", "area")
-    def A_crank(self) -> Any:
-        """Piston area at the crank end."""
-        pistons = self.drive.cylinder.pistons
-        return pistons[0].crank_area if pistons else None
-
-    @key_value("p_max", "pressure", gauge=True)
-    def p_max(self) -> Extreme | None:
-        """Largest gauge pressure in the cylinder's own piston."""
-        if not self.drive.own_gas:
-            return None
-        gas = self.drive.own_gas
-        highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
-        return Extreme(highest.value + gas.base, highest.degrees)
-
-    @key_value("m", "mass")
-    def m(self) -> Any:
-        """Reciprocating mass with its share of the connecting rod."""
-        return self.drive.mass if self.drive.cylinder.masses else None
-
+    A_head = value("A_H", "area", "Piston area at the head end")
+    A_crank = value("A_C", "area", "Piston area at the crank end")
+    p_max = value("p_max", "pressure", "Largest gauge pressure in the cylinder's own piston", gauge=True)
+    m = value("m", "mass", "Reciprocating mass with its share of the connecting rod")
     extremes = Searched()
+    P_inertia_max = value(
+        "P_b,max",
+        "force",
+        "Largest inertia force toward the shaft",
+        lambda forces: largest(*forces.inertia) if forces.inertia else None,
+        after="P_start_min",
+    )
+    P_inertia_min = value(
+        "P_b,min",
+        "force",
+        "Largest inertia force away from the shaft, negative",
+        lambda forces: smallest(*forces.inertia) if forces.inertia else None,
+        after="P_start_min",
+    )
+    p_guide_max = value(
+        "p_g,max",
+        "pressure",
+        "Largest pressure of the crosshead's shoe on its guide",
+        lambda forces: forces.on_guide.get("p_guide_max"),
+        after="T_peak",
+    )
+    p_guide_mean = value(
+        "p_g,m",
+        "pressure",
+        "Mean over the way of the shoe's pressure on its guide",
+        lambda forces: forces.on_guide.get("p_guide_mean"),
+        after="T_peak",
+    )
+    wear_max = value(
+        "f N c_max",
+        "power",
+        "Largest value of the wear line of the guide",
+        lambda forces: forces.on_guide.get("wear_max"),
+        after="T_peak",
+    )
+    wear_mean = value(
+        "f N c_m",
+        "power",
+        "Mean of the wear line: power lost on the guide",
+        lambda forces: forces.on_guide.get("wear_mean"),
+        after="T_peak",
+    )
+    phi_reversal = value(
+        "φ_P=0",
+        "angle",
+        "Force reversal: crank angles at which the piston force changes sign",
+        lambda forces: forces.changes_of_force[0],
+        listed=True,
+    )
+    work = value("A_i", "energy", "Indicated work of all pistons of the rod per cycle")
+    work_driving = value("A_i+", "energy", "Indicated work of the driving pistons per cycle", unless=_works_one_way)
+    work_driven = value(
+        "A_i−", "energy", "Indicated work of the driven pistons per cycle, negative", unless=_works_one_way
+    )
+    resistance_work = value("A_r", "energy", "Work per cycle of what the ram or rocker works against, negative")
+    power = value("N_i", "power", "Indicated power")
+    mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
+
+    @part(Indicated)
+    def indicated(self) -> Indicated | None:
+        """Key values of the traces of the cylinder's own piston."""
+        return Indicated(self.drive.own_gas) if self.drive.own_gas else None
+
+    @part(Brake)
+    def brake(self) -> Brake | None:
+        """Key values of the brake, where this is the only cylinder."""
+        machine = self.drive.machine
+        return Brake(machine, (self,)) if len(machine.cylinders) == 1 and machine.brake_power is not None else None
+
+    work_sensitivity = value(  # an indicator's dead centre is seldom known better
+        "dA_i/A_i", "ratio", "Change of the indicated work of the traces, over that work, if they are put 0.1 deg later"
+    )
+    W = value(
+        "W",
+        "force",
+        "Mean tangential force over the cycle: the resistance",
+        lambda forces: (
+            None
+            if forces.work_left is None
+            else forces.work_left / (2 * math.pi * forces.mechanism.crank * forces.drive.revolutions)
+        ),
+    )
+    friction_work = value(
+        "A_f",
+        "energy",
+        "Work lost by friction per cycle",
+        lambda forces: (
+            total(*forces.friction_works.values()) if forces.drive.has_force and forces.friction_works else None
+        ),
+    )
+    loss_of_sliding = values_for(
+        _SLIDING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+    )
+    loss_crosshead_redtenbacher = value(
+        "½ λ f",
+        "ratio",
+        "Redtenbacher's mean over the rod angle of the same loss (D 7)",
+        lambda forces: (
+            forces.mechanism.lam * forces.drive.crosshead_friction / 2 if "crosshead" in forces.friction_works else None
+        ),
+        plain="lam f/2",
+        after="loss_crosshead",
+    )
+    pin_work = values_for(
+        _RUBBING,
+        "work_*",
+        "A_f,*",
+        "energy",
+        "Work lost * per cycle",
+        of=lambda forces, name: forces.friction_works.get(name),
+    )
+    pin_loss = values_for(
+        _RUBBING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+    )
+    energy_residual = value(
+        "ΔA/A",
+        "ratio",
+        "Energy in minus energy out by an independent quadrature",
+        lambda forces: forces.energy_left(),
+        residual=True,
+    )
+    residual = value(
+        "r_F", "ratio", "What Newton's law leaves open of the forces, over the largest", residual, residual=True
+    )
+
+    @part(RodLoads, unless=lambda forces: forces.no_compressor)
+    def rod_loads(self) -> RodLoads | None:
+        """The rod load, judged after API 618; None where no force acts."""
+        columns = ("P_gas", "P_rod", "P_piston_rod") if self.drive.has_force else ()
+        loads = {name: values for name in columns if (values := self.sampled(name)) is not None}
+        return RodLoads(self.drive, self.pieces, loads) if loads else None
+
+    @cached_property
+    def answers(self) -> dict[str, Any]:
+        """The key values that follow from the numbers and the pressures alone, without samples of forces."""
+        drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, Any]()
+        found["m"] = drive.mass if drive.cylinder.masses else None
+        found["resistance_work"] = drive.resistance_work
+        if pistons:
+            found["A_head"], found["A_crank"] = pistons[0].head_area, pistons[0].crank_area
+        if gas := drive.own_gas:
+            highest = largest(*(end.highest for end in (gas.head, gas.crank) if end))
+            found["p_max"] = Extreme(highest.value + gas.base, highest.degrees)
+            found["mean_pressure"] = gas.work / gas.swept_volume
+        if drive.gas:
+            each, speed = [gas.work for gas in drive.gas], drive.machine.speed
+            found["work"] = work = total(*(one for gas in drive.gas for one in gas.works))
+            found["work_driving"] = total(*(where(one > 0, one, 0.0) for one in each))
+            found["work_driven"] = total(*(where(one < 0, one, 0.0) for one in each))
+            if speed is not None and not every(speed == 0):
+                found["power"] = work * speed / drive.revolutions
+        traced = [gas.traced for gas in drive.gas if gas.traced]
+        if own := math.fsum(work for work, _ in traced):
+            found["work_sensitivity"] = math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / own
+        return found
 
     @property
-    def _inertia(self) -> list[Extreme]:
+    def no_compressor(self) -> bool:
+        """Whether the rod load is of no interest: an engine, also a motored four-stroke one, or no connecting rod."""
+        return self.work is None or self.work >= 0 or self.drive.revolutions > 1 or not self.mechanism.has_rod
+
+    # extremes of the columns
+
+    @property
+    def inertia(self) -> list[Extreme]:
         """The inertia forces where the acceleration is largest and smallest; none without masses or speed."""
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
-
-    @key_value("P_b,max", "force", after="P_start_min")
-    def P_inertia_max(self) -> Extreme | None:
-        """Largest inertia force toward the shaft."""
-        return largest(*self._inertia) if self._inertia else None
-
-    @key_value("P_b,min", "force", after="P_start_min")
-    def P_inertia_min(self) -> Extreme | None:
-        """Largest inertia force away from the shaft, negative."""
-        return smallest(*self._inertia) if self._inertia else None
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
@@ -186,6 +312,19 @@ class CylinderForces(SampledCylinder, Results):
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
         if self.drive.count is None and may_lock(self.drive.cylinder):
             self.extremes_of("N")
+
+    @cached_property
+    def changes_of_force(self) -> tuple[tuple[Any, ...] | None, int]:
+        """The crank angles in degrees at which P changes sign, through zero or by a jump, None without P.
+
+        Changes that are noise of a trace count once, at the middle one; with them, how many of them are not listed. For
+        many machines one tuple each.
+        """
+        P = self.sampled("P") if self.drive.has_force else None
+        if P is None:
+            return None, 0
+        found = reversals(self.drive, self.pieces, P)
+        return found, len(self.pieces.zeros(P).degrees) - len(found) if self.drive.noise else 0
 
     # guide and shoe of the crosshead
 
@@ -204,155 +343,34 @@ class CylinderForces(SampledCylinder, Results):
         pressing = self.pieces.at(side, np.zeros(len(middles), dtype=np.intp), middles) * down
         return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
-    @key_value("p_g,max", "pressure", after="T_peak")
-    def p_guide_max(self) -> Extreme | None:
-        """Largest pressure of the crosshead's shoe on its guide."""
-        found = None if self.drive.guide_area is None else self.extremes_of("N")
-        if found is None:
-            return None
-        most = largest(*(Extreme(abs(one.value), one.degrees) for one in found))
-        return Extreme(most.value / self.drive.guide_area, most.degrees)
-
-    @key_value("p_g,m", "pressure", after="T_peak")
-    def p_guide_mean(self) -> Any:
-        """Mean over the way of the shoe's pressure on its guide.
-
-        There and back; None without friction there.
-        """
-        f, lost, area = self.drive.crosshead_friction, self.friction_works.get("crosshead"), self.drive.guide_area
-        if area is None or lost is None or not (self.drive.rubs and some(lost != 0)):
-            return None
-        return lost / (f * area * self.way)
-
-    @key_value("f N c_max", "power", after="T_peak")
-    def wear_max(self) -> Extreme | None:
-        """Largest value of the wear line of the guide.
-
-        f |N| |c|.
-        """
-        found = self.extremes_over(("wear",)) if self.drive.guide_area is not None and self.drive.has_force else {}
-        return found["wear"].largest if found else None
-
-    @key_value("f N c_m", "power", after="T_peak")
-    def wear_mean(self) -> Any:
-        """Mean of the wear line: power lost on the guide."""
-        speed, lost = self.drive.machine.speed, self.friction_works.get("crosshead")
-        if self.drive.guide_area is None or lost is None or speed is None:
-            return None
-        return lost * speed / self.drive.revolutions
-
-    # work
-
-    @key_value("φ_P=0", "angle", listed=True)
-    def phi_reversal(self) -> tuple[Any, ...] | None:
-        """Force reversal: crank angles at which the piston force changes sign.
-
-        P changes sign there, through zero or by a jump. Changes that are noise of a trace count once, at the middle
-        one. For many machines one tuple each.
-        """
-        P = self.sampled("P") if self.drive.has_force else None
-        return None if P is None else reversals(self.drive, self.pieces, P)
-
-    @property
-    def reversals_in_noise(self) -> int:
-        """How many changes of the sign of P are noise of a trace, and are not listed."""
-        values = self.sampled("P") if self.drive.noise and self.drive.has_force else None
-        return 0 if values is None else len(self.pieces.zeros(values).degrees) - len(self.phi_reversal or ())
-
-    @property
-    def works_one_way(self) -> bool:
-        """Whether the pistons of the rod all drive or are all driven, so that `work` is the only work."""
-        return not (self.work_driving and self.work_driven)
-
     @cached_property
-    def piston_works(self) -> tuple[Any, ...] | None:
-        """Indicated work in J per cycle of each piston that has an indicator, in the order of the machine file."""
-        return tuple(gas.work for gas in self.drive.gas) if self.drive.gas else None
+    def on_guide(self) -> dict[str, Any]:
+        """The key values of the shoe; the means over its path there and back, or over time, only with friction."""
+        drive, found = self.drive, dict[str, Any]()
+        side = None if drive.guide_area is None else self.extremes_of("N")
+        if side is not None:
+            most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))
+            found["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
+        if drive.guide_area is not None and drive.has_force and (wear := self.extremes_over(("wear",))):
+            found["wear_max"] = wear["wear"].largest
+        lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
+        if drive.guide_area is not None and lost is not None:
+            if drive.rubs and some(lost != 0):
+                found["p_guide_mean"] = lost / (drive.crosshead_friction * drive.guide_area * drive.way)
+            if speed is not None:
+                found["wear_mean"] = lost * speed / drive.revolutions
+        return found
 
-    @key_value("A_i", "energy")
-    def work(self) -> Any:
-        """Indicated work of all pistons of the rod per cycle."""
-        return None if self.piston_works is None else total(*(w for gas in self.drive.gas for w in gas.works))
-
-    @key_value("A_i+", "energy", unless=lambda forces: forces.works_one_way)
-    def work_driving(self) -> Any:
-        """Indicated work of the driving pistons per cycle."""
-        return None if self.piston_works is None else total(*(where(work > 0, work, 0.0) for work in self.piston_works))
-
-    @key_value("A_i−", "energy", unless=lambda forces: forces.works_one_way)
-    def work_driven(self) -> Any:
-        """Indicated work of the driven pistons per cycle, negative."""
-        return None if self.piston_works is None else total(*(where(work < 0, work, 0.0) for work in self.piston_works))
-
-    @key_value("A_r", "energy")
-    def resistance_work(self) -> Any:
-        """Work per cycle of what the ram or rocker works against, negative."""
-        return self.drive.resistance_work
-
-    @key_value("N_i", "power")
-    def power(self) -> Any:
-        """Indicated power."""
-        speed = self.drive.machine.speed
-        if self.work is None or speed is None or every(speed == 0):
-            return None
-        return self.work * speed / self.drive.revolutions
-
-    @key_value("p_i", "pressure")
-    def mean_pressure(self) -> Any:
-        """Mean indicated pressure of the cylinder's own piston.
-
-        Its work over the volume that it sweeps.
-        """
-        gas = self.drive.own_gas
-        return None if gas is None else gas.work / gas.swept_volume
-
-    @part(Indicated)
-    def indicated(self) -> Indicated | None:
-        """Key values of the traces of the cylinder's own piston."""
-        return Indicated(self.drive.own_gas) if self.drive.own_gas else None
-
-    @part(Brake)
-    def brake(self) -> Brake | None:
-        """Key values of the brake, where this is the only cylinder."""
-        machine = self.drive.machine
-        return Brake(machine, (self,)) if len(machine.cylinders) == 1 and machine.brake_power is not None else None
-
-    @key_value("dA_i/A_i", "ratio")
-    def work_sensitivity(self) -> float | None:
-        """Change of the indicated work of the traces, over that work, if they are put 0.1 deg later.
-
-        An indicator's dead centre is seldom known better. None without a trace.
-        """
-        traced = [gas.traced for gas in self.drive.gas if gas.traced]
-        work = math.fsum(work for work, _ in traced)
-        return math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / work if work else None
+    # works
 
     @cached_property
     def work_left(self) -> Any:
         """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
         if not self.drive.has_force:
             return None
-        work, lost, resisted = (
-            0.0 if one is None else one for one in (self.work, self.friction_work, self.resistance_work)
-        )
+        terms = (self.work, self.friction_work, self.resistance_work)
+        work, lost, resisted = (0.0 if one is None else one for one in terms)
         return total(work, -lost, resisted)
-
-    @key_value("W", "force")
-    def W(self) -> Any:
-        """Mean tangential force over the cycle: the resistance.
-
-        What is left of the indicated work over the path of the pin.
-        """
-        if self.work_left is None:
-            return None
-        way = 2 * math.pi * self.drive.mechanism.crank * self.drive.revolutions
-        return self.work_left / way
-
-    # friction
-
-    def _over_cycle(self, values: Array) -> Any:
-        """Return ∮ value dφ of samples (nodes, pieces): a number, or one of every machine."""
-        return self.told(self.pieces.integral(values))
 
     @cached_property
     def friction_works(self) -> dict[str, Any]:
@@ -363,111 +381,32 @@ class CylinderForces(SampledCylinder, Results):
         drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
         if friction is None:
             return found
+
+        def over_cycle(values: Array) -> Any:
+            return self.told(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
+
         if friction.crosshead is not None and drive.has_force:
-            state = self.samples if drive.rubs else None
-            found["crosshead"] = (
-                self._over_cycle(state.crosshead_drag * (state.slope * state.direction)) if state else 0.0
-            )
+            drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None
+            found["crosshead"] = 0.0 if drag is None else over_cycle(drag)
         if friction.rings is not None:
-            found["rings"] = drive.ring_force * self.way
+            found["rings"] = drive.ring_force * drive.way
         if friction.constant is not None:
-            found["constant"] = friction.constant * self.way
-        return found | self._pin_works(friction.of_pins if drive.has_force else ())
+            found["constant"] = friction.constant * drive.way
+        if friction.of_pins and drive.has_force:
+            losses = dict(zip(_RUBBING, self.samples.pin_losses or (0.0, 0.0, 0.0)))
+            found |= {name: over_cycle(losses[name]) for name in _RUBBING if name in friction.of_pins}
+        return found
 
-    def _pin_works(self, given: tuple[str, ...]) -> dict[str, Any]:
-        """Return the works of friction in pins and journals in J per cycle, by the keys of the given coefficients."""
-        rubbing = self.samples.rubbing if given else None
-        if rubbing is None:
-            return dict.fromkeys(given, 0.0)
-        state, shape = self.samples, self.pieces.degrees.shape
-        losses = (state.crank_pin_loss, state.crosshead_pin_loss, rubbing.journals)
-        moments = (np.broadcast_to(one, shape) for one in losses)
-        return {name: self._over_cycle(moment) for name, moment in zip(_RUBBING, moments) if name in given}
+    def energy_left(self) -> Any:
+        """Return (∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: quadrature against closed work.
 
-    @property
-    def way(self) -> Any:
-        """Path in m of what slides, there and back, per cycle."""
-        return 2 * self.drive.mechanism.stroke * self.drive.revolutions
-
-    @key_value("A_f", "energy")
-    def friction_work(self) -> Any:
-        """Work lost by friction per cycle."""
-        given = self.friction_works.values() if self.drive.has_force else ()
-        return total(*given) if given else None
-
-    def _of_driving(self, lost: Any) -> Any:
-        """Return lost work in J over the work of the driving pistons; nan for those of many machines without any."""
-        driving = self.work_driving
-        if lost is None or driving is None or every(driving == 0):
-            return None
-        return lost / where(driving == 0, math.nan, driving)
-
-    @key_value("e_K", "ratio")
-    def loss_crosshead(self) -> Any:
-        """Work lost at the crosshead over that of the driving pistons."""
-        return self._of_driving(self.friction_works.get("crosshead"))
-
-    @key_value("½ λ f", "ratio", plain="lam f/2")
-    def loss_crosshead_redtenbacher(self) -> Any:
-        """Redtenbacher's mean over the rod angle of the same loss (D 7)."""
-        if "crosshead" not in self.friction_works:
-            return None
-        return redtenbacher_loss(self.drive.mechanism.lam, self.drive.crosshead_friction)
-
-    @key_value("e_R", "ratio")
-    def loss_rings(self) -> Any:
-        """Work lost at the piston rings over that of the driving pistons."""
-        return self._of_driving(self.friction_works.get("rings"))
-
-    @for_each(_RUBBING, "work_*", "A_f,*", "energy")
-    def pin_work_of(self, name: str) -> Any:
-        """Work lost * per cycle.
-
-        Of `crank_pin`, `crosshead_pin` or `journals`; None without its friction.
-        """
-        return self.friction_works.get(name)
-
-    @for_each(_RUBBING, "loss_*", "e_*", "ratio")
-    def pin_loss_of(self, name: str) -> Any:
-        """Work lost * over that of the driving pistons."""
-        return self._of_driving(self.pin_work_of(name))
-
-    @key_value("ΔA/A", "ratio", residual=True)
-    def energy_residual(self) -> Any:
-        """Energy in minus energy out by an independent quadrature.
-
-        (∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: quadrature of the torque against closed work. With a
-        measured trace at equal angles the quadrature follows the straight lines between the samples, the indicated work
-        the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
+        With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
+        indicated work the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
         """
         if self.work_left is None:
             return None
-        torque = self.samples.M
-        turnover, missed = self._over_cycle(np.abs(torque)), self._over_cycle(torque) - self.work_left
-        return where(turnover > 0, missed / where(turnover > 0, turnover, 1.0), 0.0)
-
-    @key_value("r_F", "ratio", residual=True)
-    def residual(self) -> float | None:
-        """What Newton's law leaves open of the forces, over the largest.
-
-        Of one machine.
-        """
-        return residual(self)
-
-    # rod load
-
-    @property
-    def no_compressor(self) -> bool:
-        """Whether the rod load is of no interest: an engine, also a motored four-stroke one, or no connecting rod."""
-        work, drive = self.work, self.drive
-        return work is None or work >= 0 or drive.revolutions > 1 or not self.mechanism.has_rod
-
-    @part(RodLoads, unless=lambda forces: forces.no_compressor)
-    def rod_loads(self) -> RodLoads | None:
-        """The rod load, judged after API 618; None where no force acts."""
-        columns = ("P_gas", "P_rod", "P_piston_rod") if self.drive.has_force else ()
-        loads = {name: values for name in columns if (values := self.sampled(name)) is not None}
-        return RodLoads(self.drive, self.pieces, loads) if loads else None
+        turnover, whole = (self.told(self.pieces.integral(one)) for one in (np.abs(self.samples.M), self.samples.M))
+        return where(turnover > 0, (whole - self.work_left) / where(turnover > 0, turnover, 1.0), 0.0)
 
 
 @cache

@@ -17,7 +17,7 @@ from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.quantity import column, key_value
+from kurbel.quantity import value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
 
 
@@ -25,115 +25,103 @@ class MotionColumns(AtAngles):
     """The motion of a mechanism at crank angles; its columns in SI, shaped as the angles.
 
     angle: crank angles (n,), or those at the nodes of pieces, (nodes, n); within: angles in degrees (n,) on the side of
-    every jump that is meant: for pieces their middles. omega: rad/s, None where no speed is given; point: of the rod,
-    whose path is wanted.
+    every jump that is meant: for pieces their middles. omega: rad/s, None where no speed is given; of_point: of the
+    rod, whose path is wanted.
+
+    rod_angle: sin ψ and cos ψ, None without a rod; posed: the crank angles with them; rod_slope: dψ/dφ, 0 without a
+    rod; way: displacement in m from the inner dead centre; slope, curvature: dx/dφ in m per radian and d²x/dφ²; of what
+    only swings, of θ; direction: +1 on the outstroke and for what turns on, −1 on the return stroke.
     """
 
     commands: ClassVar[tuple[str, ...]] = ("motion", "forces")
 
+    z = value(
+        "z",
+        "ratio",
+        "Fraction of the stroke, or of the swing, from the inner dead centre",
+        lambda one: None if one.mechanism.turns else one.way / one.mechanism.stroke,
+        on_request=("motion", "forces"),
+    )
+    psi = value(
+        "ψ",
+        "angle",
+        "Angle between connecting rod and stroke line",
+        lambda one: None if one.rod_angle is None else bearing(*one.rod_angle),
+    )
+    x = value(
+        "x",
+        "length",
+        "Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke",
+        lambda one: one.coordinate if one.mechanism.slides else None,
+    )
+    c = value(
+        "c",
+        "velocity",
+        "Velocity, positive toward the shaft; of a quick-return ram, on the working stroke",
+        lambda one: one.slope * one.omega if one.mechanism.slides and one.omega is not None else None,
+    )
+    b = value(  # a power would raise where the product is inf
+        "b",
+        "acceleration",
+        "Acceleration, positive as the velocity",
+        lambda one: one.curvature * (one.omega * one.omega) if one.mechanism.slides and one.omega is not None else None,
+    )
+    x_point = value(
+        "x_Q",
+        "length",
+        "Place of the point of the rod from the shaft axis, along φ = 0",
+        lambda one: one.point and one.point.x,
+        on_request=("forces",),
+    )
+    y_point = value(
+        "y_Q",
+        "length",
+        "Place of the point of the rod from the shaft axis, along φ = 90°",
+        lambda one: one.point and one.point.y,
+        on_request=("forces",),
+    )
+    v_point = value(
+        "v_Q",
+        "velocity",
+        "Speed of the point of the rod",
+        lambda one: None if one.point is None or one.omega is None else one.point.speed * one.omega,
+        on_request=("forces",),
+    )
+    b_point = value(
+        "b_Q",
+        "acceleration",
+        "Magnitude of the acceleration of the point of the rod",
+        lambda one: (
+            None if one.point is None or one.omega is None else one.point.acceleration * (one.omega * one.omega)
+        ),
+        on_request=("forces",),
+    )
+
     def __init__(
-        self, mechanism: Mechanism, angle: CrankAngle, within: Array, omega: Any, point: RodPoint | None = None
+        self, mechanism: Mechanism, angle: CrankAngle, within: Array, omega: Any, of_point: RodPoint | None = None
     ) -> None:
-        self.mechanism, self.angle, self.within, self.omega, self.point = mechanism, angle, within, omega, point
-        self.phi = angle.degrees
+        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
+        self.rod_angle: Any = mechanism.rod_angle(angle)
+        self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
+        cos_psi = self.rod_angle[1] if self.rod_angle else 1.0
+        self.rod_slope = formulas.rod_slope(angle.cos, cos_psi, mechanism.lam)
+        self.coordinate = mechanism.coordinate(self.posed)
+        self.way = self.coordinate - mechanism.start
+        self.slope, self.curvature = mechanism.slope(self.posed), mechanism.curvature(self.posed)
+        self._of_point = of_point
+        inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
+        self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @cached_property
-    def rod_angle(self) -> Any:
-        """sin ψ and cos ψ; None without a rod."""
-        return self.mechanism.rod_angle(self.angle)
+    def point(self) -> PointMotion | None:
+        """Motion of the point of the rod."""
+        of = self._of_point
+        return self.mechanism.point_at(self.angle, of.from_crank_pin(self.mechanism), of.across) if of else None
 
-    @cached_property
-    def posed(self) -> CrankAngle:
-        """The crank angles with what the mechanism's rod does there."""
-        return self.angle._replace(rod=self.rod_angle)
 
-    @cached_property
-    def rod_slope(self) -> Any:
-        """dψ/dφ = λ cos φ/cos ψ; 0 without a rod."""
-        _, cos_psi = self.rod_angle or (0.0, 1.0)
-        return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
-
-    @cached_property
-    def _coordinate(self) -> Any:
-        return self.mechanism.coordinate(self.posed)
-
-    @cached_property
-    def way(self) -> Any:
-        """Displacement in m from the inner dead centre, even where x counts from elsewhere: for the chambers."""
-        return self._coordinate - self.mechanism.start
-
-    @cached_property
-    def slope(self) -> Any:
-        """dx/dφ in m per radian; of what only swings, dθ/dφ."""
-        return self.mechanism.slope(self.posed)
-
-    @cached_property
-    def curvature(self) -> Any:
-        """d²x/dφ² in m per radian squared; of what only swings, d²θ/dφ²."""
-        return self.mechanism.curvature(self.posed)
-
-    @cached_property
-    def direction(self) -> Array:
-        """+1 on the outstroke, −1 on the return stroke; +1 for what turns on and on."""
-        if self.mechanism.turns:
-            return np.ones_like(self.within)
-        inner, outer = self.mechanism.dead_centres()
-        return np.where(np.mod(self.within - inner, 360.0) < outer - inner, 1.0, -1.0)
-
-    @column("z", "ratio", on_request=("motion", "forces"))
-    def z(self) -> Any:
-        """Fraction of the stroke, or of the swing, from the inner dead centre."""
-        one = self.mechanism
-        return None if one.turns else (self._coordinate - one.start) / one.stroke
-
-    @column("ψ", "angle")
-    def psi(self) -> Any:
-        """Angle between connecting rod and stroke line."""
-        return None if self.rod_angle is None else bearing(*self.rod_angle)
-
-    @column("x", "length")
-    def x(self) -> Any:
-        """Displacement from the inner dead centre toward the shaft; of a quick-return ram, from mid-stroke."""
-        return self._coordinate if self.mechanism.slides else None
-
-    @column("c", "velocity")
-    def c(self) -> Any:
-        """Velocity, positive toward the shaft; of a quick-return ram, on the working stroke."""
-        return self.slope * self.omega if self.mechanism.slides and self.omega is not None else None
-
-    @column("b", "acceleration")
-    def b(self) -> Any:
-        """Acceleration, positive as the velocity."""
-        w = self.omega if self.mechanism.slides else None
-        return None if w is None else self.curvature * (w * w)  # a power would raise where the product is inf
-
-    # a point of the rod
-
-    @cached_property
-    def _point(self) -> PointMotion | None:
-        point, mechanism = self.point, self.mechanism
-        return mechanism.point_at(self.angle, point.from_crank_pin(mechanism), point.across) if point else None
-
-    @column("x_Q", "length", on_request=("forces",))
-    def x_point(self) -> Any:
-        """Place of the point of the rod from the shaft axis, along φ = 0."""
-        return self._point and self._point.x
-
-    @column("y_Q", "length", on_request=("forces",))
-    def y_point(self) -> Any:
-        """Place of the point of the rod from the shaft axis, along φ = 90°."""
-        return self._point and self._point.y
-
-    @column("v_Q", "velocity", on_request=("forces",))
-    def v_point(self) -> Any:
-        """Speed of the point of the rod."""
-        return None if self._point is None or self.omega is None else self._point.speed * self.omega
-
-    @column("b_Q", "acceleration", on_request=("forces",))
-    def b_point(self) -> Any:
-        """Magnitude of the acceleration of the point of the rod."""
-        w = self.omega
-        return None if self._point is None or w is None else self._point.acceleration * (w * w)
+def _equal_strokes(motion: Motion) -> bool:
+    """Return whether the strokes take equal times, so that nothing need be said of each."""
+    return every(abs(motion.time_ratio - 1) <= 1e-12)
 
 
 class Motion(Results):
@@ -146,97 +134,90 @@ class Motion(Results):
 
     command = "motion"
 
+    stroke = value("s", "length", "Stroke")
+    phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
+    phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
+    phi_work = value("φ_w", "angle", "Crank rotation of the outstroke (working stroke)", unless=_equal_strokes)
+    phi_return = value("φ_r", "angle", "Crank rotation of the return stroke", unless=_equal_strokes)
+    time_ratio = value(
+        "t_w/t_r",
+        "ratio",
+        "Time of the outstroke (working stroke) over that of the return stroke",
+        lambda motion: motion.mechanism.time_ratio,
+        unless=_equal_strokes,
+    )
+    v = value("v", "velocity", "Crank-pin speed")
+    c_m = value("c_m", "velocity", "Mean piston speed 2 s n (R 290)")
+    c_work_m = value("c_a,m", "velocity", "Mean speed of the outstroke (of work, R p. 615)", unless=_equal_strokes)
+    c_return_m = value("c_r,m", "velocity", "Mean speed of the return stroke (R p. 615)", unless=_equal_strokes)
+    c_max = value("c_max", "velocity", "Largest velocity on the outstroke")
+    c_min = value(
+        "c_min",
+        "velocity",
+        "Largest velocity on the return stroke, negative",
+        unless=lambda motion: _equal_strokes(motion) or motion.mechanism.quick_return,
+    )
+    c_work_max = value("c_a,max", "velocity", "Largest speed of the working stroke (R 304)")
+    c_return_max = value("c_r,max", "velocity", "Largest speed of the return stroke (R 305)")
+    b_max = value("b_max", "acceleration", "Largest acceleration")
+    b_min = value("b_min", "acceleration", "Smallest acceleration: the largest deceleration, negative")
+    phi_b_zero = value("φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True)
+    phi_b_zero_book = value(
+        "φ_b0=0",
+        "angle",
+        "The same by the acceleration of first order, cos φ + R/L cos 2φ = 0 (R 291)",
+        lambda motion: motion.roots_of_the_book(),
+        listed=True,
+        on_request=("forces",),
+    )
+    of_the_mechanism = Searched()
+
     def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
         self.mechanism, self.speed, self._count = mechanism, speed, count
+        self.omega: Any = None if speed is None else 2 * math.pi * speed
 
     @property
     def rows(self) -> Rows:
         """The rows that the motion of this mechanism may have."""
         return rows_of(Motion, self.mechanism.OFFERS, self.mechanism.KEY_OFFERS)
 
-    @property
-    def equal_strokes(self) -> bool:
-        """Whether the strokes take equal times, so that nothing need be said of each."""
-        return every(abs(self.time_ratio - 1) <= 1e-12)
-
     @cached_property
-    def omega(self) -> float | None:
-        """Angular velocity in rad/s."""
-        return None if self.speed is None else 2 * math.pi * self.speed
+    def answers(self) -> dict[str, Any]:
+        """The key values; None where there is none."""
+        one, found = self.mechanism, dict[str, Any](phi_work=self.mechanism.phi_work)
+        found["phi_return"] = one.phi_return
+        if one.has_dead_centres:
+            found["phi_idc"], found["phi_odc"] = map(_within_turn, one.dead_centres())
+        if self.omega is not None:
+            found["v"] = one.crank * self.omega
+        if not one.slides:
+            return found
+        pieces, (_, curvature, *_) = self._turn
+        found["stroke"], found["phi_b_zero"] = one.stroke, pieces.zeros(curvature).listed(self._count)
+        if self.omega is None:
+            return found
 
-    @key_value("s", "length")
-    def stroke(self) -> Any:
-        """Stroke."""
-        return self.mechanism.stroke if self.mechanism.slides else None
+        found["c_m"] = mean = 2 * one.stroke * self.speed
+        found["c_work_m"], found["c_return_m"] = mean * (180.0 / one.phi_work), mean * (180.0 / one.phi_return)
+        found["c_max"], found["c_min"] = fastest, slowest = self._times_omega(self._searched[0], 1)
+        if one.quick_return:
+            found["c_work_max"], found["c_return_max"] = fastest, Extreme(-slowest.value, slowest.degrees)
+        found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
+        return found
 
-    @key_value("φ_i", "angle")
-    def phi_idc(self) -> Any:
-        """Crank angle of the inner dead centre."""
-        return _within_turn(self.mechanism.dead_centres()[0]) if self.mechanism.has_dead_centres else None
+    def roots_of_the_book(self) -> tuple[Any, ...] | None:
+        """Return where the acceleration of first order is zero, in degrees.
 
-    @key_value("φ_o", "angle")
-    def phi_odc(self) -> Any:
-        """Crank angle of the outer dead centre."""
-        return _within_turn(self.mechanism.dead_centres()[1]) if self.mechanism.has_dead_centres else None
-
-    @key_value("φ_w", "angle", unless=lambda motion: motion.equal_strokes)
-    def phi_work(self) -> Any:
-        """Crank rotation of the outstroke (working stroke)."""
-        return self.mechanism.phi_work
-
-    @key_value("φ_r", "angle", unless=lambda motion: motion.equal_strokes)
-    def phi_return(self) -> Any:
-        """Crank rotation of the return stroke."""
-        return self.mechanism.phi_return
-
-    @key_value("t_w/t_r", "ratio", unless=lambda motion: motion.equal_strokes)
-    def time_ratio(self) -> Any:
-        """Time of the outstroke (working stroke) over that of the return stroke."""
-        return self.mechanism.time_ratio
-
-    @key_value("v", "velocity")
-    def v(self) -> Any:
-        """Crank-pin speed."""
-        return None if self.omega is None else self.mechanism.crank * self.omega
-
-    @key_value("c_m", "velocity")
-    def c_m(self) -> Any:
-        """Mean piston speed 2 s n (R 290)."""
-        return None if self.speed is None or self.stroke is None else 2 * self.stroke * self.speed
-
-    @key_value("c_a,m", "velocity", unless=lambda motion: motion.equal_strokes)
-    def c_work_m(self) -> Any:
-        """Mean speed of the outstroke (of work, R p. 615).
-
-        s n · 360°/φ_w.
+        None where the book has none, and with the infinite rod, of which it is exact.
         """
-        return None if self.c_m is None else self.c_m * (180.0 / self.phi_work)
-
-    @key_value("c_r,m", "velocity", unless=lambda motion: motion.equal_strokes)
-    def c_return_m(self) -> Any:
-        """Mean speed of the return stroke (R p. 615)."""
-        return None if self.c_m is None else self.c_m * (180.0 / self.phi_return)
+        mechanism, turn = self.mechanism, self._turn[0]
+        offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(mechanism.lam == 0):
+            return None
+        taken_on = mechanism if self._count is None else taken(mechanism, turn.machine)
+        return turn.zeros(np.asarray(offer.factor(taken_on, CrankAngle.at_nodes(turn)))).listed(self._count)
 
     # the extremes over a turn
-
-    @cached_property
-    def _turn(self) -> tuple[Pieces, Array]:
-        """One revolution, halved until all that the mechanism does is a polynomial on every piece, and its samples."""
-        count = self._count or 1
-        centres = every_dead_centre(self.mechanism, count, 360.0)
-        turn = Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0)
-        return refined(turn, self._sampled)
-
-    def _sampled(self, pieces: Pieces) -> Array:
-        """Return velocity and acceleration factor, and what is offered besides, at the nodes, (q, nodes, pieces)."""
-        mechanism = self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
-        angle = CrankAngle.at_nodes(pieces)
-        found = (
-            mechanism.slope(angle),
-            mechanism.curvature(angle),
-            *(one.factor(mechanism, angle) for one in self._offers),
-        )
-        return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None])
 
     @cached_property
     def _offers(self) -> list[Offer]:
@@ -244,6 +225,24 @@ class Motion(Results):
         here = CrankAngle.of(45.0)
         declared = [one for one in self.mechanism.OFFERS if "motion" in one.quantity.extremes]
         return [one for one in declared if one.factor(self.mechanism, here) is not None]
+
+    @cached_property
+    def _turn(self) -> tuple[Pieces, Array]:
+        """One revolution, halved until all that the mechanism does is a polynomial on every piece, and its samples.
+
+        These are dx/dφ, d²x/dφ², and what the mechanism offers besides, (q, nodes, pieces).
+        """
+
+        def sampled(pieces: Pieces) -> Array:
+            mechanism = self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
+            angle = CrankAngle.at_nodes(pieces)
+            offered = [one.factor(mechanism, angle) for one in self._offers]
+            found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
+            return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None])
+
+        count = self._count or 1
+        centres = every_dead_centre(self.mechanism, count, 360.0)
+        return refined(Pieces.between(Angles(np.repeat(np.arange(count), 2), centres.ravel()), count, 360.0), sampled)
 
     @cached_property
     def _searched(self) -> list[Extremes]:
@@ -254,22 +253,8 @@ class Motion(Results):
     def _times_omega(self, found: Extremes, order: int) -> Extremes:
         """Return extremes over a turn times ω^order."""
         # a power would raise where a product is inf, which is refused by name
-        scale = math.prod((0.0 if self.omega is None else self.omega,) * order)
+        scale = math.prod((self.omega,) * order)
         return Extremes(*(Extreme(one.value * scale, one.degrees) for one in found))
-
-    @cached_property
-    def _velocity(self) -> Extremes | None:
-        """Of the velocity; None where nothing slides, or at no known speed."""
-        if not self.mechanism.slides or self.omega is None:
-            return None
-        return self._times_omega(self._searched[0], 1)
-
-    @cached_property
-    def _acceleration(self) -> Extremes | None:
-        """Of the acceleration."""
-        if not self.mechanism.slides or self.omega is None:
-            return None
-        return self._times_omega(self._searched[1], 2)
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes over a turn of a column that the mechanism offers; None for what does not vary."""
@@ -278,67 +263,6 @@ class Motion(Results):
             return None
         found = self._times_omega(self._searched[2 + number], self._offers[number].omega)
         return None if every(found.largest.value - found.smallest.value <= 1e-14 * abs(found.largest.value)) else found
-
-    @key_value("c_max", "velocity")
-    def c_max(self) -> Extreme | None:
-        """Largest velocity on the outstroke."""
-        return self._velocity and self._velocity.largest
-
-    @key_value("c_min", "velocity", unless=lambda motion: motion.equal_strokes or motion.mechanism.quick_return)
-    def c_min(self) -> Extreme | None:
-        """Largest velocity on the return stroke, negative."""
-        return self._velocity and self._velocity.smallest
-
-    @key_value("c_a,max", "velocity")
-    def c_work_max(self) -> Extreme | None:
-        """Largest speed of the working stroke (R 304)."""
-        return self.c_max if self.mechanism.quick_return else None
-
-    @key_value("c_r,max", "velocity")
-    def c_return_max(self) -> Extreme | None:
-        """Largest speed of the return stroke (R 305)."""
-        if not self.mechanism.quick_return or self.c_min is None:
-            return None
-        return Extreme(-self.c_min.value, self.c_min.degrees)
-
-    @key_value("b_max", "acceleration")
-    def b_max(self) -> Extreme | None:
-        """Largest acceleration."""
-        return self._acceleration and self._acceleration.largest
-
-    @key_value("b_min", "acceleration")
-    def b_min(self) -> Extreme | None:
-        """Smallest acceleration: the largest deceleration, negative."""
-        return self._acceleration and self._acceleration.smallest
-
-    @key_value("φ_b=0", "angle", listed=True)
-    def phi_b_zero(self) -> tuple[Any, ...] | None:
-        """Crank angles at which the acceleration passes zero."""
-        if not self.mechanism.slides:
-            return None
-        pieces, (_, curvature, *_) = self._turn
-        return self._angles(pieces.zeros(curvature))
-
-    @key_value("φ_b0=0", "angle", listed=True, on_request=("forces",))
-    def phi_b_zero_book(self) -> tuple[Any, ...] | None:
-        """The same by the acceleration of first order, cos φ + R/L cos 2φ = 0 (R 291).
-
-        None where the book has no such acceleration, and with the infinite rod, of which it is exact.
-        """
-        offer = next((one for one in self.mechanism.OFFERS if one.quantity.id == "b_book"), None)
-        if offer is None or offer.factor(self.mechanism, CrankAngle.of(0.0)) is None or every(self.mechanism.lam == 0):
-            return None
-        turn = self._turn[0]
-        mechanism = self.mechanism if self._count is None else taken(self.mechanism, turn.machine)
-        return self._angles(turn.zeros(np.asarray(offer.factor(mechanism, CrankAngle.at_nodes(turn)))))
-
-    def _angles(self, found: Angles) -> tuple[Any, ...]:
-        """Return crank angles in degrees, of many machines a tuple of each."""
-        if self._count is None:
-            return tuple(found.degrees.tolist())
-        return tuple(tuple(one.tolist()) for one in found.of_each(self._count))
-
-    of_the_mechanism = Searched()
 
 
 def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:

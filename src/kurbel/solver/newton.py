@@ -30,6 +30,18 @@ _ANGLES = np.random.default_rng(1927).uniform(0.0, 1.0, 7)
 """Of the cycle."""
 
 
+class _Places(NamedTuple):
+    """Derivatives of the places of both pins over φ, complex, in m, of ψ, and ω² in 1/s², 0 without masses or speed."""
+
+    crosshead_speed: ComplexArray
+    pin_speed: ComplexArray
+    turn: Array
+    crosshead: ComplexArray
+    pin: ComplexArray
+    bend: Array
+    square: float
+
+
 def residual(cylinder: SampledCylinder) -> float | None:
     """Return what Newton's law leaves open of the forces, or the tail of their series if that is more, of one machine.
 
@@ -42,81 +54,60 @@ def residual(cylinder: SampledCylinder) -> float | None:
     sizes = [np.abs(one).max() for one in map(cylinder.sampled, ("P", "N", "D", "T", "S")) if one is not None]
     if not any(sizes):
         return 0.0
-    left = [_crosshead(drive, state), _shaft(drive, state)]
-    if math.isfinite(drive.mechanism.rod_length):
-        left += _rod(drive, state)
-    return max(cylinder.tail, _energy(drive, state), *(float(np.abs(one).max() / max(sizes)) for one in left))
+    places, rigid = _places(state), math.isfinite(drive.mechanism.rod_length)
+    along, across = drive.weight_of(1.0)
+    gravity = complex(-along, -across)  # of 1 kg
 
-
-def _gravity(drive: Drive) -> complex:
-    """Return the weight of 1 kg in N; 0 where weights are left out."""
-    along, across = drive.weight_of(1.0) or (0.0, 0.0)
-    return complex(-along, -across)
-
-
-def _crosshead(drive: Drive, state: State) -> Array:
-    """Return what is left of P_gas + weight − friction − rod − m z̈ on piston, rod and crosshead, toward the shaft."""
-    masses = drive.cylinder.masses
+    # piston, rod and crosshead, toward the shaft: gas + weight − friction − rod − m z̈
+    masses, R = drive.cylinder.masses, drive.mechanism.crank
     parts = masses.parts if masses else 0.0
-    along = on_crosshead_pin(state).D if math.isfinite(drive.mechanism.rod_length) else state.along_rod
     given = sum(one for one in (state.P_gas, state.P_ram) if one is not None)
     side = 0.0 if state.N is None else np.abs(state.N)
     rubs = state.direction * (drive.steady_friction + drive.crosshead_friction * side)
-    inertia = parts * _Motion.of(drive, state).crosshead.real
-    return np.asarray(given - _gravity(drive).real * parts - rubs - along + inertia)
+    push = on_crosshead_pin(state).D if rigid else state.along_rod
+    left = [given - gravity.real * parts - rubs - push + parts * places.crosshead.real * places.square]
+    # the shaft: T R less the moments in crank pin and journals less M, over R
+    lost = state.rubbing.at_crank + state.rubbing.journals if state.rubbing else 0.0
+    left.append((state.T * R - lost - state.M) / R)
+    if rigid:
+        left += _rod(drive, state, places, gravity)
+    energy = _energy(drive, state, places) if masses and rigid else 0.0
+    return max(cylinder.tail, energy, *(float(np.abs(one).max() / max(sizes)) for one in left))
 
 
-def _shaft(drive: Drive, state: State) -> Array:
-    """Return what is left of T R less the moments in crank pin and journals less M, over R."""
-    rubbing, R = state.rubbing, drive.mechanism.crank
-    lost = 0.0 if rubbing is None else rubbing.at_crank + rubbing.journals
-    return np.asarray((state.T * R - lost - state.M) / R)
-
-
-def _energy(drive: Drive, state: State) -> float:
-    """Return what is left of J less 2E/ω² of the moving bodies, over J: their speeds are dz/dφ of their places."""
-    masses, mechanism, angle = drive.cylinder.masses, drive.mechanism, state.angle
-    if masses is None or not math.isfinite(mechanism.rod_length):
-        return 0.0
-    R, L, rod = mechanism.crank, mechanism.rod_length, masses.connecting_rod
+def _places(state: State) -> _Places:
+    """Return how the pins and the rod move, from the places of the pins."""
+    drive, angle = state.drive, state.angle
+    R, L = drive.mechanism.crank, drive.mechanism.rod_length
+    square = drive.omega**2 if drive.has_inertia and drive.omega else 0.0
+    pin_speed, pin = R * (-angle.sin + 1j * angle.cos), -R * (angle.cos + 1j * angle.sin)
+    if not math.isfinite(L):
+        still = np.zeros_like(angle.sin)
+        return _Places(pin_speed.real + 0j, pin_speed, still, pin.real + 0j, pin, still, square)
     sin_psi, cos_psi = state.rod_angle
     turn = R * angle.cos / (L * cos_psi)
-    pin = R * (-angle.sin + 1j * angle.cos)
-    crosshead = pin.real - L * sin_psi * turn
-    J = masses.parts * crosshead**2 + masses.rotating * R * R
+    bend = (turn * turn * sin_psi - R / L * angle.sin) / cos_psi
+    crosshead = pin.real - L * (cos_psi * turn * turn + sin_psi * bend)
+    return _Places(pin_speed.real - L * sin_psi * turn + 0j, pin_speed, turn, crosshead + 0j, pin, bend, square)
+
+
+def _energy(drive: Drive, state: State, places: _Places) -> float:
+    """Return what is left of J less 2E/ω² of the moving bodies, over J: their speeds are dz/dφ of their places."""
+    masses, R, L = drive.cylinder.masses, drive.mechanism.crank, drive.mechanism.rod_length
+    assert masses is not None
+    rod, crosshead = masses.connecting_rod, places.crosshead_speed
+    J = masses.parts * crosshead.real**2 + masses.rotating * R * R
     if rod is not None and rod.exact:
         share = (rod.center_of_gravity or 0.0) / L
-        J = J + rod.mass * np.abs(crosshead * (1 - share) + pin * share) ** 2 + (rod.inertia or 0.0) * turn**2
+        J = J + rod.mass * np.abs(crosshead * (1 - share) + places.pin_speed * share) ** 2
+        J = J + (rod.inertia or 0.0) * places.turn**2
     elif rod is not None:
-        J = J + rod.mass * (rod.share * crosshead**2 + (1 - rod.share) * R * R)
+        J = J + rod.mass * (rod.share * crosshead.real**2 + (1 - rod.share) * R * R)
     size = float(np.max(J))
     return float(np.abs(J - reduced_inertia(state)).max()) / size if size else 0.0
 
 
-class _Motion(NamedTuple):
-    """Accelerations of both pins, complex, in m/s², and dψ²/dt² in rad/s²; all 0 without masses or speed."""
-
-    crosshead: ComplexArray
-    pin: ComplexArray
-    rod: Array
-
-    @classmethod
-    def of(cls, drive: Drive, state: State) -> _Motion:
-        """Return them from the places of the pins."""
-        mechanism, angle = drive.mechanism, state.angle
-        R, L = mechanism.crank, mechanism.rod_length
-        square = drive.omega**2 if drive.has_inertia and drive.omega else 0.0
-        pin = -R * (angle.cos + 1j * angle.sin)
-        if not math.isfinite(L):
-            return cls(pin.real * square + 0j, pin * square, np.zeros_like(angle.sin))
-        sin_psi, cos_psi = state.rod_angle
-        turn = R * angle.cos / (L * cos_psi)
-        bend = (turn * turn * sin_psi - R / L * angle.sin) / cos_psi
-        crosshead = pin.real - L * (cos_psi * turn * turn + sin_psi * bend)
-        return cls(crosshead * square + 0j, pin * square, bend * square)
-
-
-def _rod(drive: Drive, state: State) -> list[Array]:
+def _rod(drive: Drive, state: State, places: _Places, gravity: complex) -> list[Array]:
     """Return what is left of the forces on the rod, of their moments over L, and of S along it."""
     masses, angle, L = drive.cylinder.masses, state.angle, drive.mechanism.rod_length
     rod = masses.connecting_rod if masses else None
@@ -125,26 +116,22 @@ def _rod(drive: Drive, state: State) -> list[Array]:
     at_crosshead, at_pin = on_crosshead_pin(state), on_pin(state)
     F = -at_crosshead.D + 1j * at_crosshead.T
     K = (angle.cos + 1j * angle.sin) * (-at_pin.D + 1j * at_pin.T)
-    motion, gravity = _Motion.of(drive, state), _gravity(drive)
-    mass = rod.mass if rod else 0.0
-    share = (rod.center_of_gravity or 0.0) / L if rod and rod.exact else 1 - rod.share if rod else 0.0
-    inertia = rod.inertia or 0.0 if rod and rod.exact else mass * share * (1 - share) * L * L
+
+    exact, mass = bool(rod and rod.exact), rod.mass if rod else 0.0
+    share = (rod.center_of_gravity or 0.0) / L if rod and exact else 1 - rod.share if rod else 0.0
+    inertia = rod.inertia or 0.0 if rod and exact else mass * share * (1 - share) * L * L
     # of a rod by its share the weight of what turns is left out
-    weight, weighed_at = (mass * gravity, share) if rod and rod.exact else (mass * (1 - share) * gravity, 0.0)
-    pull = mass * (motion.crosshead * (1 - share) + motion.pin * share)
-    moment = (
-        _cross(arm, -K) + _cross(arm * weighed_at, weight + 0 * K) - _cross(arm * share, pull) + inertia * motion.rod
-    )
+    weight, weighed_at = (mass * gravity, share) if exact else (mass * (1 - share) * gravity, 0.0)
+    pull = mass * (places.crosshead * (1 - share) + places.pin * share) * places.square
+    forces = ((arm, -K), (arm * weighed_at, weight + 0 * K), (arm * share, -pull))
+    moment = sum((at.conjugate() * force).imag for at, force in forces) + inertia * places.bend * places.square
     if state.rubbing is not None:
-        moment = moment + state.rubbing.couple
+        moment = moment + state.rubbing.at_crank + state.rubbing.at_crosshead
+
     lower = mass * (1 - share)  # of the two masses at its ends that of the crosshead pin
-    between = F + lower * (gravity - motion.crosshead)
+    between = F + lower * (gravity - places.crosshead * places.square)
     along = arm.conjugate() / L
     left = [np.abs(F - K + weight - pull), moment / L, (between * along).real - state.S]
     if state.S_crank is not None:
         left += [(K * along).real - state.S_crank, (F * along).real - state.S_crosshead]
     return left
-
-
-def _cross(one: ComplexArray, other: ComplexArray) -> Array:
-    return np.asarray((one.conjugate() * other).imag)

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import some, where
-from kurbel.numerics.extreme import Extreme, Extremes
+from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import for_each, key_value
+from kurbel.quantity import value, values_for
 from kurbel.solver.cycle import reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, told
@@ -34,87 +34,70 @@ _LOADS = {
 class RodLoads(Results):
     """Key values of the load on piston rod and crosshead pin of a cylinder, in SI; None without a gas force.
 
-    loads: the columns P_gas, P_rod and P_piston_rod in N, as far as there are any, at the nodes of pieces.
+    loads: the columns P_gas, P_rod and P_piston_rod in N, as far as there are any, at the nodes of pieces. In tension
+    the largest load is its size; 0, where it comes nearest, if the rod is never loaded so.
     """
+
+    rod_load_max = values_for(_LOADS, "*_max", "*", "force", "Largest *", group=lambda load: load.rpartition("_")[0])
+    phi_rod_reversal = value(
+        "φ_G=0", "angle", "Crank angles at which the rod load at the crosshead pin reverses", listed=True
+    )
+    reversal_angle = value(
+        "Δφ_G",
+        "angle",
+        "Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least",
+        wanted_large=True,
+    )
+    reversal_longest = value("Δφ_G,1", "angle", "The longest stretch of it; a bound is the least", wanted_large=True)
+    reversal_ratio = value(
+        "P_G,min/max",
+        "ratio",
+        "Smaller over larger peak of the rod load, pressed and pulled; a bound is the least",
+        wanted_large=True,
+    )
 
     def __init__(self, drive: Drive, pieces: Pieces, loads: dict[str, Array]) -> None:
         self.drive, self.pieces, self.loads = drive, pieces, loads
 
     @cached_property
-    def _peaks(self) -> dict[str, Extremes]:
-        if not self.loads:
-            return {}
-        found = self.pieces.extremes(np.stack([*self.loads.values()]))
-        return dict(zip(self.loads, found.each(partial(told, count=self.drive.count))))
+    def answers(self) -> dict[str, Any]:
+        """The key values."""
+        found, count = dict[str, Any](), self.drive.count
+        extremes = self.pieces.extremes(np.stack([*self.loads.values()])).each(partial(told, count=count))
+        peaks = dict(zip(self.loads, extremes))
+        for load in _LOADS:
+            column, _, way = load.rpartition("_")
+            if peak := peaks.get(f"P_{column}"):
+                size, degrees = peak.largest if way == "compression" else (-peak.smallest.value, peak.smallest.degrees)
+                found[f"{load}_max"] = Extreme(where(size > 0, size, 0.0), degrees)
+        if "P_rod" not in self.loads:
+            return found
 
-    @for_each(
-        _LOADS,
-        "*_max",
-        "*",
-        "force",
-        group=lambda load: load.rpartition("_")[0],
-    )
-    def rod_load_max(self, which: str) -> Extreme | None:
-        """Largest *.
+        found["phi_rod_reversal"] = changes = reversals(self.drive, self.pieces, self.loads["P_rod"])
+        whole, longest = self._reversed([changes] if count is None else list(changes))
+        found["reversal_angle"], found["reversal_longest"] = told(whole, count), told(longest, count)
+        found["reversal_ratio"] = angle = found["reversal_angle"]
+        if some(angle > 0):
+            pressed, pulled = (abs(one.value) for one in peaks["P_rod"])
+            ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
+            found["reversal_ratio"] = where(angle > 0, ratio, 0.0)
+        return found
 
-        In tension its size; 0, where it comes nearest, if it is never loaded so.
+    def _reversed(self, changes: list[tuple[float, ...]]) -> Array:
+        """Return the degrees per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
+
+        All of them, and the longest stretch; 0 where the load does not reverse. changes: of each machine, in degrees.
         """
-        column, _, way = which.rpartition("_")
-        found = self._peaks.get(f"P_{column}")
-        if found is None:
-            return None
-        value, degrees = found.largest if way == "compression" else (-found.smallest.value, found.smallest.degrees)
-        return Extreme(where(value > 0, value, 0.0), degrees)
-
-    @key_value("φ_G=0", "angle", listed=True)
-    def phi_rod_reversal(self) -> tuple[Any, ...] | None:
-        """Crank angles at which the rod load at the crosshead pin reverses.
-
-        Changes within the noise of a trace count once. For many machines one tuple each.
-        """
-        return reversals(self.drive, self.pieces, self.loads["P_rod"]) if "P_rod" in self.loads else None
-
-    @cached_property
-    def _reversed(self) -> Array | None:
-        """Degrees of crank angle per cycle on which the rod is pressed, or pulled, whichever is less, (2, machines).
-
-        All of them, and the longest stretch; 0 where the load does not reverse, None without one.
-        """
-        if self.phi_rod_reversal is None:
-            return None
-        each = [self.phi_rod_reversal] if self.drive.count is None else self.phi_rod_reversal
-        machine = np.repeat(np.arange(len(each)), [len(one) for one in each])
-        start = np.array([angle for one in each for angle in one])
+        machine = np.repeat(np.arange(len(changes)), [len(one) for one in changes])
+        start = np.array([angle for one in changes for angle in one])
         first, last = np.flatnonzero(np.diff(machine, prepend=-1)), np.flatnonzero(np.diff(machine, append=-1))
         end = np.append(start[1:], 0.0)[: len(start)]
         end[last] = start[first] + self.drive.cycle
         presses = self.pieces.at(self.loads["P_rod"], machine, (start + end) / 2) > 0
-        pressed, pulled = (_stretches(machine[way], (end - start)[way], len(each)) for way in (presses, ~presses))
+
+        stretches = np.zeros((2, 2, len(changes)))  # pressed, pulled; sum, longest; machines
+        for of, way in zip(stretches, (presses, ~presses)):
+            np.add.at(of[0], machine[way], (end - start)[way])
+            np.maximum.at(of[1], machine[way], (end - start)[way])
+        pressed, pulled = stretches
         return np.where(pulled[0] < pressed[0], pulled, pressed)
-
-    @key_value("Δφ_G", "angle", wanted_large=True)
-    def reversal_angle(self) -> Any:
-        """Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least."""
-        return None if self._reversed is None else told(self._reversed[0], self.drive.count)
-
-    @key_value("Δφ_G,1", "angle", wanted_large=True)
-    def reversal_longest(self) -> Any:
-        """The longest stretch of it; a bound is the least."""
-        return None if self._reversed is None else told(self._reversed[1], self.drive.count)
-
-    @key_value("P_G,min/max", "ratio", wanted_large=True)
-    def reversal_ratio(self) -> Any:
-        """Smaller over larger peak of the rod load, pressed and pulled; a bound is the least."""
-        angle, peaks = self.reversal_angle, self._peaks.get("P_rod")
-        if angle is None or peaks is None or not some(angle > 0):
-            return angle
-        pressed, pulled = (abs(one.value) for one in peaks)
-        ratio = where(pressed < pulled, pressed, pulled) / where(pressed < pulled, pulled, pressed)
-        return where(angle > 0, ratio, 0.0)
-
-
-def _stretches(whose: Indices, degrees: Array, count: int) -> Array:
-    """Return the sum of the stretches (n,) of each of `count` machines, and the longest, (2, count)."""
-    longest = np.zeros(count)
-    np.maximum.at(longest, whose, degrees)
-    return np.stack((np.bincount(whose, degrees, count), longest))

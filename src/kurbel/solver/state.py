@@ -28,7 +28,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Row, column
+from kurbel.quantity import Row, column, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import column_rows
 from kurbel.solver.gas import Pressure
@@ -50,10 +50,34 @@ class Rubbing(NamedTuple):
     at_crosshead: Any
     journals: Any
 
-    @property
-    def couple(self) -> Any:
-        """Couple of both pins on the rod."""
-        return self.at_crank + self.at_crosshead
+
+_ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
+"""End of the cylinder's own piston -> index of its symbols, and what it is called."""
+
+
+def _own_end(state: State, end: str) -> Pressure | None:
+    """Return the pressure at an end of the cylinder's own piston; None where it has no indicator."""
+    gas = state.drive.own_gas
+    return None if gas is None else gas.head if end == "head" else gas.crank
+
+
+def _own_pressure(state: State, end: str) -> Any:
+    gas, chamber = state.drive.own_gas, _own_end(state, end)
+    return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
+
+
+def _own_volume(state: State, end: str) -> Any:
+    gas, way = state.drive.own_gas, state.way
+    if gas is None or _own_end(state, end) is None:
+        return None
+    if end == "head":
+        return gas.piston.head_area * way + gas.clearance_volumes[0]
+    return gas.piston.crank_area * (state.mechanism.stroke - way) + gas.clearance_volumes[1]
+
+
+def _own_rise(state: State, end: str) -> Any:
+    chamber = _own_end(state, end)
+    return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
 
 
 class State(MotionColumns):
@@ -89,10 +113,63 @@ class State(MotionColumns):
         """The rows of its columns, those of the mechanism among them."""
         return column_rows(State, self.mechanism.OFFERS)
 
-    def _filled(self, value: Any) -> Array:
-        return np.broadcast_to(np.asarray(value, dtype=float), self.phi.shape)
+    def filled(self, number: Any) -> Array:
+        """Return a number as an array of the shape of the angles."""
+        return np.broadcast_to(np.asarray(number, dtype=float), self.phi.shape)
 
     # the chambers
+
+    own_pressures = values_for(
+        _ENDS,
+        "p_*",
+        "p_*",
+        "pressure",
+        "Gauge pressure in the * chamber, just after a jump",
+        of=_own_pressure,
+        gauge=True,
+    )
+    V = value(
+        "V",
+        "volume",
+        "Volume of the head-end chamber, with its clearance where that is given",
+        lambda state: _own_volume(state, "head"),
+        on_request=("forces",),
+    )
+    V_crank = value(
+        "V_C",
+        "volume",
+        "Volume of the crank-end chamber, with its clearance where that is given",
+        lambda state: _own_volume(state, "crank"),
+        on_request=("forces",),
+    )
+    dV = value(
+        "dV/dφ",
+        "volume_rise",
+        "Change of the volume of the head-end chamber over the angle",
+        lambda state: (
+            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
+        ),
+        on_request=("forces",),
+    )
+    own_rises = values_for(
+        _ENDS,
+        "dp_*",
+        "dp_*/dφ",
+        "pressure_rise",
+        "Rise of the * pressure, over 1 deg",
+        of=_own_rise,
+        on_request=("forces",),
+    )
+    P_gas = value(
+        "P_gas", "force", "Force of gas, steam or water on all pistons of the rod", lambda state: state.force_on()
+    )
+    P_gas_book = value(
+        "P_297",
+        "force",
+        "The same by the mean of both areas (R 297)",
+        lambda state: state.force_on(alike=True),
+        on_request=("forces",),
+    )
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""
@@ -101,51 +178,7 @@ class State(MotionColumns):
         left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
         return end.at(self.z, self.phi, self.within, self.drive.index, left)
 
-    @column("p_H", "pressure", gauge=True)
-    def p_head(self) -> Any:
-        """Gauge pressure in the head-end chamber, just after a jump."""
-        gas = self.drive.own_gas
-        return self.pressure(gas.head) + spread(gas.base, self.drive.index) if gas and gas.head else None
-
-    @column("p_C", "pressure", gauge=True)
-    def p_crank(self) -> Any:
-        """Gauge pressure in the crank-end chamber, just after a jump."""
-        gas = self.drive.own_gas
-        return self.pressure(gas.crank) + spread(gas.base, self.drive.index) if gas and gas.crank else None
-
-    @column("V", "volume", on_request=("forces",))
-    def V(self) -> Any:
-        """Volume of the head-end chamber, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * self.way + gas.clearance_volumes[0] if gas and gas.head else None
-
-    @column("V_C", "volume", on_request=("forces",))
-    def V_crank(self) -> Any:
-        """Volume of the crank-end chamber, with its clearance where that is given."""
-        gas = self.drive.own_gas
-        if not (gas and gas.crank):
-            return None
-        return gas.piston.crank_area * (self.mechanism.stroke - self.way) + gas.clearance_volumes[1]
-
-    @column("dV/dφ", "volume_rise", on_request=("forces",))
-    def dV(self) -> Any:
-        """Change of the volume of the head-end chamber over the angle."""
-        gas = self.drive.own_gas
-        return gas.piston.head_area * np.radians(1.0) * self.slope if gas and gas.head else None
-
-    @column("dp_H/dφ", "pressure_rise", on_request=("forces",))
-    def dp_head(self) -> Any:
-        """Rise of the head-end pressure, over 1 deg."""
-        end = self.drive.own_gas.head if self.drive.own_gas else None
-        return end.rise(self.phi) if isinstance(end, TracePressure) else None
-
-    @column("dp_C/dφ", "pressure_rise", on_request=("forces",))
-    def dp_crank(self) -> Any:
-        """Rise of the crank-end pressure, over 1 deg."""
-        end = self.drive.own_gas.crank if self.drive.own_gas else None
-        return end.rise(self.phi) if isinstance(end, TracePressure) else None
-
-    def _force_on(self, shares: Any = None, alike: bool = False) -> Any:
+    def force_on(self, shares: Any = None, alike: bool = False) -> Any:
         """Return Σ p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297; None without a piston.
 
         shares: of each piston, what counts of it; True or all of it, False or nothing.
@@ -161,99 +194,88 @@ class State(MotionColumns):
             terms += [self.pressure(gas.crank) * -crank] if gas.crank else []
         return reduce(add, terms) if terms else None
 
-    @column("P_gas", "force")
-    def P_gas(self) -> Any:
-        """Force of gas, steam or water on all pistons of the rod.
-
-        R 296.
-        """
-        return self._force_on()
-
     @cached_property
     def P_driving(self) -> Any:
         """Force of gas or steam on the pistons that drive in N; None where none does."""
-        return self._force_on(self.drive.driving)
-
-    @column("P_297", "force", on_request=("forces",))
-    def P_gas_book(self) -> Any:
-        """The same by the mean of both areas (R 297)."""
-        return self._force_on(alike=True)
+        return self.force_on(self.drive.driving)
 
     # the piston force
 
-    @column("P_b", "force")
-    def P_inertia(self) -> Any:
-        """Inertia force −m b of the reciprocating masses.
-
-        R 298.
-        """
-        return -self.drive.mass * self.b if self.drive.has_inertia else None
-
-    @column("P_w", "force")
-    def P_weight(self) -> Any:
-        """Weight of the reciprocating masses along the stroke line."""
-        weight = self.drive.weight
-        return self._filled(weight[0]) if weight else None
+    P_inertia = value(
+        "P_b",
+        "force",
+        "Inertia force −m b of the reciprocating masses",
+        lambda state: -state.drive.mass * state.b if state.drive.has_inertia else None,
+    )
+    P_weight = value(
+        "P_w",
+        "force",
+        "Weight of the reciprocating masses along the stroke line",
+        lambda state: state.filled(state.drive.weight[0]) if state.drive.weight else None,
+    )
+    P_ram = value(
+        "P_r",
+        "force",
+        "Force on a ram against its motion",
+        lambda state: state.resistance if state.mechanism.slides else None,
+    )
+    P = value(
+        "P",
+        "force",
+        "Force along the stroke line: gas, inertia, weight, and what a ram works against",
+        lambda state: _sum(state.P_inertia, state.P_start),
+        extremes=("forces",),
+        called="piston force",
+        peak=True,
+    )
+    P_rod = value(
+        "P_G",
+        "force",
+        "Rod load at the crosshead pin: gas, inertia and weight of all but the connecting rod, compression positive",
+        lambda state: state.rod_load(),
+        unless=lambda forces: forces.no_compressor,
+    )
+    P_piston_rod = value(
+        "P_KS",
+        "force",
+        "The same at the piston rod, without the crosshead",
+        lambda state: state.rod_load(crosshead=False),
+        unless=lambda forces: forces.no_compressor,
+    )
+    P_start = value(
+        "P_0",
+        "force",
+        "Force along the stroke line without inertia",
+        lambda state: _sum(_sum(state.P_gas, state.P_weight), state.P_ram),
+        commands=(),
+        extremes=("forces",),
+        called="piston force without inertia: starting and slow running",
+    )
 
     @cached_property
-    def _resistance(self) -> Any:
+    def resistance(self) -> Any:
         """What the output works against, in N or N m, against the motion."""
         resistance = self.drive.resistance
         if resistance is None:
             return None
         working = self.direction == (1.0 if self.mechanism.works_outward else -1.0)
-        return self._filled(-self.direction * np.where(working, resistance.work, resistance.back))
+        return self.filled(-self.direction * np.where(working, resistance.work, resistance.back))
 
-    @column("P_r", "force")
-    def P_ram(self) -> Any:
-        """Force on a ram against its motion."""
-        return self._resistance if self.mechanism.slides else None
-
-    @column("P", "force", extremes=("forces",), called="piston force", peak=True)
-    def P(self) -> Any:
-        """Force along the stroke line: gas, inertia, weight, and what a ram works against."""
-        return _sum(self.P_inertia, self.P_start)
-
-    def _rod_load(self, without: Any = 0.0) -> Any:
+    def rod_load(self, crosshead: bool = True) -> Any:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
 
-        without: mass in kg that is left out, as the connecting rod's share is. None without a gas force, and without a
-        connecting rod, where it would be P.
+        The connecting rod's share is left out; crosshead: with that, whose mass must be known. None without a gas
+        force, and without a connecting rod, where it would be P.
         """
         masses = self.drive.cylinder.masses
-        if self.P_gas is None or not self.mechanism.has_rod:
+        unknown = not crosshead and (masses is None or masses.crosshead is None)
+        if unknown or self.P_gas is None or not self.mechanism.has_rod:
             return None
-        mass = masses.parts - without if masses else 0.0
-        weight = self.drive.weight_of(mass)
+        mass: Any = 0.0
+        if masses:
+            mass = masses.parts if crosshead or masses.crosshead is None else masses.parts - masses.crosshead
         moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
-        return moved + weight[0] if weight else moved
-
-    @column("P_G", "force", unless=lambda forces: forces.no_compressor)
-    def P_rod(self) -> Any:
-        """Rod load at the crosshead pin: gas, inertia and weight of all but the connecting rod, compression
-        positive.
-        """
-        return self._rod_load()
-
-    @column("P_KS", "force", unless=lambda forces: forces.no_compressor)
-    def P_piston_rod(self) -> Any:
-        """The same at the piston rod, without the crosshead.
-
-        None where its mass is unknown.
-        """
-        masses = self.drive.cylinder.masses
-        return None if not masses or masses.crosshead is None else self._rod_load(without=masses.crosshead)
-
-    @column(
-        "P_0",
-        "force",
-        commands=(),
-        extremes=("forces",),
-        called="piston force without inertia: starting and slow running",
-    )
-    def P_start(self) -> Any:
-        """Force along the stroke line without inertia."""
-        return _sum(_sum(self.P_gas, self.P_weight), self.P_ram)
+        return moved + self.drive.weight_of(mass)[0]
 
     # the rod
 
@@ -265,8 +287,7 @@ class State(MotionColumns):
         """
         if self.P is None or self.rod_angle is None:
             return None
-        push = self.along_rod / self.rod_angle[1]
-        return push if self._rod_side is None else push - self._rod_side * self.rod_angle[0]
+        return self.along_rod / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
     def S_crosshead(self) -> Any:
@@ -274,12 +295,9 @@ class State(MotionColumns):
 
         The rod's own mass at this pin, which the pin does not act on, is taken off.
         """
-        drive = self.drive
-        if self.P is None or drive.rod is None:
+        if self.P is None or self.drive.rod is None:
             return None
-        weight = drive.weight_of(drive.rod.crosshead_mass) or (0.0, 0.0)
-        push = self.along_rod + self.b * drive.rod.crosshead_mass if drive.has_inertia else self.along_rod
-        push, lift = push - weight[0], self.N - drive.guide_weight + weight[1]
+        push, lift = on_crosshead_pin(self)
         return push * self.rod_angle[1] + lift * self.rod_angle[0]
 
     @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
@@ -307,38 +325,40 @@ class State(MotionColumns):
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
     @cached_property
+    def _friction_side(self) -> Any:
+        """Side force in N of the friction in both pins on the rod; 0 without it."""
+        rubbing = self.rubbing
+        return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
+
+    @cached_property
     def _rod_side(self) -> Any:
-        """Side force in N of the couples on the rod: of an exact one, and of the friction in its pins; else None."""
-        exact = None if self.drive.rod is None else self._side(self.rod_couple)
-        return exact if self.rubbing is None else _sum(exact, self._side(self.rubbing.couple))
+        """Side force in N of all couples on the rod: of an exact one, and of the friction in its pins."""
+        return self._friction_side if self.drive.rod is None else self._side(self.rod_couple) + self._friction_side
 
     @cached_property
     def rubbing(self) -> Rubbing | None:
-        """Moments of friction in pins and journals; None where there is none."""
-        friction = self.drive.pin_friction if self.rubs else None
+        """Moments of friction in pins and journals; None where there is none.
+
+        The journals carry the force on the pin as the crankshaft does, without one all of it. Of several cylinders each
+        counts by itself, with an equal part of what else loads the bearings of its throw.
+        """
+        drive, friction = self.drive, self.drive.pin_friction if self.rubs else None
         if friction is None or self.P is None:
             return None
+        pin, crosshead_pin = on_pin(self.unrubbed), on_crosshead_pin(self.unrubbed)
         # the rod turns by −dψ: forward where it swings back
         turned = np.mod(self.within, 360.0)
         swings = np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
-        return Rubbing(
-            np.hypot(*on_pin(self.unrubbed)) * friction.crank_pin,
-            np.hypot(*on_crosshead_pin(self.unrubbed)) * (swings * friction.crosshead_pin),
-            sum(np.hypot(*force) for force in self._on_journals(on_pin(self.unrubbed))) * friction.journals,
-        )
 
-    def _on_journals(self, pin: Vector) -> tuple[Vector, ...]:
-        """Return the forces of the throw on its bearings; without a crankshaft, that on the pin stands for their sum.
-
-        Of several cylinders each counts by itself, with an equal part of what else loads the bearings of its throw.
-        """
-        drive, friction = self.drive, self.drive.pin_friction
-        if friction is None or friction.line is None or not some(friction.journals != 0):
-            return (pin,)
-        throw = friction.line.throw_of([one.name for one in drive.machine.cylinders].index(drive.name))
-        count = len(throw.cylinders)
-        found = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
-        return tuple(Vector(force.D / count, force.T / count) for force in found)
+        bearings: Any = np.hypot(*pin)
+        if friction.line is not None and some(friction.journals != 0):
+            names = [one.name for one in drive.machine.cylinders]
+            throw = friction.line.throw_of(names.index(drive.name))
+            count = len(throw.cylinders)
+            carried = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
+            bearings = sum(np.hypot(*force) for force in carried) / count
+        at_crosshead = np.hypot(*crosshead_pin) * (swings * friction.crosshead_pin)
+        return Rubbing(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
 
     # the guide
 
@@ -349,15 +369,10 @@ class State(MotionColumns):
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
-    def _guide_load(self) -> Any:
-        """Load on the guide besides the push of the rod in N: weight less the side force of couples on the rod."""
-        return self.drive.guide_weight if self._rod_side is None else self.drive.guide_weight - self._rod_side
-
-    @cached_property
     def guide_sense(self) -> Any:
         """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
-        return self._after_steady_friction * sin_psi + self._guide_load * cos_psi
+        return self._after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
 
     @cached_property
     def guide_side(self) -> Array:
@@ -387,11 +402,10 @@ class State(MotionColumns):
         if self.P is None:
             return None
         if self.rod_angle is None:
-            alone = drive.weight if self.mechanism.known_across else None
-            return alone and self._filled(alone[1])
+            return self.filled(drive.weight[1]) if drive.weight and self.mechanism.known_across else None
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
-            return self._after_steady_friction * (sin_psi / cos_psi) + self._guide_load
+            return self._after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
         locked = self.below <= 0
         if locked.any() and drive.index is None:
             raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
@@ -402,16 +416,22 @@ class State(MotionColumns):
         """Crosshead friction f |N| in N, against the motion."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
 
-    @column("p_g", "pressure")
-    def p_guide(self) -> Any:
-        """Mean pressure of the crosshead's shoe on its guide, |N| over its area."""
-        area = self.drive.guide_area
-        return None if area is None or self.N is None else abs(self.N) / area
-
-    @column("f N c", "power")
-    def wear(self) -> Any:
-        """Work of friction on the guide over time, by which it wears (Redtenbacher)."""
-        return None if self.p_guide is None or self.c is None else self.crosshead_drag * self.c * self.direction
+    p_guide = value(
+        "p_g",
+        "pressure",
+        "Mean pressure of the crosshead's shoe on its guide, |N| over its area",
+        lambda state: (
+            None if state.drive.guide_area is None or state.N is None else abs(state.N) / state.drive.guide_area
+        ),
+    )
+    wear = value(
+        "f N c",
+        "power",
+        "Work of friction on the guide over time, by which it wears (Redtenbacher)",
+        lambda state: (
+            None if state.p_guide is None or state.c is None else state.crosshead_drag * state.c * state.direction
+        ),
+    )
 
     # the crank pin
 
@@ -421,21 +441,21 @@ class State(MotionColumns):
 
         R 302; an exact rod adds its couple, centrifugal force and weight.
         """
-        radial = None if self.P is None else self.mechanism.radial(self.posed)
+        radial, rod = None if self.P is None else self.mechanism.radial(self.posed), self.drive.rod
         if radial is None:
             return None
-        push = self.along_rod * radial
-        push = push if self._rod_side is None else push + self._rod_side * self.angle.sin
-        if self.drive.rod is None:
+        push = self.along_rod * radial + self._rod_side * self.angle.sin
+        if rod is None:
             return push
-        weight = self.drive.weight_of(self.drive.rod.pin_mass) or (0.0, 0.0)
-        pull = self.drive.centrifugal(self.drive.rod.pin_mass)
-        return push - pull + (self.angle.cos * weight[0] + self.angle.sin * weight[1])
+        along, across = self.drive.weight_of(rod.pin_mass)
+        return push - self.drive.centrifugal(rod.pin_mass) + (self.angle.cos * along + self.angle.sin * across)
 
-    @column("M_2", "torque")
-    def M_out(self) -> Any:
-        """Moment on what swings, or on the second crank, against its motion."""
-        return None if self.mechanism.slides else self._resistance
+    M_out = value(
+        "M_2",
+        "torque",
+        "Moment on what swings, or on the second crank, against its motion",
+        lambda state: None if state.mechanism.slides else state.resistance,
+    )
 
     @property
     def _output(self) -> Any:
@@ -444,11 +464,11 @@ class State(MotionColumns):
 
     @cached_property
     def _rod_tangential(self) -> Any:
-        """What couple and weight of an exact rod give to T in N."""
-        assert self.drive.rod is not None
-        weight = self.drive.weight_of(self.drive.rod.pin_mass) or (0.0, 0.0)
-        couple = -self._side(self.rod_couple) * self.angle.cos
-        return couple + (self.angle.sin * weight[0] - self.angle.cos * weight[1])
+        """What couple and weight of an exact rod give to T in N; 0 without one."""
+        if self.drive.rod is None:
+            return 0.0
+        along, across = self.drive.weight_of(self.drive.rod.pin_mass)
+        return (self.angle.sin * along - self.angle.cos * across) - self._side(self.rod_couple) * self.angle.cos
 
     @column("T", "force", extremes=("forces",), called="tangential force", peak=True)
     def T(self) -> Any:
@@ -458,49 +478,49 @@ class State(MotionColumns):
         """
         if self._output is None:
             return None
-        push = self._output * (self.slope / self.mechanism.crank)
-        push = push + self._rod_tangential if self.drive.rod else push
-        return push if self.rubbing is None else push - self.angle.cos * self._side(self.rubbing.couple)
+        push = self._output * (self.slope / self.mechanism.crank) + self._rod_tangential
+        return push - self.angle.cos * self._friction_side
 
-    @column("F_f", "force")
-    def F_friction(self) -> Any:
-        """Friction along the stroke line, opposing the motion."""
-        if self.P is None or not self.drive.has_friction:
-            return None
-        return self._filled((self.crosshead_drag + self.drive.steady_friction) * -self.direction)
+    F_friction = value(
+        "F_f",
+        "force",
+        "Friction along the stroke line, opposing the motion",
+        lambda state: (
+            None
+            if state.P is None or state.drive.cylinder.friction is None
+            else state.filled((state.crosshead_drag + state.drive.steady_friction) * -state.direction)
+        ),
+    )
 
     @cached_property
     def along_rod(self) -> Any:
         """The part of the rod force along the stroke line in N: the piston force less all friction."""
-        return self.P if self.F_friction is None else self.P + self.F_friction
+        return _sum(self.P, self.F_friction)
 
     @cached_property
     def _free_torque(self) -> Any:
         """Torque in N m before friction in pins and journals, from the work of the force at the output."""
-        torque = self._output * self.slope
-        return torque + self._rod_tangential * self.mechanism.crank if self.drive.rod else torque
+        return self._output * self.slope + self._rod_tangential * self.mechanism.crank
 
     @property
     def torque(self) -> Any:
         """Torque T R in N m of the force on the pin, before friction in crank pin and journals; from the work, as M."""
-        return self._free_torque if self.rubbing is None else self._free_torque - self.rubbing.couple * self.rod_slope
+        return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 
     @cached_property
-    def crank_pin_loss(self) -> Any:
-        """What friction in the crank pin takes of the torque, in N m; `crosshead_pin_loss` in the crosshead pin."""
-        return self.rubbing and self.rubbing.at_crank * (1 + self.rod_slope)
+    def pin_losses(self) -> tuple[Any, Any, Any] | None:
+        """What friction in crank pin, crosshead pin and journals takes of the torque, in N m; None without it."""
+        found = self.rubbing
+        if found is None:
+            return None
+        return found.at_crank * (1 + self.rod_slope), found.at_crosshead * self.rod_slope, found.journals
 
-    @cached_property
-    def crosshead_pin_loss(self) -> Any:
-        """What friction in the crosshead pin takes of the torque, in N m."""
-        return self.rubbing and self.rubbing.at_crosshead * self.rod_slope
-
-    @column("M", "torque")
-    def M(self) -> Any:
-        """Torque on the shaft."""
-        if self._output is None or self.rubbing is None:
-            return None if self._output is None else self._free_torque
-        return self._free_torque - (self.crank_pin_loss + self.crosshead_pin_loss + self.rubbing.journals)
+    M = value(
+        "M",
+        "torque",
+        "Torque on the shaft",
+        lambda state: None if state._output is None else state._free_torque - sum(state.pin_losses or (), start=0.0),
+    )
 
 
 def on_pin(state: State) -> Vector:
@@ -515,9 +535,9 @@ def on_crosshead_pin(state: State) -> Vector:
     """
     drive, masses = state.drive, state.drive.cylinder.masses
     of_rod = drive.mass - masses.parts if masses else 0.0
-    weight = drive.weight_of(of_rod) or (0.0, 0.0)
-    along = state.along_rod + state.b * of_rod if drive.has_inertia else state.along_rod
-    return Vector(along - weight[0], state.N - drive.guide_weight + weight[1])
+    along, across = drive.weight_of(of_rod)
+    push = state.along_rod + state.b * of_rod if drive.has_inertia else state.along_rod
+    return Vector(push - along, state.N - drive.guide_weight + across)
 
 
 def reduced_inertia(state: State) -> Any:

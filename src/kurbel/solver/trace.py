@@ -1,8 +1,9 @@
 """A measured trace as the pressure in a chamber: straight over the crank angle between its corrected samples."""
 
 import math
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -24,90 +25,85 @@ _DENSE = 600
 """Breaks of a cycle from which on its pieces are short enough for few nodes."""
 
 
-class Segments(NamedTuple):
-    """The straight pieces between samples, each (n,): start and end in degrees, pressures there in Pa."""
-
-    start: Array
-    end: Array
-    p: Array
-    next_p: Array
-
-
 class TracePressure:
     """Gauge pressure in one chamber from a trace.
 
     The angle 0 of the trace, after its `angle_zero`, is the inner dead centre for both ends; a mirrored trace at the
     crank end follows one stroke later. each: pressures (m, n) in Pa of every measured cycle, levelled and pegged, as
-    the trace counts them, gauge or absolute; pressures: their mean (n,). starts, bends: as `Pressure` says.
+    the trace counts them, gauge or absolute; pressures: their mean (n,); starts: where the straight lines between the
+    samples begin; noise: standard deviation in Pa of that of the samples, 0 where they are not at equal angles.
     """
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
-        self.trace = trace.over(setting.cycle)
-        self.setting = setting
+        self.trace, self.setting = trace.over(setting.cycle), setting
         self.shift = setting.shift(trace)
         self.each = corrected(self.trace, setting)
         self.pressures = np.asarray(self.each.mean(axis=0))
         angles, pressures = self.trace.angles + self.shift, self.pressures - setting.base
-        wide = np.diff(angles) > 0
-        segment = Segments(angles[:-1][wide], angles[1:][wide], pressures[:-1][wide], pressures[1:][wide])
-        starts = np.mod(segment.start, setting.cycle)
-        order = np.argsort(starts, kind="stable")
-        self._segments = Segments(*(part[order] for part in segment))
-        self._first = np.flatnonzero(wide)[order]
-        self._starts = starts[order]
-        self._gradients = (self._segments.next_p - self._segments.p) / (self._segments.end - self._segments.start)
+        wide = np.flatnonzero(np.diff(angles) > 0)
+        order = wide[np.argsort(np.mod(angles[:-1][wide], setting.cycle), kind="stable")]
+        # the lines in the order of the angle: the sample where each begins, that angle, its width, both pressures
+        self._first, self._starts = order, np.mod(angles[order], setting.cycle)
+        self._widths, self._p, self._next_p = np.diff(angles)[order], pressures[order], pressures[order + 1]
+        self._gradients = (self._next_p - self._p) / self._widths
+        self.starts = Angles(np.zeros(len(order), dtype=np.intp), self._starts)
 
-    @property
-    def starts(self) -> Angles:
-        """Where the segments begin; a trace is of one machine."""
-        return Angles(np.zeros(len(self._starts), dtype=np.intp), self._starts)
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation in Pa of the noise of the samples."""
+        return noise_of(self._p) if self.trace.even else 0.0
 
     def at(self, degrees: Array, within: Array) -> Array:
-        """Return the gauge pressure in Pa at crank angles in degrees, on the segments that hold `within` (n,)."""
+        """Return the gauge pressure in Pa at crank angles in degrees, on the lines that hold `within` (n,)."""
         turned = np.mod(within, self.setting.cycle)
-        segment = np.searchsorted(self._starts, turned, side="right") - 1
-        since = np.mod(turned - self._starts[segment], self.setting.cycle)
-        pressures: Array = self._segments.p[segment] + self._gradients[segment] * (since + (degrees - within))
-        return pressures
+        line = np.searchsorted(self._starts, turned, side="right") - 1
+        since = np.mod(turned - self._starts[line], self.setting.cycle)
+        return np.asarray(self._p[line] + self._gradients[line] * (since + (degrees - within)))
 
     @property
     def highest(self) -> Extreme:
         """The highest gauge pressure in Pa, and the first crank angle that has it: at a sample."""
-        starts, ends, p, next_p = self._segments
-        best = float(max(p.max(), next_p.max()))
-        reached = np.where(p == best, self._starts, np.where(next_p == best, self._starts + (ends - starts), np.inf))
-        return Extreme(best, float(reached.min()))
+        best = float(max(self._p.max(), self._next_p.max()))
+        ends = np.where(self._next_p == best, self._starts + self._widths, np.inf)
+        return Extreme(best, float(np.where(self._p == best, self._starts, ends).min()))
+
+    # the rise of pressure
 
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
         ahead, behind = (self.at(at, at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
         return np.asarray((ahead - behind) / _CHORD)
 
+    def rises(self, cycles: Array) -> tuple[Array, Array]:
+        """Return the rises (m, k) in Pa per degree of cycles (m, n), and the angles (k,) in the middle of their chords.
+
+        The chords are those that begin or end at a sample: only there a rise over one degree bends.
+        """
+        angles = self.trace.angles
+        middles = np.concatenate((angles - _CHORD / 2, angles + _CHORD / 2))
+        ahead, behind = (np.mod(middles + way - angles[0], self.trace.period) for way in (_CHORD / 2, -_CHORD / 2))
+        along = angles - angles[0]
+        found = [np.interp(ahead, along, one) - np.interp(behind, along, one) for one in cycles]
+        return np.stack(found) / _CHORD, np.mod(middles + self.shift, self.setting.cycle)
+
     @cached_property
     def steepest(self) -> Extreme:
-        """Largest rise of pressure in Pa per degree: it bends only where an end of its degree passes a sample."""
-        rises = self.rises(self.pressures[np.newaxis])[0]
+        """Largest rise of pressure in Pa per degree."""
+        (rises,), middles = self.rises(self.pressures[np.newaxis])
         top = int(np.argmax(rises))
-        return Extreme(float(rises[top]), float(self._chords[top] % self.setting.cycle))
+        return Extreme(float(rises[top]), float(middles[top]))
 
-    @cached_property
-    def _chords(self) -> Array:
-        """Crank angles (k,) in degrees of the middles of the chords that begin or end at a sample."""
-        at = self.trace.angles + self.shift
-        return np.concatenate((at - _CHORD / 2, at + _CHORD / 2))
+    # the work
 
-    def rises(self, cycles: Array) -> Array:
-        """Return the rises (m, k) in Pa per degree of cycles (m, n) over all chords that begin or end at a sample."""
-        angles = self.trace.angles
-        at = self._chords - self.shift
-        ahead, behind = (np.mod(at + way - angles[0], self.trace.period) for way in (_CHORD / 2, -_CHORD / 2))
-        along = angles - angles[0]
-        return np.stack([np.interp(ahead, along, one) - np.interp(behind, along, one) for one in cycles]) / _CHORD
+    @property
+    def area(self) -> float:
+        """∮ p dz in Pa, per cycle: of the mean of the measured ones."""
+        return math.fsum((self.weights * self.pressures).tolist())
 
-    @cached_property
-    def noise(self) -> float:
-        """Standard deviation in Pa of the noise of the samples; 0 where they are not at equal angles."""
-        return noise_of(self._segments.p) if self.trace.even else 0.0
+    @property
+    def area_by_angle(self) -> float:
+        """Change of the area in Pa per radian by which the trace is put later: ∮ p z″ dφ."""
+        return math.fsum((self._trapezoid(self.setting.mechanism.curvature) * self.pressures).tolist())
 
     @cached_property
     def weights(self) -> Array:
@@ -116,57 +112,44 @@ class TracePressure:
         Samples at equal angles: trapezoid of p z′, z′ = dz/dφ exact, which for a periodic pressure converges far faster
         than the straight lines between the samples. Otherwise: the exact integral of those straight lines.
         """
-        return self._trapezoid("slope") if self.trace.even else self.straight_weights
+        return self._trapezoid(self.setting.mechanism.slope) if self.trace.even else self.straight_weights()
 
     @property
-    def area(self) -> float:
-        """∮ p dz in Pa, per cycle: of the mean of the measured ones."""
-        return math.fsum((self.weights * self.pressures).tolist())
-
-    @cached_property
-    def area_by_angle(self) -> float:
-        """Change of the area in Pa per radian by which the trace is put later: ∮ p z″ dφ."""
-        return math.fsum((self._trapezoid("curvature") * self.pressures).tolist())
-
-    def _trapezoid(self, derivative: str) -> Array:
-        angles = self.trace.angles
-        steps = np.radians(np.diff(angles)) / 2
-        widths = np.append(steps, 0.0) + np.append(0.0, steps)
-        return np.asarray(widths * self._fraction(derivative, angles + self.shift))
-
-    @cached_property
-    def straight_weights(self) -> Array:
-        """Weights (n,) of the samples in ∮ p dz along straight lines, by a Gauss rule that is exact to rounding."""
-        return self._straight_weights(0.0, self.setting.cycle)
-
-    @cached_property
     def exchange_weights(self) -> Array | None:
         """Weights (n,) of the samples in ∫ p dz over exhaust and intake, along straight lines; None in two strokes."""
         if self.setting.cycle == 360:
             return None
         inner, outer = self.setting.mechanism.dead_centres()
-        return self._straight_weights(outer if self.setting.head_end else inner + 360.0, 360.0)
+        return self.straight_weights(outer if self.setting.head_end else inner + 360.0, 360.0)
 
-    def _straight_weights(self, begin: float, turn: float) -> Array:
-        """Return the weights of the samples in ∫ p dz from a dead centre on over so many degrees."""
+    def _trapezoid(self, derivative: Callable[[CrankAngle], Any]) -> Array:
+        """Return the weights of the samples by the trapezoid rule; derivative: of the piston's place by φ."""
+        steps = np.radians(np.diff(self.trace.angles)) / 2
+        widths = np.append(steps, 0.0) + np.append(0.0, steps)
+        return np.asarray(widths * self._fraction(derivative, self.trace.angles + self.shift))
+
+    def straight_weights(self, begin: float = 0.0, turn: float = 720.0) -> Array:
+        """Return the weights (n,) of the samples in ∫ p dz along straight lines, by a Gauss rule exact to rounding.
+
+        From a dead centre on over so many degrees, at most over the cycle.
+        """
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
         turns = np.add.outer(mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()
         breaks = np.append(self._starts, turns)
         nodes = 16 if len(breaks) < _DENSE else 10
         whole = Pieces.between(Angles(np.zeros(len(breaks), dtype=np.intp), breaks), 1, cycle, nodes)
-        pieces, (slope,) = refined(whole, lambda some: self._fraction("slope", some.degrees)[None])
-        number = np.searchsorted(self._starts, pieces.middle, side="right") - 1
-        since = np.mod(pieces.middle - self._starts[number], cycle) + (pieces.degrees - pieces.middle)
-        share = since / (self._segments.end - self._segments.start)[number]
+        pieces, (slope,) = refined(whole, lambda some: self._fraction(mechanism.slope, some.degrees)[None])
+
+        line = np.searchsorted(self._starts, pieces.middle, side="right") - 1
+        since = np.mod(pieces.middle - self._starts[line], cycle) + (pieces.degrees - pieces.middle)
+        share = since / self._widths[line]
         meant = np.mod(pieces.middle - begin, cycle) < turn
         by_node = np.radians(pieces.half) * meant * pieces.rule.weights[:, None] * slope
-        sample, count = self._first[number], len(self.pressures)
+        sample, count = self._first[line], len(self.pressures)
         of_start = np.bincount(sample, (by_node * (1 - share)).sum(axis=0), count)
         return np.asarray(of_start + np.bincount(sample + 1, (by_node * share).sum(axis=0), count))
 
-    def _fraction(self, derivative: str, degrees: Array) -> Array:
+    def _fraction(self, derivative: Callable[[CrankAngle], Any], degrees: Array) -> Array:
         """Return a derivative of the stroke fraction z by φ."""
-        mechanism = self.setting.mechanism
-        angle = CrankAngle.of(degrees)
-        by_angle = (mechanism.slope(angle) if derivative == "slope" else mechanism.curvature(angle)) / mechanism.stroke
+        by_angle = derivative(CrankAngle.of(degrees)) / self.setting.mechanism.stroke
         return np.asarray(by_angle if self.setting.head_end else -by_angle)

@@ -68,7 +68,7 @@ class Figures(Form):
     def figure_of(self, quantity: Quantity) -> Form:
         """Return the form of a figure for a quantity."""
         number = Number(quantity.kind)
-        return Figure(number) if self.tolerated else number
+        return FigureForm(number) if self.tolerated else number
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
@@ -116,7 +116,7 @@ _PLUS_MINUS = r"\s*(?:±|\+\s*/?\s*-)\s*"
 _PERCENT = rf"({NUMBER.pattern})\s*%"
 
 
-class Figure(Form):
+class FigureForm(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
     def __init__(self, size: Number) -> None:
