@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.machine_file import loads
 from schemas import whole_schema
 
@@ -17,11 +15,6 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 CONFIGS = Path(__file__).parent.parent / "configs"
 ONE, TWO = str(CONFIGS / "waterworks.yaml"), str(CONFIGS / "waterworks-two-cranks.yaml")
 NAMED, FOUR = str(CONFIGS / "compressor-two-stage.yaml"), str(CONFIGS / "four-in-line.yaml")
-BARE = "crank: 1 m\nrod: 5 m\n"
-
-
-def run(*words: str, text: str = "") -> Result:
-    return CliRunner().invoke(kurbel, list(words), input=text)
 
 
 @pytest.mark.parametrize(
@@ -72,22 +65,6 @@ def test_what_to_write_instead(words: tuple[str, ...], says: str) -> None:
     assert (result.exit_code, says in result.stderr) == (2, True), result.stderr
 
 
-@pytest.mark.parametrize("machine", ["crank-rocker", "shaper", "scotch-yoke-pump", "offset-engine"])
-def test_why_nothing_is_compared(machine: str) -> None:
-    page = run("motion", str(CONFIGS / f"{machine}.yaml"), "--compare").stdout
-    assert page.count("--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank") == 1
-    assert "--compare" not in run("motion", str(CONFIGS / f"{machine}.yaml")).stdout
-    assert "--compare" not in run("motion", ONE, "--compare", "--over", "x").stdout
-
-
-def test_a_velocity_without_a_speed() -> None:
-    """c = 0 hangs on no speed, but c has no values without one: the message gives one, and that answers."""
-    refused = run("motion", "-", "--where", "c=0", text=BARE)
-    assert (refused.exit_code, "no speed is given; add one by --set speed='60 rpm'" in refused.stderr) == (2, True)
-    found = run("motion", "-", "--where", "c=0", "--set", "speed=60 rpm", "-f", "json", text=BARE)
-    assert json.loads(found.stdout)["cylinders"][0]["columns"][0]["values"] == [0, 180]
-
-
 @pytest.mark.parametrize(("load", "says"), [(150, "50 N m less resistance"), (50, "50 N m more resistance")])
 def test_a_resistance_of_another_mean(load: int, says: str) -> None:
     text = (
@@ -108,13 +85,6 @@ def test_quotients_before_a_unit(length: str, metres: float) -> None:
     assert cylinder.mechanism.rod == pytest.approx(metres, rel=1e-15)  # type: ignore[attr-defined]
     jsonschema = pytest.importorskip("jsonschema")
     jsonschema.Draft7Validator(whole_schema()).validate({"crank": "100 mm", "rod": length})
-
-
-def test_the_spring_of_an_indicator_as_a_quotient() -> None:
-    card = "drawn: {length: 92 mm, spring: 10/3.5 mm/at}, mean_height: 20 mm"
-    (cylinder,) = loads(f"{BARE}speed: 60 rpm\nbore: 300 mm\nindicator: {{head_end: {{{card}}}}}\n").cylinders
-    rectangle = cylinder.pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert rectangle.mean == pytest.approx(20 / (10 / 3.5) * 98066.5, rel=1e-14)  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("length", ["1/0 m", "1/1e-400 m", "3.5/2", "5 1/min", "/2 m", "1//2 m"])

@@ -72,12 +72,6 @@ def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None
     assert result.stdout.isascii()
 
 
-def test_unknown_command_is_named_with_the_nearest() -> None:
-    result = CliRunner().invoke(kurbel, ["tabel"])
-    assert result.exit_code == 2
-    assert "no command 'tabel'; did you mean 'table'?" in result.stderr
-
-
 def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     from kurbel.report import zusammenstellung
 
@@ -166,14 +160,6 @@ def test_full_disk(arguments: list[str]) -> None:
 
 
 @POSIX_ONLY
-def test_closed_standard_output() -> None:
-    result = subprocess.run(["bash", "-c", f"{sys.executable} -m kurbel table >&-"], capture_output=True, check=False)
-    assert result.returncode == 2
-    assert b"standard output" in result.stderr
-    assert b"Traceback" not in result.stderr
-
-
-@POSIX_ONLY
 def test_a_terminal_gets_colour_and_as_many_angles_as_fit() -> None:
     wide, narrow = on_terminal("table", columns=220), on_terminal("table", columns=80)
     assert ESCAPE in wide
@@ -190,23 +176,6 @@ def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
     written = on_terminal("table", **environment)
     assert ESCAPE not in written
     assert "sin(φ+ψ)/cos ψ".encode() in written
-
-
-@POSIX_ONLY
-def test_colours_change_no_character() -> None:
-    import re
-
-    coloured = re.sub(rb"\x1b\[[0-9;]*m", b"", on_terminal("table", "--compare"))
-    plain = on_terminal("table", "--compare", NO_COLOR="1")
-    assert [line.rstrip() for line in coloured.splitlines()] == [line.rstrip() for line in plain.splitlines()]
-
-
-def test_output_file_is_utf8_and_the_same_every_time(tmp_path: Path) -> None:
-    result = process("table", "-o", str(tmp_path / "a.txt"), PYTHONIOENCODING="ascii", PYTHONUTF8="0")
-    assert (result.returncode, result.stdout, result.stderr) == (0, b"", b"")
-    assert CliRunner().invoke(kurbel, ["table", "-o", str(tmp_path / "b.txt")]).exit_code == 0
-    assert (tmp_path / "a.txt").read_bytes() == (tmp_path / "b.txt").read_bytes()
-    assert "sin(φ+ψ)/cos ψ" in (tmp_path / "a.txt").read_text(encoding="utf-8")
 
 
 def test_example_lists_every_machine_with_its_first_line() -> None:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
-from kurbel.machine_file import loads
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
-from kurbel.solver.case import Case
 from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -51,30 +46,6 @@ def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
     assert page.splitlines()[0].endswith("Forces in the crank train: cylinders 1–4")
 
 
-def test_equally_loaded_pins_stand_once_on_a_page_and_each_for_programs() -> None:
-    page = run("bearings", "-", "--key-values", text=EQUAL)
-    heads = [line for line in page.splitlines() if line.startswith("Key values")]
-    assert heads == [f"Key values: {kind} pin of cylinders 1–4" for kind in ("crank", "crosshead")]
-    assert "each at its own crank angles" in page
-    assert len(json.loads(run("bearings", "-", "-f", "json", text=EQUAL))["bearings"]) == 8
-
-
-def test_a_picture_of_equally_loaded_pins_is_drawn_once() -> None:
-    drawn = pictures(Case(loads(EQUAL)), ("bearing-loads",), PictureOptions("metric"))
-    assert [one.of for one in drawn] == ["crank pin of cylinders 1–4", "crosshead pin of cylinders 1–4"]
-
-
-def test_a_pin_of_another_load_stands_alone() -> None:
-    """The second of three pistons is heavier by a part in a million."""
-    each = "{{crank: 50 mm, rod: 200 mm, crank_position: {} deg, masses: {{piston: {} kg}}}}"
-    cylinders = ", ".join(each.format(120 * n, 1 + 1e-6 * (n == 1)) for n in range(3))
-    page = run("bearings", "-", "--key-values", text=f"speed: 600 rpm\ncylinders: [{cylinders}]\n")
-    heads = [line.partition(": ")[2] for line in page.splitlines() if line.startswith("Key values")]
-    assert heads == [
-        f"{kind} pin of {of}" for of in ("cylinders 1, 3", "cylinder 2") for kind in ("crank", "crosshead")
-    ]
-
-
 def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
     page = run("check", FOUR)
     assert page.count("left out   weight: no inclination given") == 1
@@ -108,11 +79,3 @@ def test_check_tells_where_a_firing_order_puts_the_pins() -> None:
         expected = {f"cylinder {n}": (fires[n] - (0 if n % 2 else bank)) % 360 for n in range(1, 9)}
         assert pins(bank) == expected
     assert pins(90) != pins(-90)
-
-
-def test_findings_name_their_cylinder() -> None:
-    found = json.loads(run("check", "-", "-f", "json", text=EQUAL))["findings"]
-    said = [one["message"] for one in found if "left out: friction" in one["message"]]
-    assert said == [f"cylinder {n}: left out: friction: no friction given" for n in (1, 2, 3, 4)]
-    alone = json.loads(run("check", str(CONFIGS / "waterworks.yaml"), "-f", "json"))["findings"]
-    assert "left out: weight: no inclination given" in [one["message"] for one in alone]

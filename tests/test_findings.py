@@ -4,36 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 from click.testing import CliRunner
 
-from kurbel import load, loads, solve
+from kurbel import loads, solve
 from kurbel.cli import kurbel
-from kurbel.declared.forms.figures import Expected
-from kurbel.errors import UsageError
-from kurbel.quantities import every_quantity
-from kurbel.quantity import by_id
-from kurbel.report.check import checked
-from kurbel.report.commands import REPORTS
-from kurbel.report.frame import Frame
-from kurbel.report.limits import Unjudged, compared
-from kurbel.report.whole import report_of
-from kurbel.solver.case import Case
-from representative import CONFIGS, case_of, few, shipped
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 ENDLESS = "{constant: {expansion: 1e300 at, compression: 1e300 at}}"
 HUGE = f"crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {{head_end: {ENDLESS}}}\n"
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
-SHAFT = (
-    "crankshaft: {a: 300 mm, b: 300 mm, web_distance: 150 mm, web_thickness: 100 mm, web_width: 200 mm,"
-    " pin_diameter: 160 mm, pin_length: 180 mm}\n"
-)
 PRESSURE = "constant: {expansion: 5 bar, compression: 1 bar}"
 GAUGE = "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [180, 5], [360, 1]]}}}\n"
 
@@ -55,42 +40,7 @@ def test_what_overflows_is_neither_kept_nor_broken() -> None:
     assert "inf " not in listed + said
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize("name", ["mean_pressure", "T_min", "energy_residual"])
-def test_what_is_not_finite_is_not_compared(name: str, value: float) -> None:
-    for figure, key in ((1.0, "limits"), (Expected(0.0, 1.0), "expect")):
-        found = compared((key, name), by_id(*every_quantity().all_key_values)[name], figure, "cylinder 1", value)
-        assert isinstance(found, Unjudged)
-        assert isinstance(found.error, UsageError)
-        assert f"{key}.{name} (cylinder 1): {name} is too large to compute with" in str(found.error)
-
-
-@pytest.mark.parametrize("path", shipped("marine-diesel", "gas-engine"))
-def test_check_shows_the_warnings_of_every_command(path: Path) -> None:
-    case = case_of(path.stem)
-    shown = {one.text for section in checked(case).sections for one in section.entries if one.severity == "warning"}
-    frames = [Frame(word, (0.0,), None, "metric") for word in REPORTS]
-    for frame in frames:
-        with suppress(UsageError):
-            parts = report_of(case, frame).all_parts
-            warned = {one for part in parts for one in part.warnings}
-            assert {one for one in warned if not any(one.endswith(text) for text in shown)} == set()
-    if path.stem == "marine-diesel":
-        assert any(one.startswith("mode 1: critical speed of order 3 (-1.78 %)") for one in shown)
-
-
 # by the trapezoid rule the work of a sawtooth of four samples is far from that between them
-COARSE = "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [90, 9], [180, 5], [270, 2], [360, 1]]}}}\n"
-
-
-def test_a_residual_is_judged_by_its_magnitude() -> None:
-    (forces,) = solve(loads(ENGINE + COARSE)).cylinders
-    residual = forces.energy_residual
-    assert residual is not None
-    assert residual < -0.001  # or this tests nothing
-    status, listed, _ = run(ENGINE + COARSE + "limits: {energy_residual: 0.001}\n", "check")
-    assert status == 1
-    assert f"|{residual:.9g}| > 0.001  BROKEN" in listed
 
 
 def test_all_limits_are_told_in_one_run() -> None:
@@ -267,28 +217,6 @@ def test_many_files_are_checked_in_one_run(
 # notes
 
 
-@pytest.mark.parametrize("path", shipped("diesel-trace", "compressor", "punch"))
-def test_warnings_are_the_same_in_every_command(path: Path) -> None:
-    """Of every shipped machine, forces, flywheel, stress and check print the same set of them."""
-    found = {}
-    for command in ("forces", "flywheel", "stress"):
-        result = CliRunner().invoke(kurbel, [command, str(path), "-f", "json", "--step", "360"])
-        if result.exit_code == 0:
-            parts = json.loads(result.stdout)
-            warnings = [one["warnings"] for one in parts.get("cylinders", [])] + [parts.get("machine_warnings", [])]
-            found[command] = {unnamed(text, path) for texts in warnings for text in texts}
-    entries = [entry for section in checked(Case(load(path))).sections for entry in section.entries]
-    found["check"] = {entry.text for entry in entries if entry.what == "note" and entry.severity == "warning"}
-    assert len(found) > 1
-    assert all(one == found["check"] for one in found.values()), found
-
-
-def unnamed(text: str, path: Path) -> str:
-    """Return a warning without the name of its cylinder before it."""
-    names = [cylinder.name for cylinder in load(path).cylinders]
-    return next((text[len(name) + 2 :] for name in names if text.startswith(f"{name}: ")), text)
-
-
 @pytest.mark.parametrize("command", ["check", "forces", "flywheel"])
 def test_notes_name_their_cylinder(command: str) -> None:
     one = "{name: %s, crank: 400 mm, rod: 2 m, bore: 450 mm, %s}"
@@ -305,17 +233,6 @@ def test_notes_name_their_cylinder(command: str) -> None:
 
 
 # left out
-
-
-@pytest.mark.parametrize("command", few(["check", "forces", "flywheel", "stress"], ["check", "forces"]))
-def test_a_rod_whose_area_is_not_taken_off_is_told(command: str) -> None:
-    text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}, crank_end: {{{PRESSURE}}}}}\n" + SHAFT
-    told = "no crank_end_rod given, its area is taken as 0"
-    assert told in run(text, command)[1]
-    assert told not in run(text + "crank_end_rod: 60 mm\n", command)[1]
-    single = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\n" + SHAFT
-    assert told not in run(single, command)[1]
-    assert len(checked(Case(loads(text))).errors) == 0
 
 
 # firing
@@ -355,15 +272,6 @@ def test_check_lists_firing_angles_and_intervals() -> None:
 )
 def test_every_engine_and_nothing_else_fires(name: str, expected: list[str]) -> None:
     assert firing(CONFIGS[name].read_text(encoding="utf-8")) == expected
-
-
-def test_a_driven_pump_and_an_open_crank_end_do_not_fire() -> None:
-    cards = (
-        "head_end: {otto: {intake: -0.1 bar, exhaust: 0.1 bar, peak: 25 bar, compression_ratio: 6}}, crank_end: 0.2 bar"
-    )
-    pump = "cycle: four-stroke\nstroke: 80 mm\nrod_ratio: 4\nbore: 80 mm\nindicator: {%s}\ntandem: [{bore: 9 mm, %s}]\n"
-    delivery = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}"
-    assert firing(pump % (cards, delivery)) == ["firing: at 0 deg, intervals 720 deg"]
 
 
 def test_a_firing_angle_is_that_of_the_dead_centre() -> None:

@@ -39,7 +39,3 @@ def test_links_lead_somewhere(page: Path) -> None:
         target = page.parent / file if file else page
         assert target.exists(), link
         assert not anchor or anchor in anchors_of(target), link
-
-
-def test_the_readme_links_the_pages() -> None:
-    assert len(links_of(ROOT / "README.md")) >= 30

@@ -51,12 +51,6 @@ def test_expectations_have_scopes_too() -> None:
     assert run(f"expect: {{T_max: {newton(LP)} ± 0.1 %}}", "check")[0] == 1  # the HP cylinder has less
 
 
-def test_what_no_cylinder_has_is_of_the_machine() -> None:
-    for name in ("delta", "machine.delta"):
-        status, told = run(f"flywheel: {{inertia: 1e5 kg m2}}\nlimits: {{{name}: 1e-6}}", "check")
-        assert (status, f"{name}  " in told, "(whole machine)" in told) == (1, True, True)
-
-
 def test_findings_stand_at_the_name_as_it_is_written() -> None:
     result = run(f"limits: {{machine.T_max: {newton(1)}}}", "check", "-f", "json")[1]
     found = [one for one in json.loads(result)["findings"] if one["key"] == "limits.machine.T_max"]

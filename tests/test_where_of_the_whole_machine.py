@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from itertools import pairwise
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.machine_file import load
-from kurbel.solver.case import Case
-from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
 J = 5.0
 HARMONIC = f"""
 speed: 120 rpm
@@ -63,35 +57,6 @@ def test_a_speed_against_the_kinetic_energy() -> None:
     assert angles_of(f"omega = {wanted!r} rad/s") == pytest.approx([50, 310], rel=1e-11)
 
 
-KINDS = [
-    ("waterworks-two-cranks", "T = W", "T"),
-    ("waterworks-two-cranks", "T_b = 0", "T_inertia"),
-    ("four-cylinder-generator", "E = 0.3 E_max", "E"),
-    ("four-cylinder-generator", "omega = omega_m", "omega"),
-    ("coupled-blower", "M_K = M_m", "M_coupling"),
-    ("coupled-blower", "alpha = 0", "alpha"),
-]
-
-
-@pytest.mark.parametrize(
-    ("name", "condition", "column"),
-    few(KINDS, [KINDS[0], KINDS[3], KINDS[4]]),
-)
-def test_the_column_has_the_value_there(name: str, condition: str, column: str) -> None:
-    """Of every kind of machine: as at() gives it, which knows nothing of searches."""
-    result = CliRunner().invoke(kurbel, ["flywheel", str(CONFIGS / f"{name}.yaml"), "--where", condition, "-f", "json"])
-    assert result.exit_code == 0, result.output
-    angles = json.loads(result.stdout)["machine_columns"][0]["values"]
-    case = Case(load(str(CONFIGS / f"{name}.yaml"))).flywheel
-    factor, _, of = condition.partition("= ")[2].rpartition(" ")
-    wanted = float(factor or 1) * (0.0 if of == "0" else case[of].value)
-    curve = case.columns([*range(0, 720, 3)])[column]
-    assert len(angles) >= 2
-    assert case.columns(angles)[column] == pytest.approx([wanted] * len(angles), abs=1e-12 * abs(curve).max())
-    crossed = sum((a - wanted) * (b - wanted) < 0 for a, b in pairwise(curve))
-    assert crossed <= len(angles) * (720 / case.effort.cycle) + 1
-
-
 @pytest.mark.parametrize(
     ("condition", "status", "message"),
     [
@@ -105,19 +70,6 @@ def test_the_column_has_the_value_there(name: str, condition: str, column: str) 
 def test_what_cannot_be_asked(condition: str, status: int, message: str) -> None:
     result = asked(condition)
     assert (result.exit_code, message in result.stderr) == (status, True), result.stderr
-
-
-def test_rounding_is_no_figure() -> None:
-    """Beside 15 kN the 1e-11 N of an exact root, and E after a whole turn, are zero on every page."""
-    page = CliRunner().invoke(
-        kurbel, ["flywheel", str(CONFIGS / "waterworks-two-cranks.yaml"), "--where", "M = 0", "--columns", "M,E"]
-    )
-    (row,) = (line.split() for line in page.stdout.splitlines() if line.startswith("M "))
-    assert row[:3] == ["M", "kN", "m"]
-    assert {abs(float(one)) for one in row[3:]} == {0.0}
-    zeros = asked("E = 0", HARMONIC, "--columns", "E")
-    (row,) = (line.split() for line in zeros.stdout.splitlines() if line.startswith("E "))
-    assert {abs(float(one)) for one in row[2:]} == {0.0}
 
 
 STAGES = """
@@ -145,15 +97,3 @@ def test_one_cylinder_may_have_what_another_has_not() -> None:
         assert (alone.exit_code, f"{cylinder}: p_head is nowhere" in alone.stderr) == (3, True)
     neither = of_stages("--where", "p_head = 50 bar")
     assert (neither.exit_code, "LP: p_head is nowhere 50 bar" in neither.stderr) == (3, True)
-
-
-def test_a_unit_alone_is_no_value() -> None:
-    result = of_stages("--where", "p_head = bar")
-    assert (result.exit_code, "has no number before the unit; write 5.4 bar" in result.stderr) == (2, True)
-
-
-def test_the_excess_work_reaches_its_extremes_where_the_effort_crosses_the_resistance() -> None:
-    turning = Case(load(CONFIGS / "waterworks.yaml")).flywheel
-    found = turning.angles_where("E", turning.E_max.value)
-    assert found.angles == pytest.approx((turning.E_max.degrees,), abs=1e-9)
-    assert found.span == pytest.approx((turning.E_min.value, turning.E_max.value), rel=1e-12)

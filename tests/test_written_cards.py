@@ -33,13 +33,6 @@ def refused(text: str) -> str:
     return str(caught.value)
 
 
-def test_a_clearance_with_a_unit_is_not_to_be_written_without_it() -> None:
-    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: 5 mm}}}\n")
-    assert "got '5 mm'; it is a share of the stroke, such as 0.05 or 5 %" in said
-    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: '0,05'}}}\n")
-    assert "share" not in said
-
-
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])
 @pytest.mark.parametrize("end", ["head_end", "crank_end"])
 def test_one_pressure_stands_on_every_stroke(end: str, cycle: str) -> None:
@@ -85,19 +78,6 @@ def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
     assert "rectangular card" in check(text)
 
 
-@pytest.mark.parametrize("spring", ["1/40 in/psi", "0.025 in/lb/in2"])
-def test_a_spring_in_inches(spring: str) -> None:
-    """A spring of 40 psi to the inch: 25.4 mm are 40 psi."""
-    text = f"indicator: {{head_end: {{drawn: {{length: 4 in, spring: {spring}}}, mean_height: 25.4 mm}}}}\n"
-    assert forces_of(text).mean_pressure == pytest.approx(40 * 6894.757293168361, rel=1e-12)
-
-
-def test_a_point_beside_a_card_drawn_in_inches_is_told_in_inches() -> None:
-    lines = "expansion: [[0, 1.2], [4.5, 0.3]], compression: [[3.5, 0.1], [0, 1.2]]"
-    said = refused(f"indicator: {{head_end: {{drawn: {{length: 3.5 in, spring: 1/40 in/psi}}, {lines}}}}}\n")
-    assert "4.5 in is not on the card, which is 3.5 in long" in said
-
-
 @pytest.mark.parametrize(
     ("card", "says"),
     [
@@ -118,11 +98,6 @@ def test_what_cannot_be_drawn(card: str, says: str) -> None:
 def test_a_drawn_card_counts_from_the_atmospheric_line() -> None:
     said = refused(f"indicator: {{pressures: absolute, head_end: {{{PAPER}, {LINES}}}}}\n")
     assert "indicator.head_end.drawn: a drawn card counts from the atmospheric line" in said
-
-
-def test_a_line_that_misses_its_end_says_whose_dead_centre_is_meant() -> None:
-    said = refused("indicator: {crank_end: {unit: at, expansion: [[0, 5], [0.9, 1]], compression: [[1, 1], [0, 5]]}}\n")
-    assert "0 is this chamber's own dead centre" in said
 
 
 HEAD = "{unit: at, expansion: [[0, 5], [0.3, 5], [1, 1]], compression: [[1, 0.2], [0.2, 0.2], [0, 5]]}"
@@ -181,26 +156,3 @@ def test_a_compressor_without_clearance() -> None:
 )
 def test_where_a_clearance_is_needed(card: str, says: str) -> None:
     assert says in refused(f"indicator: {{head_end: {{{card}}}}}\n")
-
-
-def test_fractions_of_the_stroke_in_percent_and_as_quotients() -> None:
-    lines = "expansion: [[0, 5], [35 %, 5], [100 %, 1]], compression: [[1, 1], [1/8, 1], [0, 5]]"
-    (forces, plain) = (
-        forces_of(f"indicator: {{head_end: {{unit: at, {text}}}}}\n")
-        for text in (lines, lines.replace("35 %", "0.35").replace("100 %", "1").replace("1/8", "0.125"))
-    )
-    assert forces.work == plain.work
-
-
-def test_fractions_in_percent_without_its_sign_are_told_once() -> None:
-    points = [[5 * i, 9 - i / 4] for i in range(21)]
-    said = refused(f"indicator: {{head_end: {{unit: at, expansion: {points}, compression: {points[::-1]}}}}}\n")
-    assert len(said.splitlines()) == 1
-    assert "expansion[1]: 5 is no fraction of the stroke" in said
-    assert "write 0.05 here if the line is in percent" in said
-
-
-def test_a_fluctuation_is_a_ratio() -> None:
-    machine = loads(ENGINE + "efficiency: 85 %\nrod_ratio: 10/3\nflywheel: {fluctuation: 1/80}\n".replace("rod_", "#"))
-    assert machine.flywheel is not None
-    assert (machine.flywheel.fluctuation, machine.efficiency) == (1 / 80, 0.85)

@@ -151,13 +151,6 @@ def test_sizes_of_a_rim_that_tell_none(rim: str, says: str) -> None:
     assert says in refused(DIAGRAM + f"flywheel: {{rim: {{{rim}}}}}\n")
 
 
-@pytest.mark.parametrize("given", ["inertia: 30 kg m2", "gd2: 30 kg m2", "mass: 3 t, radius_of_gyration: 1 m"])
-def test_a_moment_of_inertia_beside_the_sizes_of_the_rim(given: str) -> None:
-    rim = "rim: {outer_diameter: 3 m, inner_diameter: 2 m, width: 1 m}"
-    message = refused(DIAGRAM + f"flywheel: {{{given}, {rim}}}\n")
-    assert "rim.width: the sizes of the rim tell the moment of inertia, which is given besides" in message
-
-
 def test_the_rim_of_a_given_flywheel_of_cast_iron() -> None:
     text = DIAGRAM.replace("speed: 120 rpm\n", "") + "flywheel: {inertia: 500 kg m2, rim: {mean_diameter: 2 m}}\n"
     turning = solve(loads(text)).flywheel

@@ -62,40 +62,6 @@ def same(found: Any, wanted: Any) -> bool:
     return bool(described(found) == described(wanted))
 
 
-KEYS = {
-    "waterworks.yaml": {
-        "rod_ratio": "4.5",
-        "speed": "61 rpm",
-        "tandem.0.indicator.head_end.constant.compression": "5 at",
-        "indicator.head_end.expansion.1.1": "9.3",
-        "masses.piston": "100 kg",
-        "friction.crosshead": "0.2",
-    },
-    "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
-    "four-cylinder-generator.yaml": {
-        "cylinders.each.bore": "250 mm",
-        "cylinders.each.indicator.head_end.otto.peak": "20 at",
-    },
-    "punch.yaml": {"flywheel.inertia": "900 kg m2"},
-}
-
-
-@pytest.mark.parametrize("name", KEYS)
-def test_a_bound_machine_is_the_one_that_is_read(name: str) -> None:
-    file, texts = source.read(CONFIGS / name), KEYS[name]
-    keys, values = tuple(texts), tuple(texts.values())
-    pairs = [value.partition(" ") for value in values]
-    start = [f"{1.1 * float(number):g} {unit}".rstrip() for number, _, unit in pairs]
-    found = bound(file, keys, start, [values, start, values])
-    assert same(found[0], read(file, keys, values))
-    assert same(found[1], read(file, keys, start))
-    assert same(found[0], found[2])
-    assert not same(found[0], found[1])
-
-
-FACTORS = (0.9, 0.97, 1.0, 1.05, 1.3, 0.5, 0.0, -1.0, 2.0, 7.0, 50.0)
-
-
 def numbers_of(tree: Any, path: str = "") -> Iterator[tuple[str, float, str]]:
     """The dotted keys of a file under which a number stands, with it and its unit."""
     for step, node in tree.items() if isinstance(tree, dict) else enumerate(tree):
@@ -104,26 +70,6 @@ def numbers_of(tree: Any, path: str = "") -> Iterator[tuple[str, float, str]]:
             yield from numbers_of(node, f"{inner}.")
         elif found := re.fullmatch(r"(-?[0-9.]+)(| [A-Za-z].*)", node):
             yield inner, float(found[1]), found[2]
-
-
-def of_each_number(name: str) -> Iterator[tuple[str, list[tuple[str]], dict[int, Any], Origin]]:
-    """What becomes of a file when one number of it after the other is small, large, 0, negative, infinite or a word."""
-    file = source.read(CONFIGS / name)
-    for key, number, unit in numbers_of(tree_of(file)):
-        if re.search(r"\.\d+\.\d+$|^kurbel$|^name$|^expect|uncertainty", key):
-            continue
-        whole = number == int(number) and not unit
-        rows = [(f"{int(number) * k if whole and k == int(k) else number * k!r}{unit}",) for k in FACTORS]
-        rows += [("infinite",), ("many",), (f"{number!r} furlongs",)]
-        start = (f"{int(number) if whole else number!r}{unit}",)
-        yield key, rows, bound(file, (key,), start, rows), file
-
-
-@pytest.mark.parametrize("name", ["waterworks.yaml", "boxer.yaml"])
-def test_every_number_of_a_file_is_bound_as_it_is_read(name: str) -> None:
-    for key, rows, found, file in of_each_number(name):
-        for row in (0, 3, 5, 6, 7, 8, 11):  # reading takes most of the time
-            assert same(found[row], read(file, (key,), rows[row])), (key, rows[row])
 
 
 TWIN = """\
@@ -149,50 +95,6 @@ def test_each_row_fires_in_its_own_turns(text: str, key: str, values: Sequence[s
     found = bound(file, (key,), rows[0], rows)
     for row, texts in enumerate(rows):
         assert same(found[row], read(file, (key,), texts)), texts
-
-
-BORES = "{crank: 400 mm, rod: 2 m, speed: 50 rpm, bore: 450 mm, crank_end_rod: 100 mm, friction: {crosshead: 0.1}}"
-
-
-def test_machines_that_differ_in_numbers_are_one_lot_and_those_of_another_kind_another() -> None:
-    file = source.decode("m.yaml", BORES.encode())
-    binder = Binder(file, ("bore", "rod", "crank_end_rod"), ("450 mm", "2 m", "100 mm"))
-    rods = ("2 m", "infinite", "2.1 m", "2.2 m", "0.3 m")
-    found = binder.bound([(f"{400 + row} mm", rods[row % 5], "0 mm" if row % 2 else "100 mm") for row in range(100)])
-    assert sorted(len(lot.rows) for lot in found.lots) == [10, 10, 30, 30]
-    assert sorted(found.failures) == list(range(4, 100, 5))
-    assert set(found.failures.values()) == {
-        "rod: 300 mm is shorter than the crank (400 mm); the crank turns fully only with a longer rod"
-    }
-
-
-GASES = "{{stroke: 1 m, rod: 3 m, offset: 0.1 m, bore: 0.4 m, cycle: {}, indicator: {{head_end: {}}}}}"
-STEAM = GASES.format("two-stroke", "{steam: {admission: 8 bar, exhaust: 0.2 bar, cut_off: 0.3, clearance: 0.05}}")
-OTTO = GASES.format("four-stroke", "{otto: {intake: 0 bar, peak: 40 bar, clearance: 0.15}}")
-
-
-@pytest.mark.parametrize(
-    ("text", "keys", "start", "end"),
-    [
-        (OTTO, ("stroke",), "1 m", "7 m"),
-        (OTTO, ("stroke", "offset"), "1 m", "5.5 m"),
-        (OTTO, ("offset", "rod"), "0.01 m", "1.5 m"),
-        (OTTO, ("indicator.head_end.otto.peak",), "40 bar", "0.1 bar"),
-        (STEAM, ("indicator.head_end.steam.admission",), "8 bar", "-0.5 bar"),
-    ],
-)
-def test_rules_take_arrays(text: str, keys: tuple[str, ...], start: str, end: str) -> None:
-    """A rule that does not is slow: its rows are made one by one."""
-    file, unit = source.decode("m.yaml", text.encode()), start.partition(" ")[2]
-    low, high = (float(one.partition(" ")[0]) for one in (start, end))
-    rows = [
-        (f"{value!r} {unit}", f"{2 - value / 5!r} {unit}")[: len(keys)] for value in np.linspace(low, high, 20).tolist()
-    ]
-    found = Binder(file, keys, rows[0]).bound(rows)
-    assert len(found.lots) == 1
-    machines = {row: found.lots[0].one(place) for place, row in enumerate(found.lots[0].rows)} | found.failures
-    for row, texts in enumerate(rows):
-        assert same(machines[row], read(file, keys, texts)), texts
 
 
 LIKE = """

@@ -13,10 +13,8 @@ import pytest
 from kurbel.declared.forms.structures import RecordForm, records
 from kurbel.declared.keys import Key
 from kurbel.errors import RuleError
-from kurbel.machine.parts import ConnectingRod
 from kurbel.machine_file.reader import ROOT
 from kurbel.machine_file.schema import describe
-from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.traces.correct import Trace
 from representative import law_of_each
 from schemas import whole_schema
@@ -66,15 +64,6 @@ def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) 
     assert not allowed_by_schema(record, name)
 
 
-def test_the_same_words_in_python() -> None:
-    with pytest.raises(RuleError, match="write for instance 'rod_ratio: 5'"):
-        SliderCrank.from_keys(crank=0.4)
-    with pytest.raises(RuleError, match="'inertia' needs 'center_of_gravity' beside it"):
-        ConnectingRod(2.0, inertia=0.1)
-    with pytest.raises(RuleError, match="is too large; it must be at most 1"):
-        ConnectingRod(2.0, share=1.5)
-
-
 @pytest.mark.parametrize(
     ("angles", "pressures", "message"),
     [
@@ -88,8 +77,3 @@ def test_the_same_words_in_python() -> None:
 def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:
     with pytest.raises(RuleError, match=message):
         Trace(np.array(angles, dtype=float), np.array([pressures], dtype=float))
-
-
-def test_a_trace_from_arrays_needs_no_file() -> None:
-    trace = Trace(np.array([10.0, 190.0, 370.0]), np.array([[1e5, 2e5, 1e5]]))
-    assert (trace.period, trace.even, trace.cycles, trace.files) == (360, True, ("two-stroke",), ())

@@ -12,7 +12,7 @@ from kurbel.cli import kurbel
 from kurbel.declared.numerals import parse_number
 from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError, UnitError
-from kurbel.machine_file import load, loads
+from kurbel.machine_file import loads
 from representative import law_of_each
 
 # all of Unicode's white space, none beyond its first plane, but the line ends of YAML and the signs that it refuses
@@ -59,28 +59,6 @@ def test_what_may_mean_something_else_is_no_number(text: str) -> None:
         parse_quantity(f"{text} mm", "length")
     with pytest.raises(MachineFileError, match=r"points\[0\]\[1\]"):
         loads(f"effort: {{unit: N m, points: [[0, {text}], [360, 1]]}}")
-
-
-def test_spaces_between_thousands_are_named() -> None:
-    with pytest.raises(MachineFileError) as caught:
-        loads("crank: 1\u2009400 mm\nrod_ratio: 1\u202f005")
-    assert "'1 400 mm' has spaces between thousands; leave them out" in str(caught.value)
-    with pytest.raises(UnitError, match="write it without spaces between thousands"):
-        parse_number("1\u202f005")
-
-
-def test_an_escaped_no_break_space_is_shown() -> None:
-    with pytest.raises(MachineFileError, match=r"got '400\\u00a0mm'"):
-        loads('crank: "400\\_mm"\nrod_ratio: 5')
-
-
-def test_odd_spaces_in_a_trace(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("0,\u00a01\n180,\u20092\n360\u202f,1\n", encoding="utf-8")
-    (tmp_path / "m.yaml").write_text(
-        "crank: 1 m\nrod_ratio: 5\nbore: 1 m\nindicator: {head_end: {trace: {file: p.csv, unit: bar}}}"
-    )
-    trace = load(tmp_path / "m.yaml").cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert trace.pressures.tolist() == [1e5, 2e5, 1e5]  # type: ignore[union-attr]
 
 
 TURNED = "en\u202elmay.gine"

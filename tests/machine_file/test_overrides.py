@@ -13,7 +13,6 @@ from good_machines import DEMO, EQUAL, LIKE_ONE
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError
 from kurbel.machine_file import loads
-from kurbel.machine_file.overrides import read_override
 
 
 def test_a_value_of_any_depth_is_set() -> None:
@@ -64,34 +63,9 @@ def test_a_fault_names_the_override(override: str, message: str) -> None:
     assert "Traceback" not in str(caught.value)
 
 
-def test_an_argument_that_the_locale_does_not_read() -> None:
-    """Python keeps its bytes as surrogates: those of UTF-8 in an ASCII locale, those of Latin-1 in one of UTF-8."""
-    assert read_override("name=M\udcc3\udcbchle").value == "Mühle"
-    for argument, byte in (
-        ("M\udcfchle", "0xFC is no UTF-8, in Latin-1 the letter 'ü'"),
-        ("\ud800", "0xED is no UTF-8"),
-    ):
-        with pytest.raises(KurbelError, match=byte):
-            read_override(f"name={argument}")
-
-
-@pytest.mark.parametrize("command", ["motion", "forces", "flywheel", "check", "accuracy --quick"])
-def test_every_command_that_reads_a_machine_has_it(command: str, tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(DEMO)
-    file = str(tmp_path / "m.yaml")
-    result = CliRunner().invoke(kurbel, [*command.split(), file, "--set", "bore=450"])
-    assert result.exit_code == 2
-    assert result.stderr.startswith("--set bore=450: bore: 450 has no unit; write it with one, such as '450 mm'")
-
-
 def test_the_answer_is_that_of_the_changed_machine(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text(DEMO)
     asked = ["motion", str(tmp_path / "m.yaml"), "-f", "json", "--set", "crank=500 mm", "--set", "speed=60 rpm"]
     found = json.loads(CliRunner().invoke(kurbel, asked).stdout)["cylinders"][0]["key_values"]
     # c_m = 2 s n
     assert next(one["value"] for one in found if one["id"] == "c_m") == pytest.approx(2 * 1.0 * 1)
-
-
-def test_without_a_file_there_is_nothing_to_set() -> None:
-    result = CliRunner().invoke(kurbel, ["accuracy", "--quick", "--set", "speed=1 rpm"])
-    assert (result.exit_code, "give the FILE" in result.stderr) == (2, True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from good_machines import ALL, DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
+from good_machines import DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import load, loads
 
@@ -70,44 +70,10 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
     assert load(path).name == "Tafel I"
 
 
-def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("angle; p\ndeg; bar\n360; 1\n540; 0,5\n720; 1\n")
-    path = tmp_path / "machine.yaml"
-    path.write_text(
-        "crank: 400 mm\nrod_ratio: 5\nbore: 90 mm\nindicator:\n  head_end:\n"
-        '    trace: {file: p.csv, unit: bar, delimiter: ";", decimal: comma, skip_rows: 2, angle_zero: 360 deg}\n'
-    )
-    trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert [*map(Path, trace.files)] == [tmp_path / "p.csv"]  # type: ignore[union-attr]
-    assert trace.angle_zero == 360  # type: ignore[union-attr]
-    assert trace.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
-    assert trace.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]
-
-
-def test_a_fault_of_a_flat_machine_has_no_cylinder_in_its_path() -> None:
-    with pytest.raises(MachineFileError, match=r":\d+:\d+: indicator.head_end: a four-stroke cycle needs"):
-        loads("cycle: four-stroke\n" + DEMO)
-
-
 def test_rules_of_parts_are_told_although_another_part_is_wrong() -> None:
     with pytest.raises(MachineFileError) as caught:
         loads("crank: 400 mm\nrod: 300 mm\nbore: 90 mm\nhead_end_rod: 95 mm\nflywheel: {}\n")
     assert [fault.path for fault in caught.value.faults] == [("rod",), ("head_end_rod",), ("flywheel",)]
-
-
-@pytest.mark.parametrize("text", ALL.values(), ids=ALL)
-def test_reading_twice_gives_the_same(text: str) -> None:
-    assert repr(loads(text)) == repr(loads(text))
-
-
-def test_ten_thousand_points_in_the_file_are_read_as_they_stand() -> None:
-    """What 1e5 of them take is in benchmarks/reading.py."""
-    points = [(index * 0.036, 100.0 + index % 7) for index in range(10_001)]
-    lines = "".join(f"    - [{angle:.3f}, {torque:.0f}]\n" for angle, torque in points)
-    effort = loads(f"effort:\n  unit: kN m\n  points:\n{lines}").effort
-    assert effort is not None
-    assert list(effort.angles) == [float(f"{angle:.3f}") for angle, _ in points]
-    assert list(effort.torques) == [1e3 * torque for _, torque in points]
 
 
 @pytest.mark.parametrize(

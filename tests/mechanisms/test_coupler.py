@@ -91,12 +91,6 @@ def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
         assert row == pytest.approx(expected(rocker_joint, "0.1", along, across, degrees), rel=1e-12, abs=1e-12)
 
 
-def test_one_end_of_the_rod_at_a_time() -> None:
-    text = "crank: 300 mm\nrod: 1300 mm\npoint: {from: rocker_pin, along: 1 mm}"
-    with pytest.raises(MachineFileError, match="the pins of a slider-crank are crank_pin and crosshead_pin"):
-        loads(text)
-
-
 @pytest.mark.parametrize("text", ["crank: 300 mm\nrod: infinite\n", "mechanism: scotch-yoke\ncrank: 300 mm\n"])
 def test_no_rod_no_point(text: str) -> None:
     with pytest.raises(MachineFileError, match="has no connecting rod"):

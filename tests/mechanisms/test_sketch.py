@@ -9,7 +9,6 @@ from test_every_mechanism import MACHINES
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Sketch
-from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from representative import law_of_each
 
@@ -27,11 +26,6 @@ def whole(mechanism: Mechanism) -> Sketch:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
     assert sketch is not None
     return sketch
-
-
-def test_every_mechanism_of_the_book_is_drawn() -> None:
-    assert {one.name for one in DRAWN.values()} == set(MECHANISMS)
-    assert set(MACHINES) == set(DRAWN)
 
 
 @law_of_each(DRAWN)

@@ -73,16 +73,3 @@ def test_example_34_a_sixth_of_the_acceleration_at_the_dead_centre():
 
 def test_example_35_a_sixth_as_deceleration():
     assert acceleration(90.0, 1 / 5) == pytest.approx(-acceleration(0.0, 1 / 5) / 6, rel=1e-15)
-
-
-def test_equation_25_is_the_derivative_of_22_and_26_that_of_25():
-    step = 1e-3
-    for degrees in (10.0, 100.0, 300.0):
-        ahead, behind = CrankAngle.of(degrees + step), CrankAngle.of(degrees - step)
-        at, width = CrankAngle.of(degrees), 2 * math.radians(step)
-        for whole, slope in (
-            (formulas.first_order_displacement, formulas.first_order_velocity),
-            (formulas.first_order_velocity, formulas.first_order_acceleration),
-        ):
-            change = whole(ahead.sin, ahead.cos, 0.3) - whole(behind.sin, behind.cos, 0.3)
-            assert change / width == pytest.approx(slope(at.sin, at.cos, 0.3), abs=1e-9)

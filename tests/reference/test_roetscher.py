@@ -10,7 +10,6 @@ from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.mechanisms.slotted_lever import SlottedLever
 from machines import largest_velocity
 
 
@@ -40,12 +39,6 @@ def test_mean_piston_speed():
     assert 1 / mean_over_pin == pytest.approx(1.5708, abs=5e-5)
 
 
-@pytest.mark.parametrize(("lam", "degrees"), [(1 / 5, 79.27236), (1 / 4, 77.01212)])
-def test_zero_of_the_first_order_acceleration(lam, degrees):
-    angle = CrankAngle.of(degrees)
-    assert formulas.first_order_acceleration(angle.sin, angle.cos, lam) == pytest.approx(0, abs=2e-7)
-
-
 @pytest.mark.parametrize("lam", [1 / 6, 1 / 5, 1 / 4])
 def test_acceleration_at_the_dead_centres_and_between(lam):
     """R 292 and 294 are exact; R 293, −λ at 90°, is exact with √(1 − λ²) below it."""
@@ -58,40 +51,9 @@ def test_acceleration_at_the_dead_centres_and_between(lam):
     assert formulas.first_order_acceleration(at_90.sin, at_90.cos, lam) == -lam
 
 
-def test_acceleration_at_the_dead_centre_against_the_infinite_rod():
-    """R p. 606: 1.20 times that of the infinite rod for L/R = 5."""
-    at = CrankAngle.of(0.0)
-    finite, infinite = SliderCrank(0.4, 2.0), SliderCrank(0.4, math.inf)
-    assert finite.curvature(at) / infinite.curvature(at) == pytest.approx(1.2, rel=1e-15)
-
-
-def test_dead_centres_and_stroke_of_the_straight_crank():
-    """R p. 603: the dead centres lie opposite each other and s = 2R."""
-    machine = SliderCrank(0.4, 2.0)
-    assert machine.dead_centres() == (0, 180)
-    assert machine.stroke == 0.8
-    assert machine.time_ratio == 1
-
-
 def test_scotch_yoke():
     """R p. 615: x = R(1 − cos φ), c = v sin φ, b = (v²/R) cos φ; R 287, 289, 295."""
     yoke, angle = ScotchYoke(0.4), CrankAngle.of(120.0)
     assert yoke.coordinate(angle) == pytest.approx(0.6, rel=1e-15)
     assert yoke.slope(angle) == pytest.approx(0.4 * math.sqrt(3) / 2, rel=1e-15)
     assert yoke.curvature(angle) == pytest.approx(-0.2, rel=1e-14)
-
-
-def test_slotted_lever_speeds():
-    """R 304, 305: c = v R_l/(e + r) with the pin at its highest, v R_l/(e − r) at its lowest place."""
-    r, e, lever = 0.1, 0.35, 0.6
-    machine = SlottedLever(r, e, lever)
-    assert machine.slope(CrankAngle.of(0.0)) == pytest.approx(r * lever / (e + r), rel=1e-15)
-    assert machine.slope(CrankAngle.of(180.0)) == pytest.approx(-r * lever / (e - r), rel=1e-15)
-
-
-def test_slotted_lever_mean_speeds():
-    """R p. 615: the mean speeds out and back are as β : α, 2α and 2β the angles of the crank."""
-    machine = SlottedLever(0.1, 0.35, 0.6)
-    beta = math.degrees(math.acos(0.1 / 0.35))
-    assert machine.phi_return == pytest.approx(2 * beta, rel=1e-15)
-    assert 1 / machine.time_ratio == pytest.approx(beta / (180 - beta), rel=1e-14)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from kurbel.machine import Machine
-from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from machines import single_acting
@@ -18,7 +17,6 @@ from random_cylinders import cylinders
 SAMPLES = 400
 Evaluate = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """A quantity at crank angles in degrees, on the sides of jumps that hold others."""
-NOWHERE = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
 
 
 def scanned(breaks: np.ndarray, evaluate: Evaluate) -> tuple[np.ndarray, np.ndarray]:
@@ -99,37 +97,3 @@ def test_no_angle_is_missing_in_random_cylinders() -> None:
     for forces in cylinders(10, 5):
         assert missing_reversals(forces) == 0
         assert missing_crossings(forces) == 0
-
-
-@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-10])
-def test_a_pair_of_zeros_is_found_wherever_it_stands(depth: float) -> None:
-    """cos(φ − φ₀) less nearly its summit, on pieces of 45°: closed, ± arccos(1 − depth) round φ₀."""
-    for share in np.linspace(0.02, 0.98, 13):
-        check_pair(45.0 * share, depth)
-
-
-def check_pair(summit: float, depth: float) -> None:
-    pieces = Pieces.between(NOWHERE, 1, 360.0)
-    found = pieces.zeros(depth - 2 * np.sin(np.radians(pieces.degrees - summit) / 2) ** 2).degrees
-    half = np.degrees(2 * np.arcsin(np.sqrt(depth / 2)))
-    assert sorted(np.mod([summit - half, summit + half], 360.0)) == pytest.approx(list(found), abs=1e-9)
-
-
-@pytest.mark.parametrize("below", [1e-2, 1e-4])
-def test_two_extremes_between_two_nodes_are_found(below: float) -> None:
-    """x³/3 − below² x turns round twice: its slope dips across zero and back, where all nodes see it rise."""
-    for share in np.linspace(0.02, 0.98, 25):
-        check_turns(45.0 * share, below)
-
-
-def check_turns(place: float, below: float) -> None:
-    pieces = Pieces.between(NOWHERE, 1, 360.0)
-    x = np.where(pieces.middle < 45, np.radians(pieces.degrees - place), np.radians(45.0 - place))
-    values = (x**2 / 3 - below**2) * x
-    ends = np.degrees([-below, below]) + place
-    inside = ends[(ends > 0) & (ends < 45)]
-    lowest, highest = pieces.ranges(values)
-    for end in inside:
-        height = (np.radians(end - place) ** 2 / 3 - below**2) * np.radians(end - place)
-        assert lowest[0] <= height + 1e-16
-        assert highest[0] >= height - 1e-16

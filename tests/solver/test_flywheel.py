@@ -7,17 +7,14 @@ import math
 import re
 from functools import cache
 from pathlib import Path
-from random import Random
 
 import pytest
 from click.testing import CliRunner, Result
 
 from kurbel.cli import kurbel
-from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
-from representative import few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -119,54 +116,8 @@ def test_a_speed_that_falls_to_zero_between_two_nodes_is_a_stall() -> None:
     assert run(advised(LIGHT, answer.stderr)).exit_code == 0
 
 
-def random_light_machine(random: Random) -> str:
-    """A steam engine with a light flywheel, an exact rod, and a load that may hang on the speed."""
-    crank = 10 ** random.uniform(-1, 0)
-    rod = crank * random.choice([1.1, 1.4, 3.0, 5.0])
-    cards = [
-        f"{{steam: {{admission: {high:.4g} bar, exhaust: {high * random.uniform(0.05, 0.6):.4g} bar, "
-        f"cut_off: {random.uniform(0.05, 0.75):.3g}, clearance: {random.uniform(0.02, 0.3):.3g}, "
-        f"compression: {random.uniform(0.02, 0.4):.3g}}}}}"
-        for high in (10 ** random.uniform(-0.5, 1) for _ in range(2))
-    ]
-    mass = crank**2 * 10 ** random.uniform(1, 3)
-    exact = f", center_of_gravity: {rod / 3:.4g} m, inertia: {mass * rod**2 * random.uniform(0.05, 0.2):.4g} kg m2"
-    slip, power = 10 ** random.uniform(-4, 0), random.choice([-3, -1, -0.5, 0.5, 1, 2, 10])
-    loads = ["", f"load: {{slip: {slip:.4g}}}", f"load: {{power_law: {power}}}"]
-    lines = [
-        f"speed: {10 ** random.uniform(-0.3, 1.5):.4g} 1/s",
-        f"crank: {crank:.4g} m",
-        f"rod: {rod:.4g} m",
-        f"bore: {crank * random.uniform(0.4, 1.6):.4g} m",
-        f"flywheel: {{inertia: {10 ** random.uniform(-3, 3):.4g} kg m2}}",
-        f"indicator: {{head_end: {cards[0]}, crank_end: {cards[1]}}}",
-        f"masses: {{piston: {mass:.4g} kg, connecting_rod: {{mass: {mass:.4g} kg{random.choice(['', exact])}}}}}",
-        random.choice(loads),
-    ]
-    if random.random() < 0.2:
-        lines.append("coupling: {stiffness: 1e5 N m/rad, inertia: 10 kg m2, damping: 100 N m s/rad}")
-    return "\n".join(lines) + "\n"
-
-
-@pytest.mark.parametrize("seed", few(range(25), range(3)))
-def test_a_light_machine_turns_or_stalls_with_advice_that_holds(seed: int) -> None:
-    text = random_light_machine(Random(seed))
-    answer = run(text, "--step", "90")
-    if answer.exit_code == 3:
-        assert "resonance" in answer.stderr or "it turns with a flywheel" in answer.stderr
-        answer = run(advised(text, answer.stderr), "--step", "90")
-    assert answer.exit_code == 0
-
-
 def warnings(text: str) -> str:
     return " ".join(results(text)["machine_warnings"])
-
-
-def test_means_that_differ_are_told() -> None:
-    uneven = PUNCH.replace("[360, 120]", "[360, 140]")
-    assert "mean effort 130 N m and mean resistance 120 N m differ" in warnings(uneven)
-    assert warnings(PUNCH) == ""
-    assert values(uneven)["dE"] == pytest.approx(values(PUNCH)["dE"], rel=0.1)
 
 
 def test_a_resonance_is_told() -> None:
@@ -178,44 +129,6 @@ def test_a_resonance_is_told() -> None:
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
     assert run(tuned).exit_code == 3
-
-
-MIXED = """
-cycle: four-stroke
-speed: 100 rpm
-cylinders:
-  - {crank: 100 mm, rod: 500 mm, masses: {piston: 5 kg}}
-  - {crank: 100 mm, rod: 500 mm, cycle: two-stroke, bore: 100 mm,
-     indicator: {head_end: {constant: {expansion: -0.4 at, compression: 5 at}}}}
-"""
-
-
-def test_a_cylinder_has_a_cycle_of_its_own() -> None:
-    """A pump beside a four-stroke engine: both of its turns are alike, and its card is held against its own cycle."""
-    case = Case(loads(MIXED))
-    assert [cylinder.drive.cycle for cylinder in case.cylinders] == [720, 360]
-    assert case.flywheel.effort.cycle == 720
-    assert case.flywheel.work_shaft == pytest.approx(2 * case.cylinders[1].work, rel=1e-12)
-    with pytest.raises(MachineFileError, match=r"cylinders\[1\]\.indicator\.head_end: a four-stroke cycle needs"):
-        loads(MIXED.replace("two-stroke", "four-stroke"))
-
-
-TWO = (CONFIGS / "waterworks-two-cranks.yaml").read_text(encoding="utf-8")
-
-
-def entries(text: str, title: str) -> list[tuple[str, str]]:
-    sections = {section.title: section.entries for section in checked(Case(loads(text))).sections}
-    return [(entry.what, entry.text) for entry in sections[title]]
-
-
-def test_a_limit_on_T_is_for_every_cylinder_or_for_the_whole_machine() -> None:
-    kept = entries(TWO + "limits: {T_max: 1 MN, machine.W: 1 MN, M_min: -1000 kN m}\n", "Limits")
-    cylinders = [cylinder.name for cylinder in loads(TWO).cylinders]
-    where = [(what, text.rpartition("(")[2].rstrip(")")) for what, text in kept]
-    whole = "whole machine"
-    assert where == [*(("T_max", name) for name in cylinders), ("machine.W", whole), ("M_min", whole)]
-    alone = entries(ENGINE + "limits: {T_max: 1 MN, M_max: 1000 kN m}\n", "Limits")
-    assert [what for what, _ in alone] == ["T_max", "M_max"]
 
 
 def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
@@ -233,18 +146,3 @@ def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None
     assert values(text.replace("fluctuation: 0.1", f"inertia: {exact!r} kg m2"))["delta"] == pytest.approx(0.1)
     both = values(text.replace("fluctuation", "inertia: 9000 kg m2, fluctuation"))
     assert both["J_exact"] == pytest.approx(exact, rel=1e-12)
-
-
-def test_an_effort_beyond_all_speeds_needs_a_flywheel_beyond_all_wheels() -> None:
-    text = "{speed: 60 rpm, effort: {unit: N m, mean: 300, harmonics: [[5, 1e18, 0]]}, flywheel: {inertia: 3 kg m2}}"
-    result = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text)
-    assert result.exit_code == 3
-    stops = float(result.stderr.partition("the machine stops near φ = ")[2].partition("°")[0])
-    assert stops % 72 == 54  # any of the five troughs of the speed, which are alike
-    enough = float(result.stderr.partition("it turns with a flywheel from J = ")[2].partition(" kg m^2")[0])
-    for share, slowest in (
-        (1.0, True),
-        (0.97, False),
-    ):  # with less the speed falls below a hundredth of the nominal one
-        result = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text.replace("3 kg m2", f"{share * enough} kg m2"))
-        assert (result.exit_code == 0) == slowest

@@ -9,16 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.machine import Cylinder, Machine
-from kurbel.machine.indicator import Card, Constant, Indicator
+from kurbel.machine.indicator import Card, Indicator
 from kurbel.machine.parts import Friction, Masses, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from machines import STEAM_CARD, one_cylinder
-from representative import few
 
 pressures = st.floats(-0.9, 30, allow_nan=False).map(lambda p: round(p, 3))
 
@@ -144,56 +140,3 @@ def test_a_vertical_jump_inside_the_stroke_stands_at_its_exact_angle() -> None:
     assert found
     assert found.largest.degrees == pytest.approx(angle, abs=1e-11)
     assert forces.work == pytest.approx((0.3 * 8e5 + 0.7 * 2e5) * 0.8 * Piston(0.2).head_area, rel=1e-15)
-
-
-STEEP = [(width, z, mirrored) for mirrored in (False, True) for z in (0.3, 0.37, 0.9) for width in (1e-3, 1e-6, 1e-8)]
-
-
-@pytest.mark.parametrize(("width", "z", "mirrored"), few(STEEP, STEEP[::2]))
-def test_extremes_at_corners_of_steep_lines_are_those_of_the_card(width: float, z: float, mirrored: bool) -> None:
-    """The summit of the card is 9 bar, its hollow −0.7 bar, however steep the lines that lead there."""
-    card = Card.from_keys(
-        unit=(1e5, 1),
-        expansion=[(0, 3), (z, 3), (z + width, 9), (z + 2 * width, 2), (1, 2)],
-        compression=[(1, 0.5), (z, 0.5), (z - width, -0.7), (z - 2 * width, 0.5), (0, 0.5)],
-    )
-    piston = Piston(0.2, indicator=Indicator(None if mirrored else card, card if mirrored else None))
-    own = Cylinder(SliderCrank(0.4, 2.0), pistons=(piston,), crank_position=77.7)
-    case = Case(Machine((own,), speed=1.0))
-    found = case.cylinders[0].extremes_of("P")
-    assert found
-    sides = sorted((found.largest.value, found.smallest.value), key=abs)
-    assert np.abs(sides) == pytest.approx([0.7e5 * piston.head_area, 9e5 * piston.head_area], rel=4e-16)
-    # the turning effort takes the corner at a shifted angle: there T is P at the corner times dx/dφ
-    largest = max((case.flywheel.M_max, case.flywheel.M_min), key=lambda extreme: abs(extreme.value))
-    slope = SliderCrank(0.4, 2.0).slope(CrankAngle.of(largest.degrees - 77.7))
-    assert largest.value == pytest.approx(sides[1] * slope, rel=1e-14)
-
-
-def test_speed_zero_has_no_inertia_but_exact_zeros() -> None:
-    forces = one_cylinder(SliderCrank(0.4, 2.0), 0, masses=Masses(100))
-    state = forces.at([0, 33, 180])
-    assert (state.P_inertia == 0).all()
-    assert (state.c == 0).all()
-    assert forces.power is None
-
-
-@pytest.mark.parametrize("scale", [1e-300, 1e-150, 1e150, 1e300])
-def test_lengths_of_any_size(scale: float) -> None:
-    card = Constant.from_keys(expansion=1.0, compression=0.0)
-    bore = 1e-3 if scale > 1 else 1e3
-    small = one_cylinder(SliderCrank(0.4, 2.0), pistons=(Piston(bore, indicator=Indicator(card)),)).at([10, 100, 250])
-    large = one_cylinder(SliderCrank(0.4 * scale, 2.0 * scale), pistons=(Piston(bore, indicator=Indicator(card)),))
-    state = large.at([10, 100, 250])
-    assert pytest.approx(small.T, rel=4e-15) == state.T
-    assert state.x / scale == pytest.approx(small.x, rel=4e-15)
-
-
-def test_mirrored_card_turns_the_force_by_half_a_turn_for_the_infinite_rod() -> None:
-    forces = one_cylinder(
-        SliderCrank(0.4, math.inf), pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD, STEAM_CARD)),)
-    )
-    degrees = np.arange(5.0, 180.0, 10.0)
-    out, back = forces.at(degrees), forces.at(degrees + 180)
-    assert list(out.P) == pytest.approx(list(-back.P), rel=1e-14)
-    assert not out.N.any()

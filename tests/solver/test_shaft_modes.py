@@ -67,14 +67,6 @@ def test_frequencies_with_all_their_digits(count: int, spread: float, ground: st
         assert (found[0] == 0) == (not ground)
 
 
-def test_why_not_eigh() -> None:
-    chain = at_random(20, 5, "", 1)
-    stiff = chain.twists.T @ np.diag(chain.stiffnesses) @ chain.twists
-    roots = np.sqrt(chain.inertias)
-    plain = np.linalg.eigvalsh(stiff / roots / roots[:, None])
-    assert abs(math.sqrt(abs(plain[1])) / Modes(chain).omegas[1] - 1) > 1e-6
-
-
 HELD = [(*size, ground) for size in ((2, 0), (9, 1), (30, 0), (30, 3)) for ground in ("", "before", "after")]
 
 
@@ -111,8 +103,3 @@ def test_equal_chains_in_closed_form() -> None:
     count = 25
     exact = [2 * math.sqrt(300.0 / 3) * math.sin(i * math.pi / (2 * count)) for i in range(count)]
     assert Modes(undamped([3.0] * count, [300.0] * (count - 1))).omegas == pytest.approx(exact, rel=1e-14)
-
-
-def test_read_from_the_other_end_it_is_the_same() -> None:
-    chain = at_random(11, 2, "after", 5)
-    assert Modes(chain.reversed()).omegas == pytest.approx(Modes(chain).omegas, rel=1e-14)

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from batches import batch
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -130,11 +129,6 @@ class TestDeadCentre:
         assert [one.combined for one in running.at_dead_centre] == [one.combined for one in at_rest.at_dead_centre]
         assert running.at([0]).sigma_pin[0] < at_rest.at([0]).sigma_pin[0]
 
-    def test_is_the_running_machine_where_nothing_relieves(self) -> None:
-        solved = strength(shaft(**HEAVY), inclination=0.0)
-        for part in PARTS:
-            assert solved.sigma_dc(part) == pytest.approx(getattr(solved.at([0]), f"sigma_{part}")[0], rel=1e-13)
-
     def test_offset_crank(self) -> None:
         """In the dead centre crank and rod are in one line: the pin carries P/cos ψ, all of it radial."""
         mechanism = SliderCrank(0.3, 1.5, offset=0.1)
@@ -164,14 +158,6 @@ class TestBearings:
         mean_A = solved.pressure_mean("journal_A")
         assert mean_A == pytest.approx(pressure * 0.18 * 0.2 * 0.42 / 0.82 / (0.19 * 0.3), rel=1e-14)
 
-    def test_what_is_not_given_is_not_told(self) -> None:
-        solved = strength(shaft(journal_diameter=None))
-        assert (solved.sigma_max("journal_A"), solved.mises_max("journal_B")) == (None, None)
-        assert solved.pressure_max("journal_A") is None
-        assert solved.pressure_velocity("pin") is None
-        assert solved.safety("pin") is None
-        assert solved.at([0.0]).sigma_journal_A is None
-
 
 def test_safety_counts_dead_centre_and_cycle() -> None:
     solved = strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY, allowable_bending=60e6)})
@@ -190,18 +176,6 @@ def test_allowable_ratio_weighs_torsion_of_the_webs() -> None:
         assert other._replace(alpha=one.alpha) == one
         twisted_web = one.part.startswith("web") and one.torsion is not None
         assert (other.combined > one.combined) if twisted_web else (other.combined == one.combined)
-
-
-def test_many_shafts_have_what_each_has_alone() -> None:
-    alone = [
-        strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY | {"a": a, "allowable_bending": 60e6}), "rpm": rpm})
-        for a, rpm in ((0.4, 200), (0.45, 120), (0.38, 300))
-    ]
-    together = Case(batch([one.machine for one in alone]), len(alone)).stress.key_values()
-    for number, one in enumerate(alone):
-        for id, figure in one.key_values().items():
-            value = np.broadcast_to(together[id].value, len(alone))[number]
-            assert value == pytest.approx(figure.value, rel=1e-12, abs=1e-14), id
 
 
 @pytest.mark.parametrize(

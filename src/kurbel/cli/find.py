@@ -39,6 +39,7 @@ _DIGITS = 7
 @click.option("--least", metavar="ID", help="Where this key value is least, within the limits of FILE.")
 @click.option("--greatest", metavar="ID", help="Where this key value is greatest, within the limits of FILE.")
 @click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
+@click.option("--plot", is_flag=True, help="Draw the key value over the key, in the terminal or with -o to a file.")
 @click.option("--write", is_flag=True, help="Print FILE with the values found in it, and nothing else.")
 @click.option("--take", type=click.IntRange(1), metavar="N", help="With --write, the solution of this number.")
 @units_option
@@ -56,6 +57,7 @@ def find(
     least: str | None,
     greatest: str | None,
     conditions: tuple[str, ...],
+    plot: bool,
     write: bool,
     take: int | None,
     units: str | None,
@@ -72,7 +74,8 @@ def find(
     """
     from kurbel.designs.find import find as found_in
     from kurbel.machine_file import source
-    from kurbel.render.findings import as_json, as_rows, heads, remarks
+    from kurbel.render.drawing import check_file, draw
+    from kurbel.render.findings import as_json, as_rows, heads, picture, remarks
     from kurbel.render.output import refuse_overwriting, write_out
     from kurbel.render.sweep_rows import Titles, write_rows
 
@@ -80,7 +83,13 @@ def find(
         raise click.UsageError(f"--write prints FILE; leave {'--case' if case_name else '--format'} out.")
     if take and not write:
         raise click.UsageError("--take chooses the solution for --write; give --write too.")
-    written = "table" if write else format_of(format, file_name, _SUFFIXES)
+    if plot and (write or format):
+        raise click.UsageError(f"--plot draws; leave {'--write' if write else '--format'} out.")
+    if plot and len(vary) > 1:
+        raise click.UsageError("--plot draws a key value over one key, and two are varied.")
+    if plot and file_name:
+        check_file(file_name)
+    written = "table" if write or plot else format_of(format, file_name, _SUFFIXES)
     if decimal == "comma" and written == "json":
         raise click.UsageError("--decimal comma: JSON has the decimal point only.")
     refuse_overwriting(file_name, (file,))
@@ -90,7 +99,9 @@ def find(
         write_out([_with_values(origin, found, _taken(found, take))], file_name, "utf-8")
         return
     system = units or ("si" if written in ("csv", "json") else "metric")
-    if written == "json":
+    if plot:
+        draw([picture(found, system)], Look(comma=decimal == "comma", digits=digits), file_name)
+    elif written == "json":
         write_out(
             [json.dumps(as_json(found), ensure_ascii=False, allow_nan=False, indent=1) + "\n"], file_name, "utf-8"
         )
