@@ -390,7 +390,7 @@ class Coupling(Record):
 def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
     """Return what is wrong with the angles of a diagram over one cycle.
 
-    They run from 0 to the end of a turn and do not turn back; two points at one angle are a jump, three are one too many.
+    They run from 0 to the end of a turn and do not turn back; two points at one angle are a jump, three one too many.
     """
     for i, (angle, _) in enumerate(points):
         if not 0 <= angle <= 360 * MOST_TURNS:

@@ -154,6 +154,22 @@ class Holzer(NamedTuple):
     residual: float
 
 
+def holzer_at(chain: Chain, omega: float) -> Holzer:
+    """Return Holzer's table at any angular frequency in rad/s, from the first mass on.
+
+    residual: the torque left behind the last mass in N m, or at a fixed end behind it the angle left in rad, both per
+    radian of the first mass: at a natural frequency it is zero.
+    """
+    first, last = chain.held
+    angles, torque, torques = [1.0], -chain.stiffnesses[0] if first else 0.0, []
+    for inertia, stiffness in zip(chain.inertias, [*chain.stiffnesses[int(first) :], np.inf]):
+        torque = torque + omega**2 * inertia * angles[-1]
+        torques.append(torque)
+        angles.append(angles[-1] - torque / stiffness)
+    held, far = [-chain.stiffnesses[0]] if first else [], angles.pop()
+    return Holzer(np.array(angles), np.array([*held, *torques][: len(chain.stiffnesses)]), far if last else torque)
+
+
 class Modes:
     """The natural vibrations of a chain, the lowest first; of a free one the first is the rotation of the whole.
 
