@@ -26,7 +26,7 @@ POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
 
 def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
     draw = np.random.default_rng(seed)
-    pieces = count if ground else count - 1
+    pieces = count - 1 + {"": 0, "both": 2}.get(ground, 1)
     return Chain(
         10 ** draw.uniform(-1, 1, count),
         10 ** draw.uniform(3, 5, pieces),
@@ -37,7 +37,7 @@ def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
     )
 
 
-@pytest.mark.parametrize("ground", ["", "before", "after"])
+@pytest.mark.parametrize("ground", ["", "before", "after", "both"])
 @pytest.mark.parametrize("count", [1, 2, 5, 12])
 def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     """(K (1 + iη) + iνω C − (νω)² J) θ = M, with 40 digits by mpmath."""
@@ -208,3 +208,22 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     mean = mpmath.quad(lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]) / (2 * mpmath.pi)
     each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
     assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
+
+
+def test_a_shaft_held_at_both_ends() -> None:
+    """A mean torque goes to both ends as their stiffness, k₁/(k₁ + k₂); one mass swings by M/(k₁ + k₂ − J Ω²)."""
+    parts = [
+        "ground",
+        ShaftPart(stiffness=3e4),
+        ShaftPart(inertia=2.0, damping=1e-9),
+        ShaftPart(stiffness=1e4),
+        "ground",
+    ]
+    effort, omega = Harmonics(80.0, ((2.0, 0.0, 12.0),)), 2 * 2 * math.pi * 5
+    found = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
+    swing = 12 / (4e4 - 2 * omega**2)
+    before, after = found.pieces
+    assert (before.name, after.name) == ("ground – mass 1", "mass 1 – ground")
+    assert (before.M_shaft_mean, after.M_shaft_mean) == pytest.approx((-60, 20))
+    assert (before.M_vibratory, after.M_vibratory) == pytest.approx((3e4 * swing, 1e4 * swing), rel=1e-9)
+    assert found.natural_frequency == pytest.approx(math.sqrt(4e4 / 2) / (2 * math.pi), rel=1e-14)

@@ -81,7 +81,7 @@ class KnownEffort(Record):
             "mean", level, f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own"
         )
         bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
-        yield Rule("mean", bare, f"{given.get('mean')} has no unit; write it with one, such as '500 N m'")
+        yield Rule("mean", bare, f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'")
         if "harmonics" in given:
             lacking = next((name for name in ("unit", "mean") if name not in given), "")
             yield Rule("harmonics", bool(lacking), f"'harmonics' needs '{lacking}' beside it")
