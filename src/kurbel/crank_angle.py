@@ -52,12 +52,14 @@ class CrankAngle(NamedTuple):
     @property
     def versine(self) -> Any:
         """1 − cos φ, without cancellation near φ = 0."""
-        return where(self.cos >= 0, self.sin * self.sin / (1 + abs(self.cos)), 1 + abs(self.cos))
+        beyond = 1 + abs(self.cos)
+        return where(self.cos >= 0, self.sin * self.sin / beyond, beyond)
 
     @property
     def vercosine(self) -> Any:
         """1 + cos φ, without cancellation near φ = 180°."""
-        return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
+        beyond = 1 + abs(self.cos)
+        return where(self.cos >= 0, beyond, self.sin * self.sin / beyond)
 
 
 def unit_vector(degrees: Any) -> Any:
@@ -84,4 +86,8 @@ def _sin_cos(right_angle: Array, offset: Array) -> tuple[Array, Array]:
     quarter = (right_angle / 90.0).astype(int) % 4
     swapped = quarter % 2 == 1
     sin, cos = np.where(swapped, cos, sin), np.where(swapped, sin, cos)
-    return sin * np.where(quarter < 2, 1.0, -1.0) + 0.0, cos * np.where((quarter + 1) % 4 < 2, 1.0, -1.0) + 0.0
+    sin *= np.where(quarter < 2, 1.0, -1.0)
+    cos *= np.where((quarter + 1) % 4 < 2, 1.0, -1.0)
+    sin += 0.0  # turns −0.0 into 0.0
+    cos += 0.0
+    return sin, cos

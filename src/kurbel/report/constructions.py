@@ -120,16 +120,12 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
         _curve("member", 0j, pin, head),
         _curve("faint", pin + around, pin + share * along),
         _curve("faint", head - c, head + share * along),
-        *(_curve("arrow", *ends) for ends in ((pin, pin + around), (pin, pin + share * along))),
-        *(_curve("arrow", *ends) for ends in ((head, head + share * along), (head, head - c))),
+        *(_curve("arrow", pin, pin + one) for one in (around, share * along)),
+        *(_curve("arrow", head, head + one) for one in (share * along, -c)),
         _curve("joint", 0j, pin, head),
     )
-    marks = (
-        _mark("v", pin + around, abs(around)),
-        _mark("v_s", pin + share * along, share),
-        _mark("c", head - c, c),
-    )
-    return _panel("velocity", curves, marks)
+    at_pin = _mark("v", pin + around, abs(around)), _mark("v_s", pin + share * along, share)
+    return _panel("velocity", curves, (*at_pin, _mark("c", head - c, c)))
 
 
 def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
@@ -141,10 +137,9 @@ def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, 
     foot = complex(sin, cos) * (pin.real * sin + pin.imag * cos)
     x, c = source.samples(("x", "c")).values
     over = complex(v - omega * float(mechanism.coordinate(angle)), cut.imag)
-    circle, true = v * _AROUND, Curve(Words("c"), v - omega * x, c, look=0)
     curves = (
-        true,
-        _curve("line", *circle, name=Words("c, L/R = ∞", "c, L/R = inf"), look=1),
+        Curve(Words("c"), v - omega * x, c, look=0),
+        _curve("line", *(v * _AROUND), name=Words("c, L/R = ∞", "c, L/R = inf"), look=1),
         _curve("faint", -1.1 * v + 0j, 1.1 * v + 0j),
         _curve("faint", -1.1j * v, 1.1j * v),
         _curve("member", 0j, pin),
@@ -168,6 +163,7 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     cut = pivot + (under - pivot) * ((foot - pivot) / (pin - pivot)).real
     x, c = source.samples(("x", "c")).values
     line = pivot.real + length
+    ram = complex(line, end.imag)
     curves = (
         _curve("faint", *(mechanism.crank * omega * _AROUND)),
         _curve("faint", *(pivot / 2 * (1 + _AROUND))),
@@ -178,14 +174,13 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
         _curve("member", pivot, end),
         _curve("faint", end, under, pin),
         _curve("faint", 0j, foot, cut),
-        _curve("faint", end, complex(line, end.imag)),
+        _curve("faint", end, ram),
         _curve("line", under, cut, look=2),
-        _curve("arrow", complex(line, end.imag), complex(line, end.imag) + (under - cut)),
+        _curve("arrow", ram, ram + under - cut),
         _curve("joint", 0j, pin, end, pivot),
     )
-    value = (under - cut).real
     places = {"C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut}
-    marks = *(_mark(name, place) for name, place in places.items()), _mark("c", line + 1j * end.imag + value, value)
+    marks = *(_mark(name, place) for name, place in places.items()), _mark("c", ram + under - cut, (under - cut).real)
     return _panel("velocity", curves, marks)
 
 

@@ -290,15 +290,13 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     lossy = bool(effort.machine.efficiency != 1)
     if effort.given is not None or not source.having("T") or len(acting) > _MOST_CRANKS or len(acting) + lossy < 2:
         return
-    whole = [Term(1.0, group) for group in effort.groups]
-    each = [[Term(1.0, [one])] for one in acting] if len(acting) > 1 else []
-    lines = [effort.sampled(whole), *([effort.M] if lossy else []), *map(effort.sampled, each)]
-    names = [source.words("T"), *([Words("T with η", "T with eta")] if lossy else [])]
-    names += [Words(one.drive.name[:_LONGEST_NAME]) for one in acting] if each else []
-    looks = [0, *([1] if lossy else []), *range(2, 2 + len(each))]
-    samples = _efforts(source, lines)
-    x, *lines = samples.values
-    curves = [samples.curve(name, x, line)._replace(look=look) for name, line, look in zip(names, lines, looks)]
+    lines = [(source.words("T"), 0, effort.sampled([Term(1.0, group) for group in effort.groups]))]
+    lines += [(Words("T with η", "T with eta"), 1, effort.M)] if lossy else []
+    for number, one in enumerate(acting if len(acting) > 1 else ()):
+        lines.append((Words(one.drive.name[:_LONGEST_NAME]), 2 + number, effort.sampled([Term(1.0, [one])])))
+    samples = _efforts(source, [torque for *_, torque in lines])
+    x, *found = samples.values
+    curves = [samples.curve(name, x, y)._replace(look=look) for (name, look, _), y in zip(lines, found)]
     mean = level(x, float(effort.mean[0]) / crank, Words("W"))
     yield Panel(source.axis(PHI), source.axis("T"), (*curves, mean), marks=source.marks("T", lambda angle: angle))
 

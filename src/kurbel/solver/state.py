@@ -106,7 +106,8 @@ class State(MotionColumns):
     @property
     def unrubbed(self) -> State:
         """The state without friction in pins and journals: its loads are those that this friction is computed from."""
-        return State(self.drive, self.angle, self.within, rubs=False) if self.rubs else self
+        friction = self.rubs and self.drive.pin_friction
+        return State(self.drive, self.angle, self.within, rubs=False) if friction else self
 
     @property
     def rows(self) -> Mapping[str, Row]:

@@ -101,16 +101,16 @@ class Reading:
         total = float(terms.sum())
         return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
 
-    def then(self, corrected: float) -> str:
-        """Return p_i as corrected, in Pa, and as it is."""
-        now, then = in_bar(self.p_i()), in_bar(corrected)
+    def then(self, after: Array | None = None, pressures: Array | None = None, times: float = 1.0) -> str:
+        """Return p_i of other angles, or other pressures, or multiplied, and as it is."""
+        now, then = in_bar(self.p_i()), in_bar(times * self.p_i(after, pressures))
         return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"
 
     def put_later(self, degrees: float) -> tuple[str, str]:
         """Return the key that puts the dead centre so many degrees later, and what it does to p_i."""
         zero, period = self.trace.as_written(self.trace.angle_zero + degrees), self.trace.period
         shown = round((zero + 180) % period - 180, 3)
-        return f"'angle_zero: {shown:g} deg'", self.then(self.p_i(self.after - degrees))
+        return f"'angle_zero: {shown:g} deg'", self.then(self.after - degrees)
 
 
 def in_bar(pressure: float) -> str:
@@ -172,15 +172,14 @@ def _turns_in_pairs(reading: Reading) -> str:
     peaks = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
         return (
-            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
-            f"{in_bar(2 * reading.p_i())} instead of {in_bar(reading.p_i())}"
+            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {reading.then(times=2.0)}"
         )
     joined = joined_in_pairs(trace.samples).mean(axis=0)
     step = trace.period / (len(joined) - 1)
     after = reading.after[0] - trace.angles[0] + step * np.arange(len(joined))
     return (
         f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
-        f"{reading.then(reading.p_i(after, joined))}"
+        f"{reading.then(after, joined)}"
     )
 
 
@@ -214,7 +213,7 @@ def _rounded_angles(reading: Reading) -> str:
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
     even = reading.after[0] + reading.step * np.arange(len(trace.angles))
-    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(reading.p_i(even))}"
+    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(even)}"
 
 
 def _drift(reading: Reading) -> str:
@@ -238,14 +237,14 @@ def _drift(reading: Reading) -> str:
         return (
             f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} "
             f"and comes back to it just before: leave that sample out; "
-            f"{reading.then(reading.p_i(pressures=np.append(p[:-1], p[0])))}"
+            f"{reading.then(pressures=np.append(p[:-1], p[0]))}"
         )
-    levelled = reading.p_i(pressures=without_drift(trace, p[np.newaxis])[0])
-    if abs(levelled - reading.p_i()) <= _WORTH_IT * abs(reading.p_i()):
+    (levelled,) = without_drift(trace, p[np.newaxis])
+    if abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
         return ""
     return (
         f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
-        f"'drift: linear'; {reading.then(levelled)}"
+        f"'drift: linear'; {reading.then(pressures=levelled)}"
     )
 
 
@@ -277,7 +276,7 @@ def _inverted(reading: Reading) -> str:
         return ""
     return (
         f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: is it inverted? write "
-        f"'scale: {-reading.trace.scale:g}'; {reading.then(-reading.p_i())}"
+        f"'scale: {-reading.trace.scale:g}'; {reading.then(times=-1.0)}"
     )
 
 
@@ -310,7 +309,7 @@ def _unit(reading: Reading) -> str:
     scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (
         f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'"
-        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(factor * reading.p_i())}"
+        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(times=factor)}"
     )
 
 
@@ -360,12 +359,12 @@ def _backward(reading: Reading) -> str:
     early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step and reading.usual[0] <= -peak_at <= reading.usual[1]
     if not judged or not early or reading.motored or reading.p_i() >= 0:
         return ""
-    turned = reading.p_i(-reading.after[::-1], reading.p[::-1])
-    if turned <= 0:
+    turned = -reading.after[::-1], reading.p[::-1]
+    if reading.p_i(*turned) <= 0:
         return ""
     return (
         f"the peak is {-peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
-        f"count against the rotation? write 'angle_sense: against'; {reading.then(turned)}"
+        f"count against the rotation? write 'angle_sense: against'; {reading.then(*turned)}"
     )
 
 

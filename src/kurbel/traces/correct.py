@@ -25,6 +25,11 @@ _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
 
 
+def period_of(span: float) -> float:
+    """Return 360 or 720, the shortest cycle that angles over so many degrees fit into; 0 if neither."""
+    return next((period for period in PERIODS if span <= period * (1 + _ROUNDING)), 0.0)
+
+
 @dataclass(frozen=True)
 class KnownLevel:
     """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
@@ -88,7 +93,8 @@ class Trace(Indivisible):
     def period(self) -> float:
         """360 or 720; 0 where the angles cover neither."""
         span = float(self.angles[-1] - self.angles[0])
-        return next((period for period in PERIODS if abs(span - period) <= _ROUNDING * period), 0.0)
+        period = period_of(span)
+        return period if span >= period * (1 - _ROUNDING) else 0.0
 
     @property
     def even(self) -> bool:

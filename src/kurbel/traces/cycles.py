@@ -14,7 +14,7 @@ from kurbel.arrays import Array, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError
-from kurbel.traces.correct import PERIODS
+from kurbel.traces.correct import PERIODS, period_of
 from kurbel.traces.read import LIMITS, Layout, read_table
 
 
@@ -162,7 +162,7 @@ def _laid_over_one_lap(recording: Recording) -> tuple[Recording, list[str]]:
     and the next but one: it may count samples.
     """
     begins_anew = bool((np.diff(recording.angles) < 0).any())
-    if not begins_anew and np.ptp(recording.angles) <= PERIODS[-1] * (1 + 1e-9):
+    if not begins_anew and period_of(float(np.ptp(recording.angles))):
         return recording, []
     recording, lap = _counting_on(recording) if begins_anew else (recording, PERIODS[0])
     angles, values = recording.angles, recording.values
@@ -201,7 +201,7 @@ def _counting_on(recording: Recording) -> tuple[Recording, float]:
     A closing sample gives way to the first of the next lap. Raises RuleError for more than two turns.
     """
     span, steps = float(np.ptp(recording.angles)), np.diff(recording.angles)
-    lap = next((period for period in PERIODS if span <= period * (1 + 1e-9)), 0.0)
+    lap = period_of(span)
     if not lap:
         back = int(np.flatnonzero(steps < 0)[0])
         message = (
@@ -244,7 +244,7 @@ def _closed(recording: Recording) -> Samples:
     """Close the cycle with the first sample where only the last one is missing; raises RuleError for large holes."""
     angles, values, *_ = recording
     span = float(np.ptp(angles))
-    period = next((p for p in PERIODS if span <= p * (1 + 1e-9)), 0.0)
+    period = period_of(span)
     if not period:
         recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
     if len(angles) > MOST_POINTS:
