@@ -52,7 +52,7 @@ class KnownEffort(Record):
     angle_zero = alternative(
         "angle", "Angle of the firing or inner dead centre as the file counts", absent="0 deg", needs="file"
     )
-    mean = alternative(MEAN_TORQUE, "Mean torque, beside harmonics in their unit", "M_m")
+    mean = alternative(MEAN_TORQUE, "Mean torque with its unit, or bare in that of the harmonics", "M_m")
     harmonics = alternative(
         HARMONICS,
         "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",

@@ -300,10 +300,14 @@ class _MeanTorque(OneOf):
         super().__init__(Number("torque"), Number("ratio"))
         self.number = None
 
+    def kind_as_written(self, text: Any) -> str:
+        """Return `ratio` of a bare number, else `torque`."""
+        return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
+
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read it as what it looks like."""
-        bare = isinstance(value, str) and NUMBER.fullmatch(plain(value))
-        found = self.forms[1 if bare else 0].read(reading, value, path)
+        bare = self.kind_as_written(value) == "ratio"
+        found = self.forms[bare].read(reading, value, path)
         return InUnit(found) if bare and isinstance(found, float) else found
 
 
