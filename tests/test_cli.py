@@ -25,7 +25,7 @@ def process(
     }
     return subprocess.run(
         [sys.executable, "-m", "kurbel", *arguments],
-        stdout=stdout,  # type: ignore[call-overload]
+        stdout=stdout,
         stderr=subprocess.PIPE,
         env=kept | {"PYTHONIOENCODING": "utf-8"} | environment,
         check=False,

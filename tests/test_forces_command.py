@@ -16,7 +16,7 @@ WATERWORKS = str(CONFIGS / "waterworks.yaml")
 
 
 def cylinder(parsed: dict[str, object], index: int = 0) -> dict[str, list[dict[str, object]]]:
-    return parsed["cylinders"][index]  # type: ignore[index,no-any-return]
+    return parsed["cylinders"][index]
 
 
 def key_value(part: dict[str, list[dict[str, object]]], name: str) -> dict[str, object]:
@@ -53,7 +53,7 @@ def test_technical_units_show_the_figures_of_the_book() -> None:
 def test_a_machine_without_forces_says_what_is_left_out() -> None:
     part = cylinder(answer("forces", "-", text="{crank: 1 m, rod: infinite}"))
     assert [column["id"] for column in part["columns"]] == ["phi", "psi", "x"]
-    reasons = {entry["what"]: entry["why"] for entry in part["left_out"]}  # type: ignore[index]
+    reasons = {entry["what"]: entry["why"] for entry in part["left_out"]}
     assert reasons["velocity, acceleration"] == "no speed given"
     assert reasons["forces in the crank train"] == "no force acts"
 

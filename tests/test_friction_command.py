@@ -45,7 +45,6 @@ def test_statics_of_the_body(direction: float) -> None:
     alpha, beta = math.radians(30), math.radians(direction)
     for id, friction in (("P_up", 0.2), ("P_held", -0.2)):
         force = found[id][0]
-        assert force is not None
         pressing = math.cos(alpha) - force * math.sin(beta)
         assert pressing > 0
         assert force * math.cos(beta) == pytest.approx(math.sin(alpha) + friction * pressing, rel=1e-13)

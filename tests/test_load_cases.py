@@ -9,7 +9,7 @@ import pytest
 
 import kurbel as api
 from command import run
-from kurbel.errors import MachineFileError, UsageError
+from kurbel.errors import UsageError
 
 PUMP = """\
 speed: 50 rpm
@@ -90,17 +90,3 @@ def test_a_case_that_there_is_not(pump: Path) -> None:
     with pytest.raises(UsageError, match="the file has no 'cases'"):
         api.load("configs/waterworks.yaml", case="full speed")
     assert "--cases: the file has no 'cases'" in run("sweep", "configs/waterworks.yaml", "--cases").stderr
-
-
-@pytest.mark.parametrize(
-    ("cases", "message"),
-    [
-        ("[{name: a, set: {speed: 60 rpm}}, {name: a, set: {speed: 70 rpm}}]", r"two cases are called 'a'"),
-        ("[{name: a}]", r"'set' is missing"),
-        ("[{name: a, set: {}}]", r"expected a mapping of dotted keys to values"),
-        ("{a: {speed: 60 rpm}}", r"expected a list"),
-    ],
-)
-def test_what_is_no_case(cases: str, message: str) -> None:
-    with pytest.raises(MachineFileError, match=message):
-        api.loads(f"{{crank: 400 mm, rod: 2 m, cases: {cases}}}")

@@ -26,7 +26,7 @@ PRESSURE = "indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 b
 
 
 def run(*arguments: str, **extra: object) -> subprocess.CompletedProcess[bytes]:
-    return subprocess.run([sys.executable, "-m", "kurbel", *arguments], check=False, **extra)  # type: ignore[call-overload,no-any-return]
+    return subprocess.run([sys.executable, "-m", "kurbel", *arguments], check=False, **extra)
 
 
 # files that are read

@@ -166,7 +166,7 @@ def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
 
 def test_of_several_cylinders_each_has_its_own() -> None:
     case = kurbel.solve(kurbel.load(CONFIGS / "waterworks-two-cranks.yaml"))
-    assert case["T_max"].value == case.flywheel.T_max.value  # type: ignore[union-attr]
+    assert case["T_max"].value == case.flywheel.T_max.value
     with pytest.raises(kurbel.KurbelError, match="each cylinder has its own P_max"):
         _ = case["P_max"]
     assert case.cylinders[1]["P_max"].value > 0
@@ -178,7 +178,7 @@ def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> 
     for results in (case.cylinders[0], case.flywheel, case.stress):
         for ask in (results.columns, results.at):
             with pytest.raises(kurbel.KurbelError, match="crank angles are"):
-                ask(degrees)  # type: ignore[operator, arg-type]
+                ask(degrees)
 
 
 def test_notebooks_show_tables_that_are_escaped() -> None:

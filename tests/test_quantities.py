@@ -84,4 +84,4 @@ def test_the_largest_and_the_smallest_share_a_unit(command: str, name: str, part
     told, in_si = ({one.id: one for one in one.key_values} for one in shown)
     assert {id: told[id].unit for id in units} == units
     for id in units:
-        assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)  # type: ignore[operator]
+        assert told[id].value * 1000 == pytest.approx(in_si[id].value, rel=1e-15)

@@ -95,7 +95,7 @@ def test_grid_list_and_sample() -> None:
 )
 def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        Plan(list(map(read_axis, inputs)), **options)  # type: ignore[arg-type]
+        Plan(list(map(read_axis, inputs)), **options)
 
 
 def test_shards_are_the_whole() -> None:

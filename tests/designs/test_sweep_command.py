@@ -77,7 +77,7 @@ def test_where_sort_top_and_pareto() -> None:
     asked = ("--vary", "rod_ratio=3:6:0.5", "--columns", "c_max,b_max")
     every = {one["row"]: one for one in rows(*asked)}
     below = rows(*asked, "--where", "b_max < 13.5 m/s2")
-    assert [one["row"] for one in below] == [row for row, one in every.items() if one["b_max_m/s^2"] < 13.5]  # type: ignore[operator]
+    assert [one["row"] for one in below] == [row for row, one in every.items() if one["b_max_m/s^2"] < 13.5]
     assert [one["row"] for one in rows(*asked, "--where", "rod_ratio >= 5")] == [5, 6, 7]
     assert [one["row"] for one in rows(*asked, "--sort", "c_max", "--top", "2")] == [7, 6]
     assert [one["row"] for one in rows(*asked, "--sort", "-c_max", "--top", "1")] == [1]
@@ -93,7 +93,7 @@ def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> N
     both = rows(*vary, "--columns", "rod_tension_max", file=compressor)
     alone = rows(*vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor)
     told = [[row.get(f"{column}_N") for row in found] for found in (alone, both)]
-    assert told[0] == sorted(told[1])  # type: ignore[type-var]
+    assert told[0] == sorted(told[1])
     assert not any("high pressure" in head for row in alone for head in row)
     wrong = run(*vary, "--columns", "no pressure.rod_tension_max", file=compressor)
     assert (wrong.exit_code, "no key value 'no pressure.rod_tension_max'" in wrong.stderr) == (2, True)

@@ -18,13 +18,11 @@ DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of
 
 def sketch_of(mechanism: Mechanism) -> dict[str, complex]:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
-    assert sketch is not None
     return {name: np.broadcast_to(x + 1j * np.asarray(y), DEGREES.shape) for name, (x, y) in sketch.joints.items()}
 
 
 def whole(mechanism: Mechanism) -> Sketch:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
-    assert sketch is not None
     return sketch
 
 
@@ -56,7 +54,6 @@ def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
 @law_of_each(name for name, one in DRAWN.items() if one.slides)
 def test_the_output_moves_as_x_does(name: str) -> None:
     mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
-    assert sketch.toward is not None
     toward = complex(*sketch.toward)
     place = (joints[sketch.output] * toward.conjugate()).real
     x = np.asarray(mechanism.coordinate(CrankAngle.of(DEGREES)))

@@ -65,7 +65,6 @@ def test_marks_stand_where_the_key_values_do(name: str) -> None:
 def test_forces_reverse_where_the_inertia_line_is_crossed() -> None:
     above, below = drawn("waterworks", "piston-force")[0].panels
     forces = case_of("waterworks").cylinders[0]
-    assert forces.phi_reversal is not None
     assert [mark.x for mark in above.marks] == list(forces.phi_reversal)
     assert [mark.x for mark in below.marks if mark.y == 0] == list(forces.phi_reversal)
     for mark in above.marks:
@@ -81,7 +80,6 @@ def test_lobes_are_shaded_and_numbered_with_their_work() -> None:
     assert set(figures) == {f"A_{k + 1}" for k in range(len(turning.lobes))}
     for k, work in enumerate(turning.lobes):
         shade = figures[f"A_{k + 1}"]
-        assert shade.figure is not None
         assert shade.figure.value == pytest.approx(work / 1e3, rel=1e-15)
         assert shade.gain == (work > 0)
     ends = {end for shade in panel.shades for end in (shade.x[0], shade.x[-1])}
@@ -134,7 +132,6 @@ def test_the_tip_of_the_free_force_is_the_solvers() -> None:
     assert off_line(panel.curves[0], tips) <= 1e-3 * np.abs(tips).max()
     (mark,) = panel.marks
     largest = case.balance.F_free_max
-    assert largest is not None
     assert (mark.figure.value, mark.figure.at_deg) == (largest.value / 1e3, largest.degrees)
     assert np.hypot(mark.x, mark.y) == pytest.approx(largest.value / 1e3, rel=1e-14)
     assert panel.equal

@@ -123,7 +123,6 @@ def test_friction_work(lam: float, weight: bool) -> None:
     with mpmath.workdps(26):
         oracle = Oracle(forces)
         exact = sum(friction_work(oracle, low, high) for low, high in pairwise(edges(forces)))
-        assert forces.friction_work is not None
         assert abs(forces.friction_work / exact - 1) < 1e-13
 
 
@@ -143,7 +142,6 @@ def test_extremes(lam: float, column: str) -> None:
     """Brute force over 20,000 angles finds the hill, high precision climbs it."""
     forces = machine(lam)
     found = forces.extremes_of(column)
-    assert found
     dense = getattr(forces.at(np.linspace(0, 360, 20001)), column)
     with mpmath.workdps(40):
         oracle = Oracle(forces)
@@ -170,7 +168,6 @@ def _climb(
             start, stop = (a, stop) if sign * function(a) < sign * function(b) else (start, b)
         value = function((start + stop) / 2)
         best = value if best is None or sign * value > sign * best else best
-    assert best is not None
     return best
 
 

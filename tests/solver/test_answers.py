@@ -39,7 +39,6 @@ class TestPeaks:
 
     def test_the_largest_pressure_stands_at_either_end(self) -> None:
         """9 bar at the crank end, on the return stroke of the head end; 7 bar at the other one."""
-        assert self.forces.p_max is not None
         assert self.forces.p_max.value == pytest.approx(9e5, rel=1e-15)
         assert self.forces.p_max.degrees <= 180.0
 
@@ -107,7 +106,6 @@ class TestOverTheStroke:
         found = json_of("motion", "--over", "x", "--step", "25", text=STRAIGHT + more)
         assert found["z"] == pytest.approx([0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0], abs=1e-15)
         stroke = cylinder(STRAIGHT + more).motion.stroke
-        assert stroke is not None
         assert found["x"] == pytest.approx([z * stroke for z in found["z"]], abs=1e-15)
         assert np.all(np.diff(found["phi"]) > 0)
 

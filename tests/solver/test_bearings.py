@@ -59,7 +59,6 @@ def main_bearings(case: Case) -> list[Bearing]:
 
 def in_engine(part: Bearing, degrees: np.ndarray) -> np.ndarray:
     found = part.at(degrees)
-    assert found.load_engine is not None
     return found.load * np.exp(1j * np.radians(found.load_engine))
 
 

@@ -147,9 +147,6 @@ def test_jumps_are_crossings_and_have_both_their_values() -> None:
     assert machine.dE == pytest.approx(300 * math.pi / 2, rel=1e-15)
 
 
-# cycles that differ
-
-
 # ΔE against mpmath
 
 

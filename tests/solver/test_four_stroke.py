@@ -25,7 +25,7 @@ LINES: dict[str, list[tuple[float, float]]] = {
     "intake": [(0, 0.05), (0.05, -0.1), (1, -0.15)],
     "compression": [(1, -0.15), (0.5, 0.7), (0.2, 2.5), (0, 6)],
 }
-CARD = Card.from_keys(unit=(BAR, 1), **LINES)  # type: ignore[arg-type]
+CARD = Card.from_keys(unit=(BAR, 1), **LINES)
 MECHANISM = SliderCrank(0.15, 0.66)
 
 

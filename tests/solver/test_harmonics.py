@@ -19,7 +19,6 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Masses, Piston
 from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.pieces import Angles
 from kurbel.solver.case import Case
 from kurbel.solver.harmonics import MachineOrders
 from machines import STEAM_CARD
@@ -112,21 +111,6 @@ def test_the_series_of_the_inertia_torque() -> None:
     known += [0.002592310746, 0.000390320062, -4.3971084e-5, -8.396165e-6]
     assert found.real == pytest.approx(0, abs=1e-15)
     assert -found.imag == pytest.approx(known, abs=1e-12)
-
-
-@pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "diesel-four-stroke"])
-def test_their_sum_is_the_torque(name: str) -> None:
-    """Bessel: the mean square of what 24 orders leave is what Parseval says."""
-    machine = load(CONFIGS / f"{name}.yaml")
-    found = orders_of(machine)
-    whole = found.effort.pieces
-    every = np.arange(0.0, whole.cycle, 5.0)
-    pieces = whole.split(Angles(np.zeros(len(every), dtype=int), every))
-    left = pieces.carried(found.effort.M, whole) - found.machine.whole.at(pieces.degrees)
-    (square,) = pieces.mean(left**2)
-    swing = whole.mean((found.effort.M - found.effort.mean) ** 2)[0]
-    assert square == pytest.approx((1 - found.orders_share) * swing, rel=1e-6)
-    assert 0.99 < found.orders_share < 1
 
 
 def test_a_crank_that_follows_turns_its_orders() -> None:

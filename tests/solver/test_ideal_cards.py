@@ -202,30 +202,3 @@ def polytropic(clearance: float, expansion: list[tuple[float, float]], compressi
 def test_cards_that_cannot_be(card: Any, message: str) -> None:
     with pytest.raises(RuleError, match=message):
         cylinder(card)
-
-
-@pytest.mark.parametrize(
-    ("key", "indicator"),
-    [
-        ("steam.exponent", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0.05, exponent: 1000}"),
-        ("steam.clearance", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 1e-300}"),
-        ("diesel.exponent", "diesel: {intake: 0 bar, cut_off: 0.1, compression_ratio: 16, exponent: 250}"),
-        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1e300}"),
-        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1.0000000000000002}"),
-        ("diesel.intake", "diesel: {intake: 1e300 bar, cut_off: 0.1, compression_ratio: 16}"),
-        (
-            "clearance",
-            "unit: bar, interpolate: polytropic, clearance: 1e-300, expansion: [[0, 5], [1, 1]], "
-            "compression: [[1, 1], [0, 5]]",
-        ),
-    ],
-)
-def test_what_cannot_be_computed_with_is_a_fault_with_its_place(key: str, indicator: str) -> None:
-    from kurbel.errors import MachineFileError
-    from kurbel.machine_file import loads
-
-    with pytest.raises(MachineFileError) as caught:
-        loads(f"crank: 1 m\nrod: 5 m\nbore: 1 m\nindicator: {{head_end: {{{indicator}}}}}\n")
-    (fault,) = caught.value.faults
-    assert ".".join(map(str, fault.path)) == f"indicator.head_end.{key}"
-    assert "it must be at" in fault.message
