@@ -76,7 +76,7 @@ class KnownEffort(Record):
         forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
         message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
         yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
-        level = "mean" in given and bool({"points", "file"} & given.keys())
+        level = "mean" in given and forms in (["points"], ["file"])
         yield Rule(
             "mean", level, f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own"
         )
