@@ -83,14 +83,6 @@ class Machine(Record):
         absent="no velocities, accelerations or inertia in physical units",
     )
     cycle: str = field(tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke")
-    cycle_turns: int = field(
-        int,
-        "Turns of the shaft after which everything repeats, as of a press that works once in several",
-        default=1,
-        least=1,
-        most=MOST_TURNS,
-        absent="those of the working cycle",
-    )
     efficiency: float = field(
         "ratio",
         "Mechanical efficiency: multiplies the torque of cylinders whose pistons drive, or only the gas force of "
@@ -210,6 +202,14 @@ class Machine(Record):
         "row for each",
         default=(),
         absent="one case, the file as it is",
+    )
+    cycle_turns: int = field(
+        int,
+        "Turns of the shaft after which everything repeats, as of a press that works once in several",
+        default=1,
+        least=1,
+        most=MOST_TURNS,
+        absent="those of the working cycle",
     )
 
     @classmethod
