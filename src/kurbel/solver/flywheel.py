@@ -242,9 +242,7 @@ class MachineTurning(Results):
         """Return numbers of the crossings as a tuple, of many machines one each; None where they are not known."""
         if self.effort.swing is not None:
             return None
-        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
-        tuples = tuple(tuple(one.tolist()) for one in each)
-        return tuples[0] if self.effort.count is None else tuples
+        return self.excess.crossings._replace(degrees=values).listed(self.effort.count)
 
     @cached_property
     def summits(self) -> Extremes | None:
