@@ -83,11 +83,6 @@ def _sin_cos(right_angle: Array, offset: Array) -> tuple[Array, Array]:
     """Return sine and cosine of multiples of 90°, (…, n), plus offsets in degrees of the same shape or (nodes, n)."""
     rest = np.radians(offset)
     sin, cos = np.sin(rest), np.cos(rest)
-    quarter = (right_angle / 90.0).astype(int) % 4
-    swapped = quarter % 2 == 1
-    sin, cos = np.where(swapped, cos, sin), np.where(swapped, sin, cos)
-    sin *= np.where(quarter < 2, 1.0, -1.0)
-    cos *= np.where((quarter + 1) % 4 < 2, 1.0, -1.0)
-    sin += 0.0  # turns −0.0 into 0.0
-    cos += 0.0
-    return sin, cos
+    quarter, turn = (right_angle / 90.0).astype(int), np.array([0.0, 1.0, 0.0, -1.0])
+    own_sin, own_cos = turn[quarter % 4], turn[(quarter + 1) % 4]
+    return sin * own_cos + cos * own_sin, cos * own_cos - sin * own_sin  # a zero is 0.0, never −0.0
