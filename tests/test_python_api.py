@@ -30,7 +30,7 @@ MACHINE = (
     "cylinders, name='machine', speed=None, cycle='two-stroke', efficiency=1.0, ambient=101325.0, brake_power=None, "
     "flywheel=None, load=None, effort=None, coupling=None, crankshaft=None, counterweights=(), balance_shafts=(), "
     "moment_reference=None, locomotive=None, shaft=None, limits=(), expect=(), uncertainty=(), rotation=None, "
-    "origin=None, cases=()"
+    "origin=None, cases=(), cycle_turns=1"
 )
 SIGNATURES = {
     "Case": "machine, count=None",
