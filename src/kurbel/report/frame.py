@@ -80,16 +80,21 @@ class Subject:
                 yield quantity, value
 
 
-def subjects_of(case: Case, command: str, compare: bool = False) -> list[Subject]:
+def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool = False) -> list[Subject]:
     """Return what a command has results of: each cylinder or bearing, and the whole machine last.
 
-    compare: the balance also by the acceleration of first order, next to the exact one. Raises UsageError where the
-    machine has no such results, NoSolutionError where it locks itself, stalls, or vibrates without limit.
+    compare: the balance also by the acceleration of first order, next to the exact one; pistons: also each piston of a
+    rod that has several. Raises UsageError where the machine has no such results, NoSolutionError where it locks
+    itself, stalls, or vibrates without limit.
     """
     if command in ("motion", "forces"):
+        each = [one for forces in case.cylinders for one in forces.pistons] if pistons and command == "forces" else []
         return [
-            Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
-            for one in case.cylinders
+            *(
+                Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
+                for one in case.cylinders
+            ),
+            *(Subject(one.name, one, lists=one.lists) for one in each),
         ]
     if command == "flywheel":
         turning = case.flywheel
@@ -328,7 +333,9 @@ def place_table(
             column = shown_column(quantity, each, system, beside=largest.get(quantity.kind, 0.0))
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
-                decimals = int(any(value and value % 1 for value in each))
+                decimals = max(
+                    (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value), default=0
+                )
             columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else alone))
     names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
     return PlaceTable(id, title, heads, names, tuple(columns), headed)

@@ -50,7 +50,7 @@ from kurbel.solver.weights import (
 _SAMPLES = 256
 """Samples of a turn from which the orders of a mechanism are found; four times as many where a rod is short, …"""
 _MOST_SAMPLES = 1 << 20
-"""… up to this many for all machines of a batch together: beyond it an error is raised, and its machines are computed singly."""
+"""… up to this many for a batch together: a batch of more raises an error, and its machines are computed singly."""
 _SHOWN = 1e-9
 """Of the largest order: smaller ones are not listed."""
 _FEWEST = 8
