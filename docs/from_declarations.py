@@ -90,13 +90,13 @@ def _by_command(declared: Iterable[Quantity]) -> Iterator[str]:
 def _others() -> Iterator[str]:
     yield f"## Stresses at one place of a crankshaft\n\n{_quantities(STRESSES.values())}"
     tables = (ORDERS | ELLIPSES | WEIGHTS).values()
-    yield f"## Orders of free forces and moments, and weights\n\n{_quantities(tables)}"
+    yield f"## Orders of unbalanced forces and moments, and counterweights\n\n{_quantities(tables)}"
     yield f"## Orders of a torque\n\n{_quantities(TORQUE_ORDERS.values())}"
     yield f"## Natural vibrations\n\n{_quantities(MODES.values())}"
     yield f"## Holzer's table\n\n{_quantities(HOLZER.values())}"
     yield f"## Critical speeds\n\n{_quantities(CRITICAL_SPEEDS.values())}"
-    yield f"## A piece of shaft at the working speed\n\n{_quantities(PIECES.values())}"
-    yield f"## A piece of shaft over the speed\n\n{_quantities(SPEEDS.values())}"
+    yield f"## A shaft segment at the working speed\n\n{_quantities(PIECES.values())}"
+    yield f"## A shaft segment over the speed\n\n{_quantities(SPEEDS.values())}"
     yield f"## Rows of Zusammenstellung 112 (kurbel table)\n\n{_quantities(FACTORS.values())}"
 
 

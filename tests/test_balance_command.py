@@ -82,5 +82,5 @@ def test_the_counterweights_say_what_they_hold() -> None:
     told = run(one + "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n").stdout
     best = next(line for line in told.splitlines() if line.startswith("  u_1 "))
     assert best.split()[1:3] == ["0.2000", "kg"]
-    assert "Counterweight against what rotates and half of what reciprocates" in best
+    assert "Counterweight balancing all rotating and half of the reciprocating mass" in best
     assert "Vector sum of the given counterweights" in told

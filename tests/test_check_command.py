@@ -58,7 +58,7 @@ def test_all_limits_are_told_in_one_run() -> None:
 def test_a_machine_that_stalls_does_not_hide_a_broken_limit() -> None:
     text = ENGINE + f"indicator: {{head_end: {{{PRESSURE}}}}}\nflywheel: {{inertia: 1e-3 kg m2}}\n"
     status, listed, said = run(text + "limits: {delta: 0.01, c_max: 1 m/s}\n", "check")
-    assert (status, "BROKEN" in listed, said.startswith("Error: limits.delta: ")) == (3, True, True)
+    assert (status, "FAIL" in listed, said.startswith("Error: limits.delta: ")) == (3, True, True)
     assert run(text + "limits: {delta: 0.01, sigma_pin_max: 1 MPa}\n", "check")[0] == 2
 
 
@@ -101,15 +101,15 @@ def test_expected_figures_are_compared() -> None:
     for figure in ("18.95 m/s2 ± 0.5 %", "18.95 m/s2 +- 0.5 %", "18.95 ± 0.05 m/s2", "18.95 m/s2 ± 1 cm/s2"):
         for name in ("b_max", "'b_max'"):
             status, listed, _ = run(ENGINE + f'expect: {{{name}: "{figure}"}}\n', "check")
-            assert (status, "  met  (cylinder 1)" in listed) == (0, True), figure
+            assert (status, "  PASS  (cylinder 1)" in listed) == (0, True), figure
     status, listed, _ = run(ENGINE + "expect: {b_max: [18.9 m/s2, 19 m/s2], c_m: 1600 mm/s +/- 1 %}\n", "check")
     assert (status, listed.count("  met  ")) == (0, 2)
     status, listed, _ = run(ENGINE + 'expect: {b_max: "18.8 m/s2 ± 0.5 %"}\n', "check")
     off = (2 * math.pi) ** 2 * 0.4 * 1.2 - 18.8 * 1.005
     assert status == 1
-    assert f"OFF, {off:.9g} m/s2 too large  (cylinder 1)" in listed
+    assert f"FAIL, {off:.9g} m/s2 too large  (cylinder 1)" in listed
     status, listed, _ = run(ENGINE + "expect: {c_m: [1.7 m/s, 1.8 m/s]}\n", "check")
-    assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  OFF, 0.1 m/s too small" in listed) == (1, True)
+    assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  FAIL, 0.1 m/s too small" in listed) == (1, True)
 
 
 def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:

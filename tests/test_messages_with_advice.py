@@ -38,11 +38,11 @@ NAMED, FOUR = str(CONFIGS / "compressor-two-stage.yaml"), str(CONFIGS / "four-in
         ),
         (
             ("forces", NAMED, "--uncertainty", "cylinders.low pressure.stroke=1 mm"),
-            "no value stands under this key in the file; did you mean 'cylinders.0.stroke'?",
+            "the file has no value for this key; did you mean 'cylinders.0.stroke'?",
         ),
         (
             ("forces", NAMED, "--uncertainty", "stroke=1 mm"),
-            "no value stands under this key in the file; did you mean 'cylinders.0.stroke'?",
+            "the file has no value for this key; did you mean 'cylinders.0.stroke'?",
         ),
         (
             ("sweep", NAMED, "--vary", "suction=0,1 bar"),

@@ -48,7 +48,7 @@ class Drawing(NamedTuple):
 
 
 def draw(case: ShownCase, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
-    """Return pictures of a machine, by the words of `kurbel plot --list`; without names the one that says most.
+    """Return pictures of a machine, by the words of `kurbel plot --list`; without names the most informative picture.
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
     """

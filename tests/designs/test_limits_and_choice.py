@@ -55,7 +55,7 @@ def test_rows_are_chosen_by_their_texts() -> None:
     [
         ("keeps < yes", "keeps has words, of which none is less than another; write = or !="),
         ("rotation > over", "rotation has words, of which none is less than another"),
-        ("keeps = ja", "keeps is yes, no, or nothing where a limit cannot be judged"),
+        ("keeps = ja", "keeps is yes, no, or empty where a limit cannot be judged"),
         ("N_max > 3", "3 has no unit; write it with one, such as '3 N'\n"),
     ],
 )

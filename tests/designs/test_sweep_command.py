@@ -193,7 +193,7 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
         (("--vary", "rod_ratio=3:6:-1"), "never reaches 6"),
         (("--vary", "rod_ratio=3,4; bore=400 mm"), "--vary rod_ratio; bore: the lists must be of one length;"),
         (("--vary", "rod_ratio=3,4; bore=400,5 kg"), "kg is a unit of mass"),
-        (("--vary", "rod_ratio=3,4; bore"), "values are parted by commas; after ';' stands a further KEY=…"),
+        (("--vary", "rod_ratio=3,4; bore"), "values are separated by commas; after ';' comes a further KEY=…"),
         (("--vary", "bore=400,450 kg"), "kg is a unit of mass"),
         (("--vary", "bore=normal(450 mm, -1 mm)", "--sample", "3"), "must be more than 0, got -1"),
         (("--vary", "rod_ratio=3:6:1e-4", "--vary", "speed=40:50:0.01 rpm"), "30031001 rows; --yes computes more"),
@@ -219,7 +219,7 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
         (("--vary", "rod_ratio=3,4", "--set", "name: =x"), "--set name: =x: write KEY=VALUE, without the colon"),
         (
             ("--set", "bore=400 mm", "--vary", "crank=2,3 m; name=a,b"),
-            "stroke: 'crank' and 'stroke' say the same thing; leave one of them out "
+            "stroke: 'crank' and 'stroke' mean the same; give only one of them "
             "(with --set bore=400 mm, --vary crank=2 m, --vary name=a)",
         ),
         (("--vary", "bo..re=3,4 mm"), "--vary bo..re=3 mm: write KEY=VALUE, such as --vary cylinders.0.bore='450 mm'"),

@@ -64,7 +64,7 @@ def test_drawn_machines_that_fail_are_told_of() -> None:
     (one,) = of({"bore": "200 %"}, "A_head").values()
     lost = 2000 - one.sample
     assert lost == pytest.approx(2000 * NormalDist(450, 900).cdf(100), abs=1)
-    assert one.failed.startswith(f"{lost} of 2000 drawn machines fail and count for nothing (bore: -")
+    assert one.failed.startswith(f"{lost} of 2000 sampled machines fail and are ignored (bore: -")
 
 
 def test_what_bends_is_told_by_a_sample() -> None:

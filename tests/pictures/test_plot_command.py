@@ -87,6 +87,6 @@ def test_without_typst_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch, tmp
     result = run(WATERWORKS, "card", "-o", str(tmp_path / "x.pdf"))
     assert result.exit_code == 2
     assert (
-        "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; an svg needs nothing" in result.stderr
+        "a pdf needs typst, which is not installed: pip install 'kurbel[plot]'; svg needs no package" in result.stderr
     )
     assert run(WATERWORKS, "card", "-o", str(tmp_path / "x.svg")).exit_code == 0

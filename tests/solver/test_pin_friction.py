@@ -127,5 +127,5 @@ def test_journals_bear_the_flywheel_too() -> None:
 
 
 def test_a_diameter_stands_in_one_place_only() -> None:
-    with pytest.raises(MachineFileError, match="'pin_diameter' in 'crankshaft' says the same; leave one of them out"):
+    with pytest.raises(MachineFileError, match="'pin_diameter' in 'crankshaft' gives the same; leave one of them out"):
         loads(ENGINE + "friction: {crank_pin: 0.05, crank_pin_diameter: 210 mm}\n")

@@ -1,4 +1,4 @@
-"""`kurbel find`: which value of a key gives a wanted key value, or the least or the greatest one."""
+"""`kurbel find`: which value of a key gives a required key value, or its minimum or maximum."""
 
 from typing import Any
 
@@ -24,8 +24,8 @@ from kurbel.cli.options import (
     shell_complete=complete_override,
     help="The key whose value is sought, and its range: rod_ratio=3:6, 'stroke=700:900 mm'; two with two equations.",
 )
-@click.option("--least", metavar="ID", help="Where this key value is least, within the limits of FILE.")
-@click.option("--greatest", metavar="ID", help="Where this key value is greatest, within the limits of FILE.")
+@click.option("--least", metavar="ID", help="Minimise this key value within the limits of FILE.")
+@click.option("--greatest", metavar="ID", help="Maximise this key value within the limits of FILE.")
 @click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
 @click.option("--plot", is_flag=True, help="Draw the key value over the key, in the terminal or with -o to a file.")
 @click.option("--write", is_flag=True, help="Print FILE with the values found in it, and nothing else.")

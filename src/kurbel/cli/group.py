@@ -25,10 +25,10 @@ DONE, WRONG, INTERNAL, INTERRUPTED = 0, 2, 70, 130
 
 _MEANINGS = {
     DONE: "done",
-    BROKEN: "a limit is broken (check) or a case failed (accuracy --extremes)",
+    BROKEN: "a limit or expectation failed (check) or a case failed (accuracy --extremes)",
     WRONG: "wrong usage or input, or the output cannot be written",
-    NO_SOLUTION: "no solution: the machine stalls, locks itself or is in resonance, or find has nothing",
-    INTERNAL: "a fault in kurbel",
+    NO_SOLUTION: "no solution: the machine stalls, locks or is in resonance, or find has no solution",
+    INTERNAL: "a bug in kurbel",
     INTERRUPTED: "interrupted",
 }
 
@@ -75,8 +75,8 @@ class _Kurbel(click.Group):
         except KurbelError as error:
             status, message = error.exit_status, message_of(error)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
-            beyond = f"these numbers lead beyond what can be computed with ({error})"
-            status, message = WRONG, f"Error: {beyond}; check the sizes of what the file gives"
+            beyond = f"numeric overflow ({error})"
+            status, message = WRONG, f"Error: {beyond}; check magnitudes and units in the file"
         except OSError as error:
             silence(sys.stdout)
             named = f"{error.filename}: " if error.filename else ""
@@ -86,7 +86,7 @@ class _Kurbel(click.Group):
                 raise
             status = INTERNAL
             message = (
-                f"Error: this is a fault in kurbel, not in your input: {type(error).__name__}: {error}\n"
+                f"Error: this is a bug in kurbel, not in your input: {type(error).__name__}: {error}\n"
                 f"Please report it; {_DEBUG}=1 shows where it happened."
             )
             # what Python before 3.12 makes of an interrupt that comes while attributes of a class are named
@@ -125,8 +125,8 @@ def to_stderr(message: str) -> None:
 def kurbel() -> None:
     """Calculate crank drives: motion, forces, friction, flywheel and crankshaft of piston machines.
 
-    A machine is described in a YAML file, every value with its unit; kurbel answers in the tables and
-    symbols of the old machine-element books. Start with
+    A machine is described in a YAML file, every value with its unit; kurbel prints tables with
+    the symbols of the old machine-element books. Start with
 
     \b
       kurbel table                              the factors of any slider-crank
@@ -136,9 +136,9 @@ def kurbel() -> None:
       kurbel motion engine.yaml                 displacement, velocity, acceleration
       kurbel forces engine.yaml                 forces and key values
       kurbel flywheel engine.yaml               turning effort, flywheel, speed
-      kurbel balance engine.yaml                free forces and moments, counterweights
-      kurbel plot --list                        the pictures that there are
-      kurbel plot engine.yaml                   the one that says most
+      kurbel balance engine.yaml                unbalanced forces and moments, counterweights
+      kurbel plot --list                        list of pictures
+      kurbel plot engine.yaml                   the most informative picture
       kurbel report engine.yaml -o report.html  everything on one page
 
     Results go to standard output, everything else to standard error.

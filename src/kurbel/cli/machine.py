@@ -96,7 +96,7 @@ def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spr
 @where_option
 @uncertainty_option
 def flywheel(request: "Request", spreads: Spreads) -> None:
-    """Print the turning effort of the whole machine, its excess work, and what the flywheel makes of it.
+    """Print turning effort, excess work, flywheel and speed fluctuation of the whole machine.
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
@@ -141,10 +141,10 @@ def bearings(request: "Request") -> None:
 
 @click.command()
 @machine_table
-@click.option("--compare", is_flag=True, help="What the books' cos phi + R/L cos 2phi (R 291) gives, beside it.")
+@click.option("--compare", is_flag=True, help="Also by the textbook formula cos phi + R/L cos 2phi (R 291).")
 @click.option("--orders", "orders_only", is_flag=True, help="Only the tables of orders and weights, and key values.")
 def balance(request: "Request", orders_only: bool) -> None:
-    """Print what the moving masses of FILE do to its frame, and which weights take that away.
+    """Print the unbalanced forces and moments on the frame of FILE, and the counterweights against them.
 
     F_x is the free force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90 degrees
     on in the sense of rotation; M_x and M_y are their moments along the shaft; M_roll rolls the frame about it. The

@@ -294,9 +294,9 @@ where_option = click.option(
 row_options = stacked(
     where_option,
     click.option(
-        "--over", type=click.Choice(["x"]), help="Rows over the stroke, both ways, every --step percent of it."
+        "--over", type=click.Choice(["x"]), help="Rows over the stroke, out and back, every --step percent of it."
     ),
-    click.option("--compare", is_flag=True, help="Approximations of the book (R 286-291, 297) beside them."),
+    click.option("--compare", is_flag=True, help="Also the textbook approximations (R 286-291, 297)."),
 )
 uncertainty_option = click.option(
     "--uncertainty",
@@ -328,7 +328,7 @@ def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, s
         raise click.UsageError(f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format.")
     if asked and of_suffix and asked != of_suffix:
         raise click.UsageError(
-            f"--format {asked} contradicts the name {file_name}, which says {of_suffix}; change one of them."
+            f"--format {asked} contradicts the name {file_name}, which means {of_suffix}; change one of them."
         )
     return asked or of_suffix or "table"
 

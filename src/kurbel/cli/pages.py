@@ -48,7 +48,7 @@ def report(
     decimal: str,
     digits: int | None,
 ) -> None:
-    """Write all that the machine in FILE has to one page: input, pictures, tables, key values, limits, energy balance.
+    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits, energy balance.
 
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
@@ -95,9 +95,7 @@ def progress_of(command: str) -> Callable[[str], None]:
 @click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
-@click.option(
-    "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
-)
+@click.option("--list", "listed", is_flag=True, help="List the pictures of this machine; without FILE, all pictures.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
 @cylinder_option
@@ -118,7 +116,7 @@ def plot(
     digits: int | None,
     width: int | None,
 ) -> None:
-    """Draw pictures of the machine in FILE: those that are named, 'all', or the one that says most.
+    """Draw pictures of the machine in FILE: those that are named, 'all', or the most informative picture.
 
     Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
@@ -167,7 +165,7 @@ def check(
     file_name: str | None,
     width: int | None,
 ) -> int:
-    """Read the machine in each FILE and say what will be computed, what is left out and why.
+    """Check the machine in each FILE: list what will be computed, what is left out and why.
 
     Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
     compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
@@ -185,8 +183,8 @@ def check(
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
-@click.option("--extremes", is_flag=True, help="Put stiff and extreme machines to kurbel instead.")
-@click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Draw the picture too.")
+@click.option("--extremes", is_flag=True, help="Run stiff and extreme machines instead.")
+@click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Also draw the picture.")
 @output_options
 def accuracy(
     file: str | None,

@@ -106,7 +106,7 @@ def table(
 )
 @output_options
 def friction(incline: float, coefficient: float, direction: float, output: Output) -> None:
-    """Print the force P, over the weight Q, that moves a body up an inclined plane, and that holds it there.
+    """Print the forces P, relative to the weight Q, that move a body up an inclined plane and that hold it there.
 
     After Redtenbacher 1862: in the direction that is asked for, and horizontally, where P = Q tan(alpha +- rho) with
     tan rho = f. A negative holding force is one that must push the body down: it rests by its friction alone.
@@ -146,7 +146,7 @@ def _read(path: str) -> str:
 @click.command()
 @click.argument("key", required=False, shell_complete=complete_key)
 def keys(key: str | None) -> None:
-    """List the keys of a machine file: what is written, what it means, what holds without it; or KEY in full.
+    """List the keys of a machine file with form, meaning and default; or KEY in full.
 
     \b
       kurbel keys
@@ -178,7 +178,7 @@ def units(kind: str | None) -> None:
 
 
 @click.command()
-@click.option("--answers", is_flag=True, help="The schema of what -f json prints instead, for programs.")
+@click.option("--answers", is_flag=True, help="The schema of the output of -f json instead, for programs.")
 @output_option
 def schema(answers: bool, file_name: str | None) -> None:
     """Print the JSON Schema (draft-07) of the machine file; editors complete and check with it.

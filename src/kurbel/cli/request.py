@@ -83,7 +83,7 @@ class Request:
         ways = {"--where": self.where, "--over": self.over, "--angles": self.angles or None}
         given = [way for way, value in ways.items() if value is not None]
         if len(given) > 1:
-            raise click.UsageError(f"{' and '.join(given)} both say at which crank angles; leave one of them out.")
+            raise click.UsageError(f"{' and '.join(given)} both give crank angles; give only one of them.")
         angles: Any
         if self.where is not None:  # where a force has a value there is a motion to print, too
             angles = rows_where(self.where, "forces" if self.command == "motion" else self.command, end)

@@ -34,7 +34,7 @@ _what_varies = stacked(
 )
 _what_is_told = stacked(
     click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
-    click.option("--angles", "with_angles", is_flag=True, help="Beside every extreme the crank angle where it stands."),
+    click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
     click.option(
         "--where",
         "conditions",
@@ -56,9 +56,7 @@ _where_it_goes = stacked(
     ),
 )
 _who_computes = stacked(
-    click.option(
-        "--shard", metavar="K/N", help="Only this part of the rows; all parts one after another are the whole."
-    ),
+    click.option("--shard", metavar="K/N", help="Only this part of the rows; all parts in order make the whole."),
     click.option(
         "--jobs",
         "-j",
@@ -81,7 +79,7 @@ _who_computes = stacked(
 @_where_it_goes
 @_who_computes
 def sweep(**options: Any) -> None:
-    """Compute key values for many designs of the machine in FILE: one row each, inputs and answers.
+    """Compute key values for many designs of the machine in FILE: one row each, inputs and results.
 
     Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
     gives 'limits', each row says whether it keeps them, and which is the first that it breaks.

@@ -112,7 +112,7 @@ def run(wanted: SweepOptions) -> None:
 def _refuse_contradictions(wanted: SweepOptions, written: str, named: bool, in_order: bool) -> None:
     """Raise click.UsageError for options that do not go together."""
     for wrong, message in (
-        (not (wanted.vary or wanted.cases), "Missing option '--vary', which says what varies; or give --cases."),
+        (not (wanted.vary or wanted.cases), "Missing option '--vary' (the values to vary); or give --cases."),
         (wanted.cases and wanted.case_name, "--cases has every load case, --case one; leave one of them out."),
         (wanted.top and not wanted.sort, "--top N takes the first rows of --sort ID; give --sort too."),
         (wanted.resume and not named, "--resume goes on in a file; give --output FILE."),
@@ -124,7 +124,7 @@ def _refuse_contradictions(wanted: SweepOptions, written: str, named: bool, in_o
         (wanted.sort == "", "--sort names no column; leave it out, or name one."),
         (wanted.shard == "", "--shard has no number; write K/N, such as 2/8, K from 1 to N."),
         (wanted.dask == "", "--dask has no address; give that of a scheduler, such as tcp://node:8786."),
-        (wanted.dask and wanted.jobs, "--dask and --jobs both say who computes; leave one of them out."),
+        (wanted.dask and wanted.jobs, "give only one of --dask and --jobs."),
         (wanted.decimal == "comma" and written in ("json", "parquet"), "--decimal comma: not in this format."),
     ):
         if wrong:

@@ -70,7 +70,7 @@ def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
     for name, key in keys.items():
         other = key.instead
         if name in given and other in given:
-            yield Fault((name,), f"'{other}' and '{name}' say the same thing; leave one of them out")
+            yield Fault((name,), f"'{other}' and '{name}' mean the same; give only one of them")
         if name in given and key.needs and key.needs not in given:
             yield Fault((name,), f"'{name}' needs '{key.needs}' beside it")
         if other and keys[other].required and not {name, other} & given.keys():

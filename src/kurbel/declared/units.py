@@ -373,7 +373,7 @@ def unit_hint(name: str, kind: str) -> str:
     if number := NUMBER.match(name):
         return f"; write the unit alone, without {number.group()}"
     if name in (*ZEROED_UNITS, "atu"):
-        return "; whether a pressure is gauge or absolute is said by the key 'pressures'"
+        return "; whether a pressure is gauge or absolute is set by the key 'pressures'"
     if name in ("ton", "tons", "tonf"):
         f = name.removeprefix("ton").removeprefix("s")
         return f"; a ton is 't{f}' (1000 kg{f}), 'long ton{f}' (2240 lb{f}) or 'short ton{f}' (2000 lb{f}): write which"

@@ -116,7 +116,7 @@ def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, A
         ]
         if found:
             return found
-    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check says why")
+    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check shows why")
 
 
 def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
@@ -210,4 +210,4 @@ def _alone(machine: Machine, asked: Sequence[Answer]) -> Values:
     except KurbelError as error:
         return str(error)
     except ArithmeticError as error:
-        return f"these numbers lead beyond what can be computed with ({error})"
+        return f"numeric overflow ({error})"

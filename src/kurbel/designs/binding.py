@@ -264,7 +264,7 @@ def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str, Path]:
         if one.path == path[:depth] and depth < len(path) and _reads(one, path[depth]):
             owner = one if owner is None or depth > len(owner.path) else owner
     if owner is None:
-        raise UsageError(f"--vary {path_text(path)}: no value stands under this key that could be varied")
+        raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
     return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]
 
 
@@ -289,7 +289,7 @@ def written(tree: Tree, key: str) -> str:
         names = ".".join(step for step in path if isinstance(step, str))
         if f".{names}".endswith(f".{key}"):
             meant = f"; did you mean '{dotted(path)}'?"
-    raise UsageError(f"no value stands under this key in the file{meant}")
+    raise UsageError(f"the file has no value for this key{meant}")
 
 
 def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:

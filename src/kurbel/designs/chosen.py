@@ -65,7 +65,7 @@ def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Co
             no_order = f"{name} has words, of which none is less than another; write = or !="
             raise UsageError(f"--where {shown(text)}: {no_order}")
         if name == "keeps" and written not in KEPT.values():
-            raise UsageError(f"--where {shown(text)}: keeps is yes, no, or nothing where a limit cannot be judged")
+            raise UsageError(f"--where {shown(text)}: keeps is yes, no, or empty where a limit cannot be judged")
         return Condition(place, relation, written)
     head = heads[place]
     try:

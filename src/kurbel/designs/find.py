@@ -330,7 +330,7 @@ def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tupl
                 raise UsageError(f"{name}: a list of values, of which none is the wanted one")
             if len(each) > 1:
                 own = f"{each[0].subject}.{each[0].quantity.id}"
-                raise UsageError(f"{name}: there are {len(each)} of it; write whose is meant, such as '{own}'")
+                raise UsageError(f"{name}: there are {len(each)} of it; write which one, such as '{own}'")
         return binder, [each[0] for _, each in found]
     raise errors[0] if isinstance(errors[0], NoSolutionError) else UsageError(str(errors[0]))
 

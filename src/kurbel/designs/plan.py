@@ -66,7 +66,7 @@ def read_axis(text: str) -> tuple[Input, ...]:
     """
     parts = [part.strip() for part in _NEXT_KEY.split(text)]
     if len(parts) > 1 and not all(parts):
-        raise _refused(text, "a key is missing beside ';'; write KEY=…; KEY=…, or leave it out")
+        raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
     together = tuple(map(read_input, parts))
     if len(together) > 1 and any(one.distribution for one in together):
         raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
@@ -107,7 +107,7 @@ def _with_unit(parts: list[str], text: str) -> tuple[str, ...]:
     if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
         raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
     if any(";" in part and NUMBER.match(part) for part in parts):
-        raise _refused(text, "values are parted by commas; after ';' stands a further KEY=…")
+        raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
     unit = _number_and_unit(parts[-1])[1] if NUMBER.match(parts[-1]) else ""
     return tuple(f"{part} {unit}".rstrip() if unit and NUMBER.fullmatch(part) else part for part in parts)
 

@@ -163,9 +163,7 @@ def _drawn(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> list[
     parts = [_answers(inputs, part, asked) for part in counted([shifts[k : k + held] for k in range(0, count, held)])]
     found = np.concatenate([values for values, _ in parts])
     failures = [why for _, each in parts for why in each]
-    failed = (
-        f"{len(failures)} of {count} drawn machines fail and count for nothing ({failures[0]})." if failures else ""
-    )
+    failed = f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})." if failures else ""
     result = []
     for one, values in zip(bent, found.T):
         there = np.isfinite(values)
@@ -214,8 +212,8 @@ def with_uncertainty(
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
     if any(one.sample for one in found):
         notes.append(
-            "Those with a sample bend too much for that and come from so many drawn machines; their shares are squares "
-            "of correlations, which fall short of 100 % where an answer turns back."
+            "Those with a sample size are too nonlinear for that and come from so many sampled machines; their "
+            "shares are squared correlations, which add up to less than 100 % where a key value is not monotonic."
         )
     notes += dict.fromkeys(one.failed for one in found if one.failed)
     return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *notes))

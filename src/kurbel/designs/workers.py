@@ -161,7 +161,7 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
     try:
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
-        raise UsageError(f"--dask {address}: no scheduler answers there ({_first_line(error)})") from None
+        raise UsageError(f"--dask {address}: no scheduler responds there ({_first_line(error)})") from None
 
     def workers() -> int:
         return max(len(client.nthreads()), 1)

@@ -72,7 +72,7 @@ class Machine(Record):
     name of a cylinder where it is of that one; uncertainty: dotted key -> its standard uncertainty as a text.
     """
 
-    _format = alternative(int, "Number of the file format", least=FORMAT, most=FORMAT, absent="1", key="kurbel")
+    _format = alternative(int, "Version of the file format", least=FORMAT, most=FORMAT, absent="1", key="kurbel")
     cylinders: tuple[Cylinder, ...]
     name: str = field(str, "Name of the machine", default="machine", absent="the file name")
     speed: float | None = field(
@@ -85,8 +85,8 @@ class Machine(Record):
     cycle: str = field(tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke")
     efficiency: float = field(
         "ratio",
-        "Mechanical efficiency: multiplies the torque of cylinders whose pistons drive, or only the gas force of "
-        "those that drive where others on the rod are driven (R p. 610–613); divides all torque where none drives",
+        "Mechanical efficiency: multiplies the torque of driving cylinders, or only the gas force of the driving "
+        "pistons if others on the rod are driven (R p. 610–613); divides the whole torque if no piston drives",
         "η",
         default=1.0,
         above=0,
@@ -95,14 +95,14 @@ class Machine(Record):
     )
     ambient: float = field(
         "pressure",
-        "Absolute pressure round the machine",
+        "Absolute ambient pressure",
         default=STANDARD_ATMOSPHERE,
         least=0,
         absent="1.01325 bar",
     )
     brake_power: float | None = field(
         "power",
-        "Power measured at the shaft; a warning tells when less is indicated",
+        "Brake power, measured at the shaft; a warning is given if the indicated power is less",
         "N_e",
         least=0,
         absent="not compared",
@@ -120,7 +120,7 @@ class Machine(Record):
     _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder", key="cylinder")
     _cylinders = alternative(
         OneOf(Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"), RecordForm(EqualCylinders)),
-        "Several cylinders, listed, or equal ones at once; their keys then do not stand at the top",
+        "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
         gives=lambda given: {"cylinders": given["cylinders"]},
         key="cylinders",
@@ -140,7 +140,7 @@ class Machine(Record):
     )
     effort: Known | None = field(
         RecordForm(KnownEffort),
-        "A turning-moment diagram known from elsewhere, instead of cylinders",
+        "A given turning-moment diagram, instead of cylinders",
         absent="from the cylinders",
     )
     coupling: Coupling | None = field(Coupling, "Elastic coupling to a driven moment of inertia", absent="rigid")
@@ -148,13 +148,13 @@ class Machine(Record):
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
         [BalanceShaft],
-        "Shafts with weights that turn once, twice, … in a turn of the crank, with it or against it",
+        "Balance shafts, turning once, twice, … per turn of the crank, with or against it",
         default=(),
         absent="none",
     )
     moment_reference: float | None = field(
         "length",
-        "Place along the shaft about which free moments are taken",
+        "Position along the shaft about which unbalanced moments are taken",
         "z_0",
         absent="the middle of the outer cylinders",
     )
@@ -163,43 +163,43 @@ class Machine(Record):
     )
     shaft: ShaftLine | None = field(
         Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(ShaftPart))),
-        "Shaft line for torsional vibration, read along the shaft: masses, pieces between them, one pair of gears, "
-        "and the words `flywheel`, that of the machine, and `ground`, a fixed end",
+        "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, one pair "
+        "of gears, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
         also=("shaft_line", "torsion"),
     )
     limits: tuple[tuple[str, float], ...] = field(
         LIMITS,
-        "Bounds for key values, checked by `kurbel check`: of each cylinder that has one, else of the machine; "
-        "`machine.T_max` of the whole machine, `NAME.T_max` of one cylinder",
+        "Limits of key values, checked by `kurbel check` for each cylinder that has the value, else for the machine; "
+        "`machine.T_max` is of the whole machine, `NAME.T_max` of one cylinder",
         default=(),
         absent="none",
     )
     expect: tuple[tuple[str, Expected], ...] = field(
         EXPECTATIONS,
-        "Figures that key values are to meet, compared by `kurbel check`, with the names of `limits`",
+        "Expected key values, compared by `kurbel check`; names as in `limits`",
         default=(),
         absent="none",
     )
     uncertainty: tuple[tuple[str, str], ...] = field(
         UNCERTAINTIES,
-        "Standard uncertainties of values of this file, by dotted key: forces, flywheel and stress tell what they "
-        "make of the key values",
+        "Standard uncertainties of values of this file, by dotted key; forces, flywheel and stress propagate them to "
+        "the key values",
         default=(),
-        absent="none told",
+        absent="none",
     )
     rotation: str | None = field(
         ("over", "under"),
-        "Sense in which a lying machine turns: over, the crank pin rising from the inner dead centre, so that an "
-        "engine presses its crosshead down, or under (R p. 602)",
-        absent="over, and nothing is said of the guide",
+        "Sense of rotation of a horizontal machine: over (the crank pin rises from the inner dead centre, so that an "
+        "engine presses its crosshead down) or under (R p. 602)",
+        absent="over, with no remark on the guide",
         also=("direction", "sense"),
     )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(
         [LoadCase],
-        "Load cases: `--case NAME` computes one, `kurbel check` checks the limits in all, `kurbel sweep --cases` has a "
-        "row for each",
+        "Load cases: `--case NAME` computes one, `kurbel check` checks the limits in all, `kurbel sweep --cases` "
+        "prints one row for each",
         default=(),
         absent="one case, the file as it is",
     )
@@ -254,9 +254,9 @@ class Machine(Record):
         """Yield what must not be of the machine as a whole."""
         nothing = not self.cylinders and self.effort is None and self.shaft is None
         none = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
-        yield Rule((), nothing, f"{none}, or 'effort', a turning-moment diagram known from elsewhere")
+        yield Rule((), nothing, f"{none}, or 'effort', a given turning-moment diagram")
         both = bool(self.cylinders) and self.effort is not None
-        yield Rule("effort", both, "'effort' stands instead of cylinders; leave one of them out")
+        yield Rule("effort", both, "'effort' replaces cylinders; give only one of them")
         yield from self._name_rules()
         for index, cylinder in enumerate(self.cylinders):
             for number, piston in enumerate(cylinder.pistons):
@@ -287,7 +287,7 @@ class Machine(Record):
         for index, name in enumerate(names):
             place = ("cylinders", index, "name")
             yield Rule.of(Fault(place, f"two cylinders are called '{name}'"))._replace(broken=name in names[:index])
-            whole = f"'{MACHINE}' stands for the whole machine in 'limits' and 'expect'; give another name"
+            whole = f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
             yield Rule(place, name == MACHINE, whole)
         cases = [case.name for case in self.cases]
         for index, name in enumerate(cases):
@@ -355,7 +355,7 @@ class Machine(Record):
             return (
                 f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
                 if self.cylinders
-                else "no cylinder loads the crankshaft; 'effort' tells a torque and no force on the pin"
+                else "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
             )
         cylinder = self.cylinders[0]
         if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:

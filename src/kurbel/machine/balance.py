@@ -65,7 +65,7 @@ class SharedCounterweights(Record):
 
     share: float = field(
         "ratio",
-        "Share of the reciprocating mass that is balanced, beside all of the rotating mass",
+        "Share of the reciprocating mass that is balanced, in addition to all of the rotating mass",
         "c",
         least=0,
         most=1,
@@ -74,7 +74,7 @@ class SharedCounterweights(Record):
     )
     planes: tuple[float, ...] = field(
         ["length"],
-        "Two places along the shaft where all of them stand, such as the wheels of a locomotive",
+        "Two positions along the shaft of all counterweights, such as the wheels of a locomotive",
         default=(),
         absent="each opposite its own throw",
     )
@@ -96,12 +96,12 @@ class BalanceShaft(_Weight):
             ("with", "against"),
             {"same": "with", "forward": "with", "+": "with", "opposite": "against", "backward": "against"},
         ),
-        "Whether it turns with the crank or against it",
+        "Sense of rotation: with the crank or against it",
         required=True,
         gives=lambda given: {"against": given["sense"] == "against"},
         key="sense",
     )
-    order: int = field(int, "Its turns in one turn of the crank", "n", least=1, most=8, required=True, example="2")
+    order: int = field(int, "Its turns per turn of the crank", "n", least=1, most=8, required=True, example="2")
     against: bool = False
     angle: float = field(
         "angle",
@@ -131,8 +131,8 @@ class Locomotive(Record):
         "Load of one driven wheel on its rail, at rest",
         "Q",
         above=0,
-        absent="not told at which speed a wheel lifts",
+        absent="speed at which a wheel lifts is not computed",
     )
     hammer_limit: float | None = field(
-        "force", "Largest allowed hammer blow of a wheel", above=0, absent="not told which share may be balanced"
+        "force", "Largest allowed hammer blow of a wheel", above=0, absent="permissible balanced share is not computed"
     )

@@ -25,7 +25,7 @@ class Crankshaft(Record):
         "length", "From the middle of the crank pin to bearing A, away from the flywheel", "a", above=0, required=True
     )
     b: float = field(
-        "length", "From the middle of the crank pin to bearing B, beside the flywheel", "b", above=0, required=True
+        "length", "From the middle of the crank pin to bearing B, next to the flywheel", "b", above=0, required=True
     )
     web_distance: float = field(
         "length", "From the middle of the crank pin to the middle of a web", "e", above=0, required=True
@@ -62,7 +62,7 @@ class Crankshaft(Record):
     )
     overhung: bool = field(
         bool,
-        "Whether the pin stands outside of bearing A, at the end of the shaft",
+        "True if the pin is overhung: outside bearing A, at the end of the shaft",
         default=False,
         absent="false",
     )
@@ -113,7 +113,7 @@ class Crankshaft(Record):
                 "flywheel_position",
                 ~np.asarray(beyond) & (position <= room) & (room < 0),
                 "{flywheel_position} is not between web and bearing B, which leave {room:length}; "
-                "B is the bearing beside the flywheel",
+                "B is the bearing next to the flywheel",
                 {"room": -room},
             )
 

@@ -67,7 +67,10 @@ class Cylinder(Record):
     )
     name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
     _like = alternative(
-        str, "Name of a cylinder above, which this one equals but for what stands here", absent="none", key="like"
+        str,
+        "Name of an earlier cylinder that this one copies, except for the keys given here",
+        absent="none",
+        key=("like"),
     )
     _piston = alternative(Inline(Piston), "The cylinder's own piston", key="piston")
     _tandem = alternative(
@@ -84,14 +87,15 @@ class Cylinder(Record):
     )
     inclination: float | None = field(
         "angle",
-        "Stroke line against the horizontal: 0 deg lying, 90 deg cylinder above the shaft, beyond it leaning over",
+        "Angle of the stroke line from the horizontal: 0 deg horizontal, 90 deg cylinder above the shaft, more than "
+        "90 deg beyond the vertical",
         least=-180,
         most=180,
         absent="weight left out",
     )
     crank_position: float = field(
         "angle",
-        "Angle by which this crank follows crank 1",
+        "Angle by which this crank lags crank 1",
         default=0.0,
         absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
     )
@@ -104,28 +108,30 @@ class Cylinder(Record):
         most=360,
         absent="0 deg",
     )
-    axial_position: float | None = field("length", "Place along the shaft", "z", absent="free moments left out")
+    axial_position: float | None = field(
+        "length", "Position along the shaft", "z", absent=("unbalanced moments left out")
+    )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     ram_force: RamForce | None = field(
-        RamForce, "Force on a ram against its motion, constant on each stroke", absent="none"
+        RamForce, "Force opposing the motion of a ram, constant on each stroke", absent="none"
     )
     moment: Moment | None = field(
-        Moment, "Moment against the motion of a mechanism whose output only swings or turns", absent="none"
+        Moment, "Resisting moment of a mechanism whose output swings or rotates", absent="none"
     )
     cycle: str | None = field(
         tuple(CYCLES), "Working cycle of this cylinder, among others", absent="that of the machine"
     )
     point: RodPoint | None = field(
         RodPoint,
-        "A point of the connecting rod or coupler, of which place, velocity and acceleration are told",
+        "A point of the connecting rod or coupler, whose position, velocity and acceleration are printed",
         absent="none",
     )
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        like = "'like' stands in a list of 'cylinders', which has another one above"
+        like = "'like' is for a list of 'cylinders', after another cylinder"
         yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
-        alone = "a tandem piston stands beside the cylinder's own one; give its 'bore'"
+        alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
         yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 
     @classmethod
@@ -184,7 +190,7 @@ def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
 
 _INSTEAD = {
     "bore": ", with the indicator, or choose a mechanism with a piston",
-    "ram_force": "; the resistance of what swings is a 'moment'",
+    "ram_force": "; the resistance of a swinging output is a 'moment'",
 }
 """What else to do where nothing slides that could have this key."""
 
@@ -203,7 +209,7 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
             yield Rule(("friction", key), not has_rod, f"a {kind} has no connecting rod; leave '{key}' out")
     rod = masses.connecting_rod if masses else None
     if rod is not None:
-        message = f"a {kind} has no connecting rod; give what goes to and fro as 'other'"
+        message = f"a {kind} has no connecting rod; give the reciprocating mass as 'other'"
         yield Rule(("masses", "connecting_rod"), not has_rod, message)
         if has_rod and rod.center_of_gravity is not None:
             place, length = ("masses", "connecting_rod", "center_of_gravity"), mechanism.rod_length

@@ -96,7 +96,7 @@ class Steam(_TwoStroke):
     )
     compression: float = field(
         "ratio",
-        "Fraction of the stroke at which the exhaust closes on the way back",
+        "Fraction of the return stroke at which the exhaust closes",
         default=0.0,
         least=0,
         below=1,
@@ -110,7 +110,7 @@ class Steam(_TwoStroke):
         yield _order("admission", self.admission, "exhaust", self.exhaust)
         late = "the exhaust opens at {release}, before the cut-off at {cut_off}"
         yield Rule("release", self.release < self.cut_off, late)
-        message = "what is compressed needs a volume in the end; give 'clearance', or leave 'compression' out"
+        message = "compression needs a final volume; give 'clearance', or leave 'compression' out"
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 
 

@@ -39,8 +39,8 @@ class Rectangle:
         if not self.mean:
             return ()
         return (
-            f"a rectangular card of the mean pressure {show(self.mean, 'pressure')} stands for the true one: "
-            "work and power hold, forces over the angle do not",
+            f"a rectangular card of the mean pressure {show(self.mean, 'pressure')} replaces the true one: work and "
+            "power are correct, forces over the angle are not",
         )
 
     def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
@@ -289,7 +289,7 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
-    texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
+    texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
 )
 _ONE_PRESSURE = Number(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
@@ -305,7 +305,8 @@ class Indicator(Record):
 
     _pressures = alternative(
         ("gauge", "absolute"),
-        "What the pressures count from, also where `p_head`, `p_crank` and `p_max` are shown, asked for or limited",
+        "Reference of the pressures, also for `p_head`, `p_crank` and `p_max` where they are printed, requested or "
+        "limited",
         absent="gauge",
         gives=lambda given: {"absolute": given["pressures"] == "absolute"},
         key="pressures",
@@ -317,8 +318,8 @@ class Indicator(Record):
     )
     crank_end: Chamber | None = field(
         OneOf(Choice(("mirrored",)), _ONE_PRESSURE, _CHAMBER),
-        "Pressure at the crank end, a card counted from its own dead centre, the outer one; or `mirrored`: the "
-        "head end's card, so counted",
+        "Pressure at the crank end, with a card measured from its own (outer) dead centre; or `mirrored`: the card "
+        "of the head end",
         absent="open to the ambient",
         # each chamber's fractions count from its own dead centre, so that it is the same card
         gives=lambda given: {"crank_end": given.get("head_end")} if given["crank_end"] == "mirrored" else {},

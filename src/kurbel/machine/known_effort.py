@@ -50,12 +50,12 @@ class KnownEffort(Record):
     torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")
     skip_rows, delimiter, decimal = _of_file(SKIP_ROWS), _of_file(DELIMITER), _of_file(DECIMAL)
     angle_zero = alternative(
-        "angle", "Angle of the firing or inner dead centre as the file counts", absent="0 deg", needs="file"
+        "angle", "Angle of the firing or inner dead centre in the file", absent="0 deg", needs="file"
     )
     mean = alternative(MEAN_TORQUE, "Mean torque with its unit, or bare in that of the harmonics", "M_m")
     harmonics = alternative(
         HARMONICS,
-        "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+        "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
         needs="mean",
     )
 

@@ -24,14 +24,14 @@ from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
 # how a file of columns is laid out
 
 ANGLE_COLUMN = alternative(int, "Column of the angles, counted from 1", absent="1")
-ANGLE_UNIT = alternative(("deg", "rad", "s", "ms"), "What the angle column counts: an angle, or time", absent="deg")
+ANGLE_UNIT = alternative(("deg", "rad", "s", "ms"), "Unit of the angle column: an angle, or time", absent="deg")
 RECORDED_SPEED = alternative("speed", "Constant speed at which times were recorded", above=0, needs="angle_unit")
 ANGLE_STEP = alternative(
     "angle", "Crank angle from one row to the next, instead of a column of angles", above=0, instead="angle_column"
 )
-SKIP_ROWS = alternative(Number(whole=True, least=0), "Number of lines above the first figures", absent="0")
+SKIP_ROWS = alternative(Number(whole=True, least=0), "Number of lines before the first data", absent="0")
 DELIMITER = alternative(
-    (*DELIMITERS, *DELIMITERS.values()), "Sign between two columns", absent="comma", also=("separator", "sep")
+    (*DELIMITERS, *DELIMITERS.values()), "Separator of the columns", absent="comma", also=("separator", "sep")
 )
 DECIMAL = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point")
 
@@ -61,7 +61,7 @@ class Pegging(Record):
     """What becomes a `KnownLevel`."""
 
     angle = alternative("angle", "Crank angle from the (firing) dead centre", required=True)
-    pressure = alternative("pressure", "Pressure there, as `pressures` says", required=True)
+    pressure = alternative("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
 
     @classmethod
     def of_keys(cls, angle: float, pressure: float) -> KnownLevel:
@@ -74,11 +74,11 @@ class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
     motored: str = field(
-        FILE_PATH, "File of a motored trace, laid out as that of the trace", required=True, example="motored.csv"
+        FILE_PATH, "File of a motored trace, in the same layout as the trace", required=True, example="motored.csv"
     )
     loss_angle: float = field(
         "angle",
-        "Angle by which heat loss and leakage put its peak before the dead centre",
+        "Thermodynamic loss angle: how far heat loss and leakage move the peak ahead of the dead centre",
         least=0,
         required=True,
         example="0.7 deg",
@@ -101,31 +101,30 @@ class Measured(Record):
     skip_rows, delimiter, decimal = SKIP_ROWS, DELIMITER, DECIMAL
     angle_zero = alternative(
         OneOf(Number("angle"), RecordForm(Motored)),
-        "Angle of the firing or inner dead centre as the file counts; or a motored trace by which it is found",
+        "Angle of the firing or inner dead centre in the file; or a motored trace from which it is found",
         absent="0 deg",
     )
     pressure_columns = alternative(
         COLUMN_RANGE, "Columns of pressures, one for each measured cycle", instead="pressure_column"
     )
     angle_sense = alternative(
-        ("with", "against"), "Whether angles count with the rotation, or against it", absent="with"
+        ("with", "against"), "Direction in which angles count: with the rotation or against it", absent="with"
     )
-    scale = alternative("ratio", "Pressure, in the unit, for 1 of the file, such as bar for a volt", absent="1")
-    offset = alternative("pressure", "Pressure that is added after the scale", absent="0 bar")
+    scale = alternative("ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1")
+    offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
         OneOf(Choice(("ambient",)), RecordForm(Pegging)),
-        "Where the level of every cycle is known; `ambient`: at the dead centre where the compression begins",
+        "Reference point for the absolute level of every cycle; `ambient`: the dead centre where the compression "
+        "begins",
         absent="pressures as measured",
     )
-    drift = alternative(
-        ("linear",), "Drift that is taken off every cycle, so that it closes", absent="none is taken off"
-    )
+    drift = alternative(("linear",), "Drift correction of every cycle, so that it closes", absent="none")
     clearance = alternative(
         CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
     )
     compression_ratio = alternative(
         "ratio",
-        "The same as the largest volume over the smallest",
+        "The same as a ratio: largest over smallest volume",
         "ε",
         above=1,
         instead="clearance",
@@ -164,7 +163,7 @@ class Measured(Record):
             return figures * up / down * scale + offset
 
         if file is None:
-            refuse(*(Fault((key,), f"'{key}' describes a file; leave it out beside 'points'") for key in layout))
+            refuse(*(Fault((key,), f"'{key}' describes a file; leave it out if 'points' are given") for key in layout))
             angles, figures = np.array(points, dtype=float).T
             values = pressures(figures[np.newaxis])
             samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)

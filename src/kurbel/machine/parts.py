@@ -105,7 +105,7 @@ class Masses(Record):
 
     _sum_given = alternative(
         "mass",
-        "All that goes to and fro, with its share of the connecting rod; instead of the parts",
+        "Total reciprocating mass, including its share of the connecting rod; instead of the parts",
         "m",
         least=0,
         gives=_sum,
@@ -114,10 +114,10 @@ class Masses(Record):
     _piston = _part("Piston, or a list of pistons", "piston")
     _piston_rod = _part("Piston rod", "piston_rod")
     _crosshead = _part("Crosshead", "crosshead")
-    _other = _part("Whatever else goes to and fro", "other")
+    _other = _part("Any other reciprocating mass", "other")
     _connecting_rod = alternative(
         OneOf(Number("mass", least=0), RecordForm(ConnectingRod)),
-        "Connecting rod: its mass, of which one half goes to and fro, or a mapping",
+        "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),
         gives=_rod,
@@ -128,7 +128,7 @@ class Masses(Record):
     connecting_rod: ConnectingRod | None = None
     rotating: float = field(
         "mass",
-        "Unbalanced mass of the crank, as one at its pin, without the connecting rod",
+        "Unbalanced mass of the crank, reduced to the pin, without the connecting rod",
         "m_rot",
         default=0.0,
         least=0,
@@ -190,7 +190,7 @@ class Friction(Record):
 
     crosshead: float | None = field("ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0)
     rings: Rings | None = field(Rings, "Piston rings")
-    constant: float | None = field("force", "Force against the motion, the same over the stroke", "F_0", least=0)
+    constant: float | None = field("force", "Force opposing the motion, constant over the stroke", "F_0", least=0)
     guide: Guide | None = field(Guide, "Shoe of the crosshead", needs="crosshead")
     crank_pin: float | None = field(
         "ratio", "Coefficient of friction of the connecting rod on the crank pin", "f_Z", least=0
@@ -240,7 +240,7 @@ class Friction(Record):
                 needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
                 yield Fault((name,), f"{needed}, or give '{there}' in 'crankshaft'" if there else needed)
             elif given and in_shaft:
-                yield Fault((here,), f"'{there}' in 'crankshaft' says the same; leave one of them out")
+                yield Fault((here,), f"'{there}' in 'crankshaft' gives the same; leave one of them out")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -248,10 +248,10 @@ class RamForce(Record):
     """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
     work: float = field(
-        "force", "Force against the motion on the working stroke", "P_a", default=0.0, least=0, absent="0"
+        "force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0, absent="0"
     )
     back: float = field(
-        "force", "Force against the motion on the return stroke", "P_r", default=0.0, least=0, absent="0", key="return"
+        "force", "Force opposing the motion on the return stroke", "P_r", default=0.0, least=0, absent="0", key="return"
     )
 
     @classmethod
@@ -264,11 +264,11 @@ class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
     work: float = field(
-        "torque", "Moment against the motion on the working stroke", "M_a", default=0.0, least=0, absent="0"
+        "torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0, absent="0"
     )
     back: float = field(
         "torque",
-        "Moment against the motion on the return stroke",
+        "Moment opposing the motion on the return stroke",
         "M_r",
         default=0.0,
         least=0,
@@ -295,7 +295,7 @@ class RodPoint(Record):
     along: float = field("length", "Distance along the rod, toward its other pin", required=True)
     across: float = field(
         "length",
-        "Distance from the rod's line, positive to the side of the outstroke",
+        "Distance from the centre line of the rod, positive toward the side of the outstroke",
         default=0.0,
         absent="0",
     )

@@ -26,12 +26,12 @@ class EqualCylinders(Record):
     firing_order: tuple[int, ...] | None = field(
         FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
-        absent="that of the machine; where every bank has one cylinder, all stand on one crank pin",
+        absent="that of the machine; if every bank has one cylinder, all share one crank pin",
     )
     _crank_positions = alternative(
         ["angle"],
-        "Angles by which the cranks follow crank 1, one for each cylinder, where no firing order gives them; if "
-        "all are less than 360 deg, four-stroke cylinders fire in the turns with the most even intervals",
+        "Angles by which the cranks lag crank 1, one for each cylinder, if not given by a firing order; if all are "
+        "less than 360 deg, four-stroke cylinders fire with the most even intervals possible",
         absent="from the firing order",
         instead="firing_order",
         example="[0 deg, 120 deg, 240 deg]",
@@ -39,9 +39,9 @@ class EqualCylinders(Record):
     )
     _spacing = alternative(
         "length",
-        "From one cylinder of a bank to the next along the shaft; 0 mm: two rods on one pin",
+        "Distance between neighbouring cylinders of a bank along the shaft; 0 mm: two rods on one pin",
         least=0,
-        absent="free moments left out",
+        absent="unbalanced moments left out",
         key="spacing",
     )
     _bank_angles = alternative(
@@ -81,7 +81,7 @@ class EqualCylinders(Record):
     def standing(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
         """Return the cylinders with their crank positions; order: of the machine; cycle: of the machine."""
         if order and (self.firing_order or self.placed):
-            given = "crank positions also stand" if self.placed else "a firing order also stands"
+            given = "crank positions are also given" if self.placed else "a firing order is also given"
             refused(f"{given} in 'cylinders'; leave one of them out", "firing_order")
         if order or self.firing_order:
             where: Path = ("cylinders", "firing_order") if self.firing_order else ("firing_order",)
@@ -91,7 +91,7 @@ class EqualCylinders(Record):
             return in_even_turns(self.cylinders, [only_pins] * len(self.cylinders), cycle)
         if not self.shared:
             message = (
-                "'firing_order' is missing: where the cranks stand; write for instance 'firing_order: 1-3-4-2', or "
+                "'firing_order' is missing: positions of the cranks; write for instance 'firing_order: 1-3-4-2', or "
                 "'crank_positions', one for each cylinder"
             )
             refused(message, "cylinders")

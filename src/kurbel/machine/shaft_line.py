@@ -32,31 +32,35 @@ class ShaftPart(Record):
     name: str | None = field(str, "What the table calls it", absent="the cylinder, or mass 1, mass 2, …")
     inertia: float | None = field(
         "inertia",
-        "Moment of inertia of a mass; beside a cylinder, of what turns there besides its moving parts",
+        "Moment of inertia of a mass; with a cylinder, that of the rotating parts in addition to its crank train",
         "J",
         above=0,
     )
     cylinder: tuple[str, ...] | None = field(
         OneOf(TEXT, Listing(TEXT)),
-        "Name of the cylinder whose crank stands here, or a list of those on one pin; its masses count by the mean "
-        "of their reduced inertia over the turn",
+        "Name of the cylinder whose crank is here, or a list of those on one pin; its masses count with the mean of "
+        "their reduced inertia over one turn",
         gives=lambda given: {"cylinder": (one,) if isinstance(one := given["cylinder"], str) else one},
     )
     load: bool | None = field(
-        bool, "Whether this mass takes the load", absent="the last; the first if cranks stand at the last"
+        bool, "Whether this mass takes the load", absent="the last; the first if cranks are at the last"
     )
-    stiffness: float | None = field("stiffness", "Stiffness of a piece; or give `diameter` and `length`", "k", above=0)
+    stiffness: float | None = field(
+        "stiffness", "Stiffness of a shaft segment; or give `diameter` and `length`", "k", above=0
+    )
     diameter: float | None = field(
-        "length", "Diameter of a piece; beside a stiffness it serves the stress alone", "d", above=0
+        "length", "Diameter of a shaft segment; if a stiffness is given, used for the stress only", "d", above=0
     )
-    length: float | None = field("length", "Length of a piece", "l", above=0, instead="stiffness", needs="diameter")
-    bore: float | None = field("length", "Bore of a hollow piece", "d_i", least=0, absent="0", needs="diameter")
+    length: float | None = field(
+        "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs=("diameter")
+    )
+    bore: float | None = field("length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter")
     shear_modulus: float | None = field(
-        "stress", "Shear modulus of a piece", "G", above=0, absent="82 GPa, steel", needs="length"
+        "stress", "Shear modulus of a shaft segment", "G", above=0, absent="82 GPa, steel", needs="length"
     )
     loss_factor: float | None = field(
         "ratio",
-        "Loss factor of a piece, energy lost over 2π times that stored",
+        "Loss factor of a shaft segment, energy lost over 2π times that stored",
         "η",
         least=0,
         most=2,
@@ -64,17 +68,18 @@ class ShaftPart(Record):
     )
     damping: float | None = field(
         "damping",
-        "Torque per speed of vibration: of a mass against uniform rotation, of a piece per speed of twist",
+        "Damping torque per angular velocity: of a mass relative to uniform rotation, of a shaft segment per speed "
+        "of twist",
         "c, d",
         least=0,
         absent="0",
     )
     gear: float | None = field(
-        "ratio", "Speed of what follows in the list over the speed of what stands before it", "u", above=0
+        "ratio", "Speed ratio: speed after the gear over speed before it, in the order of the list", "u", above=0
     )
 
     def rules(self) -> Iterator[Rule]:
-        each = {"a mass": _OF_MASS, "a piece of shaft": _OF_PIECE, "a gear": ("gear",)}
+        each = {"a mass": _OF_MASS, "a shaft segment": _OF_PIECE, "a gear": ("gear",)}
         found = [(kind, key) for kind, keys in each.items() for key in keys if vars(self)[key] is not None]
         others = [(kind, key) for kind, key in found if kind != found[0][0]]
         if others:
@@ -82,18 +87,18 @@ class ShaftPart(Record):
             message = f"'{first}' is of {one}, '{second}' of {other}; make two items of them"
             yield Rule(second, True, message)
         elif not found:
-            piece = "'stiffness', or 'diameter' and 'length', of a piece of shaft"
+            piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
             yield Rule((), True, f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")
         elif kind_of(self) == "piece":
             none = self.stiffness is None and self.length is None
-            yield Rule((), none, "the piece has no stiffness: give 'stiffness', or 'diameter' and 'length'")
+            yield Rule((), none, "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'")
         elif kind_of(self) == "mass":
             none = self.inertia is None and self.cylinder is None
             yield Rule("load", none, "the mass has no inertia: give 'inertia' or 'cylinder'")
         both = self.gear is not None and self.damping is not None
-        yield Rule("damping", both, "belongs to a mass or a piece of shaft; a gear has none here")
+        yield Rule("damping", both, "is for a mass or a shaft segment; a gear has none")
         if self.bore is not None and self.diameter is not None:
-            yield Rule("bore", self.bore >= self.diameter, "{bore} leaves nothing of the diameter ({diameter})")
+            yield Rule("bore", self.bore >= self.diameter, "{bore} is not less than the diameter ({diameter})")
 
 
 Part = Union[ShaftPart, str]
@@ -182,12 +187,12 @@ def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> list[Fault
                 near = did_you_mean(name, tuple(cylinders))
                 faults.append(Fault(place, f"no cylinder '{name}'{near}; {there}"))
             elif name in seen:
-                faults.append(Fault(place, f"'{name}' stands in the shaft line twice"))
+                faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
             seen.add(name)
     absent = [name for name in cylinders if name not in seen]
     if absent and not seen - set(cylinders):
         item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
-        faults.append(Fault((), f"{', '.join(absent)} stands nowhere in it; {item}"))
+        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
     return faults
 
 
@@ -198,18 +203,18 @@ def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
         if kind == "piece" and not (before and after):
             yield Fault((index,), "a shaft line begins and ends with a mass, or with 'ground'")
         if kind == before == "mass":
-            yield Fault((index,), "no piece of shaft stands between this mass and the one before; give it, or one mass")
+            yield Fault((index,), "no shaft segment between this mass and the one before; give it, or one mass")
         damped = any(isinstance(one, ShaftPart) and one.damping for one in parts[max(index - 1, 0) : index + 1])
         if kind == before == "piece" and damped:
-            yield Fault((index,), "pieces in series with a damper are not one piece; give a mass between them")
+            yield Fault((index,), "segments in series with a damper cannot be combined; give a mass between them")
         if kind == GROUND and before and after:
-            yield Fault((index,), "'ground' is a fixed end; it stands first or last")
+            yield Fault((index,), "'ground' is a fixed end; it must be first or last")
         if kind == "gear" and not (before and after):
-            yield Fault((index, "gear"), "a gear stands between what it joins; give what comes before and after it")
+            yield Fault((index, "gear"), "a gear joins two parts; give what comes before and after it")
         elif kind == "gear" and "mass" not in (before, after):
             yield Fault((index, "gear"), "gears have inertia; give it as a mass before or after the gear")
         if GROUND in (kind, before) and {kind, before} & {"mass", "gear"}:
-            yield Fault((index,), "a piece of shaft stands between 'ground' and the first mass; give its stiffness")
+            yield Fault((index,), "a shaft segment is missing between 'ground' and the first mass; give its stiffness")
 
 
 def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
@@ -223,13 +228,13 @@ def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
     if len(grounds) > 1 and cranks:
         yield Fault((cranks[0],), "a shaft that is held at both ends does not turn a crank; leave one 'ground' out")
     if kinds.count("mass") + min(len(grounds), 1) < 2:
-        second = "give a second one and the piece of shaft between them"
-        yield Fault((), f"one mass has nothing to vibrate against; {second}")
+        second = "give a second one and the shaft segment between them"
+        yield Fault((), f"a single mass cannot vibrate; {second}")
     loads = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.load]
     if len(loads) > 1:
         yield Fault((loads[1], "load"), "one mass takes the load; leave one of them out")
     if gears and cranks and cranks[0] < gears[0] < cranks[-1]:
-        yield Fault((gears[0], "gear"), "cranks stand before and behind the gear; they turn at one speed")
+        yield Fault((gears[0], "gear"), "there are cranks before and after the gear; all must turn at one speed")
 
 
 def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:

@@ -51,7 +51,7 @@ class Rim(Record):
     )
     depth: float = field(
         "length",
-        "Depth of its section along the radius",
+        "Radial depth of its section",
         "h",
         default=0.0,
         above=0,
@@ -59,11 +59,9 @@ class Rim(Record):
         instead="inner_diameter",
         needs="mean_diameter",
     )
-    width: float | None = field(
-        "length", "Width of its section along the shaft; with it the rim has its moment of inertia", "b", above=0
-    )
+    width: float | None = field("length", "Axial width of its section, which gives its moment of inertia", "b", above=0)
     mass: float | None = field(
-        "mass", "Mass of the rim, which gives its moment of inertia as the width does", "m", above=0, instead="width"
+        "mass", "Mass of the rim, which gives its moment of inertia instead of the width", "m", above=0, instead="width"
     )
     density: float = field(
         "density",
@@ -75,7 +73,7 @@ class Rim(Record):
         also=("material",),
     )
     allowable_tension: float | None = field(
-        "stress", "Tension that the rim may bear; a warning tells when it has more", "k_z", above=0
+        "stress", "Allowable hoop stress of the rim; a warning is given if it is exceeded", "k_z", above=0
     )
 
     @classmethod
@@ -89,7 +87,7 @@ class Rim(Record):
         beyond = self.depth > self.mean_diameter
         yield Rule("depth", beyond, "{depth} is more than the mean diameter ({mean_diameter}), that of a disc")
         if self.sized_by:
-            message = "give 'outer_diameter' and 'inner_diameter', or 'depth' beside 'mean_diameter'"
+            message = "give 'outer_diameter' and 'inner_diameter', or 'depth' with 'mean_diameter'"
             without = f"gives no moment of inertia without the depth of the rim; {message}"
             yield Rule(self.sized_by, self.depth == 0, without)
 
@@ -131,7 +129,7 @@ class Flywheel(Record):
     inertia: float | None = field("inertia", "Moment of inertia; or give `gd2`", "J", least=0)
     _gd2 = alternative(
         "gd2",
-        "Old form of the moment of inertia: 4gJ as a weight times an area, or 4J as a mass times an area",
+        "Flywheel effect: 4gJ in units of weight times area, or 4J in units of mass times area",
         "GD²",
         least=0,
         instead="inertia",
@@ -140,7 +138,7 @@ class Flywheel(Record):
     )
     _mass = alternative(
         "mass",
-        "Mass, with the radius of gyration another form of the moment of inertia m k²",
+        "Mass; with the radius of gyration it gives the moment of inertia m k²",
         "m",
         least=0,
         instead="inertia",
@@ -159,7 +157,7 @@ class Flywheel(Record):
     )
     fluctuation: float | None = field(
         "ratio",
-        "Wanted coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
+        "Required coefficient of speed fluctuation (ω_max − ω_min)/ω_mean",
         "δ",
         above=0,
         below=2,
@@ -167,7 +165,8 @@ class Flywheel(Record):
     )
     _rim = alternative(
         Rim,
-        "A rim that has the whole moment of inertia; its sizes give it, or else the section that it needs is printed",
+        "A rim that has the whole moment of inertia: its dimensions give J; without them the required section is "
+        "printed",
         absent="no section",
         gives=lambda given: (
             {"rim": given["rim"]} | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
@@ -180,7 +179,7 @@ class Flywheel(Record):
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
         rim = given.get("rim")
         if isinstance(rim, Rim) and rim.sized_by:
-            message = "the sizes of the rim tell the moment of inertia, which is given besides; leave one of them out"
+            message = "the moment of inertia is given and also follows from the sizes of the rim; give only one of them"
             yield Rule(("rim", rim.sized_by), bool({"inertia", "gd2", "mass"} & given.keys()), message)
 
     def rules(self) -> Iterator[Rule]:
@@ -338,14 +337,14 @@ class Load(Record):
     )
     _mean = alternative(
         MEAN_TORQUE,
-        "Mean torque beside the harmonics, in the unit",
+        "Mean torque, added to the harmonics, in the unit",
         "M_m",
         needs="harmonics",
         key="mean",
     )
     _harmonics = alternative(
         HARMONICS,
-        "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+        "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
         needs="unit",
         instead="points",
         gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
@@ -387,7 +386,7 @@ class Coupling(Record):
     """An elastic coupling and what it drives."""
 
     stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
-    inertia: float = field("inertia", "Moment of inertia of what is driven", "J_2", above=0, required=True)
+    inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0, required=True)
     damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0, absent="0")
 
 

@@ -185,7 +185,7 @@ def explain(error: Any, text: str) -> Fault:
     context, problem, sign = error.context or "", error.problem or "", lines[line][column : column + 1]
     at_begin = "quoted scalar" in context and "end of stream" in problem
     if "tab character" in problem or sign == "\t":
-        message = "a tab stands where the indentation belongs; indent with spaces"
+        message = "a tab in the indentation; indent with spaces"
     elif at_begin:
         message = "the quotation mark that opens here is never closed"
     elif "flow sequence" in context or "flow mapping" in context:
@@ -231,5 +231,5 @@ def _words(context: str, problem: str, line: str, column: int) -> str:
     if "escape" in problem:
         return "unknown escape in a text; within double quotation marks write '\\\\' for a backslash"
     if "document start" in problem:
-        return f"'{line[column : column + 1]}' stands after the end of the machine; remove it"
+        return f"'{line[column : column + 1]}' after the end of the machine; remove it"
     return f"this is no YAML: {problem or context}"

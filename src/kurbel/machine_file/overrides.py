@@ -122,7 +122,7 @@ def _step(node: Any, one: Override, place: int) -> Any:
             node[step] = one.value
         return node[step]
     if not isinstance(node, dict):
-        _refused(one.given, f"nothing stands below '{above}', which is {kind_of(node)}")
+        _refused(one.given, f"there is nothing below '{above}', which is {kind_of(node)}")
     if last:
         node[str(step)] = one.value
     elif is_nothing(node.get(str(step), Plain())):

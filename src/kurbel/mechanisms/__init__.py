@@ -222,12 +222,12 @@ class Mechanism(Record):
 
     @property
     def phi_return(self) -> float:
-        """Crank rotation of the return stroke in degrees."""
+        """Crank rotation during the return stroke in degrees."""
         return 360.0 - self.phi_work
 
     @property
     def time_ratio(self) -> float:
-        """Time of the outstroke (working stroke) over that of the return stroke, at uniform rotation."""
+        """Time ratio of the outstroke (working stroke) to the return stroke, at uniform rotation."""
         return self.phi_work / self.phi_return
 
     def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any] | None:
@@ -383,7 +383,7 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 
 BLOCK_OFFERS = (
     Offer(
-        own_motion("c_block", "c_b", "velocity", "Speed at which the block on the crank pin slides along its slot"),
+        own_motion("c_block", "c_b", "velocity", "Sliding speed of the crank-pin block along its slot"),
         lambda one, angle: one.block_slope(angle),
         omega=1,
     ),
@@ -392,7 +392,7 @@ BLOCK_OFFERS = (
             "F_pin",
             "F_z",
             "force",
-            "Force of the sliding block on the crank pin, in the sense of P",
+            "Force of the sliding block on the crank pin, positive in the direction of P",
             called="force of the sliding block on the crank pin",
         ),
         lambda one, angle: one.pin_force_factor(angle),

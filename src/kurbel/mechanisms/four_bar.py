@@ -240,7 +240,7 @@ class FourBar(Mechanism):
         return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
 
     lacks: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("inertia of coupler and rocker", "kurbel takes no masses on what only swings"),
+        ("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),
     )
 
     def dead_centres(self) -> tuple[float, float]:

@@ -77,7 +77,7 @@ COUPLER_VALUES = (
             "coupler_inertia",
             "F_b",
             "force",
-            "Inertia force m v²/R of the coupler, turning with the cranks",
+            "Centrifugal force m v²/R of the coupler",
             "",
             ("forces",),
             after="T_min",

@@ -28,7 +28,7 @@ _N_PAIR = own_force(
     "N_pair",
     "N_2",
     "force",
-    "Force on each of the two guides of a yoke, opposite to one another",
+    "Force on each of the two guides of a yoke, in opposite directions",
     called="force on each of the two guides of a yoke",
 )
 

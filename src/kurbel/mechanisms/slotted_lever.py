@@ -98,7 +98,7 @@ class SlottedLever(Mechanism):
         yield from finite(self, "crank", "frame", "lever")
         yield from self.contradictions()
         hanging = not (self.slides or forked)
-        yield Rule("link", hanging, "has no lever's end to hang on; give 'lever' with it")
+        yield Rule("link", hanging, "needs the end of the lever; give 'lever' too")
         yield from finite(self, "pin_diameter", "pin_length")
         same = "{frame} is also the crank: the pin would pass through the lever's pivot"
         yield Rule("frame", self.crank == self.frame, same)

@@ -28,7 +28,7 @@ def check_file(file_name: str, option: str = "--output") -> str:
     if kind != "svg" and importlib.util.find_spec("typst") is None:
         raise UsageError(
             f"{option} {file_name}: a {kind} needs typst, which is not installed: "
-            "pip install 'kurbel[plot]'; an svg needs nothing"
+            "pip install 'kurbel[plot]'; svg needs no package"
         )
     return kind
 

@@ -16,17 +16,19 @@ from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
 
 ORDERS = by_id(
-    Quantity("order", "n", "ratio", "Turns of the circles in one turn of the crank"),
-    Quantity("F_forward", "F_+", "force", "Free force: circle that turns with the crank"),
-    Quantity("F_backward", "F_−", "force", "Free force: circle that turns against it"),
+    Quantity("order", "n", "ratio", "Order: turns of the components in one turn of the crank"),
+    Quantity("F_forward", "F_+", "force", "Unbalanced force: component rotating with the crank"),
+    Quantity("F_backward", "F_−", "force", "Unbalanced force: component rotating against the crank"),
     Quantity("F_forward_book", "F_+,0", "force", "The same by the acceleration of first order (R 291)"),
     Quantity("F_backward_book", "F_−,0", "force", "The same by the acceleration of first order (R 291)"),
-    Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the free force", "F_n2/F2"),
-    Quantity("M_forward", "M_+", "torque", "Free moment: circle that turns with the crank"),
-    Quantity("M_backward", "M_−", "torque", "Free moment: circle that turns against it"),
+    Quantity("F_share", "F_n²/F²", "ratio", "Share of the order in the mean square of the unbalanced force", "F_n2/F2"),
+    Quantity("M_forward", "M_+", "torque", "Unbalanced moment: component rotating with the crank"),
+    Quantity("M_backward", "M_−", "torque", "Unbalanced moment: component rotating against the crank"),
     Quantity("M_forward_book", "M_+,0", "torque", "The same by the acceleration of first order (R 291)"),
     Quantity("M_backward_book", "M_−,0", "torque", "The same by the acceleration of first order (R 291)"),
-    Quantity("M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the free moment", "M_n2/M2"),
+    Quantity(
+        "M_share", "M_n²/M²", "ratio", "Share of the order in the mean square of the unbalanced moment", "M_n2/M2"
+    ),
 )
 """Columns of the table of orders; amplitudes."""
 
@@ -35,20 +37,26 @@ def _ellipse(name: str, kind: str, of: str) -> tuple[Quantity, ...]:
     return (
         Quantity(f"{name}_long", f"{name}_a", kind, f"{of}: longer half-axis of the ellipse of this order"),
         Quantity(f"{name}_short", f"{name}_b", kind, f"{of}: shorter half-axis"),
-        Quantity(f"{name}_direction", f"∠{name}_a", "angle", "Direction of the longer axis", f"arg {name}_a"),
-        Quantity(f"{name}_forward_phase", f"∠{name}_+", "angle", "Forward circle at φ = 0", f"arg {name}_+"),
-        Quantity(f"{name}_backward_phase", f"∠{name}_−", "angle", "Backward circle at φ = 0", f"arg {name}_-"),
+        Quantity(f"{name}_direction", f"∠{name}_a", "angle", "Direction of the major axis", f"arg {name}_a"),
+        Quantity(
+            f"{name}_forward_phase", f"∠{name}_+", "angle", "Phase of the forward component at φ = 0", f"arg {name}_+"
+        ),
+        Quantity(
+            f"{name}_backward_phase", f"∠{name}_−", "angle", "Phase of the backward component at φ = 0", f"arg {name}_-"
+        ),
     )
 
 
-ELLIPSES = by_id(ORDERS["order"], *_ellipse("F", "force", "Free force"), *_ellipse("M", "torque", "Free moment"))
+ELLIPSES = by_id(
+    ORDERS["order"], *_ellipse("F", "force", "Unbalanced force"), *_ellipse("M", "torque", "Unbalanced moment")
+)
 """Columns of the table of ellipses: what the two circles of an order make together."""
 
 WEIGHTS = by_id(
-    Quantity("axial_position", "z", "length", "Place along the shaft"),
+    Quantity("axial_position", "z", "length", "Position along the shaft"),
     Quantity("product", "u", "unbalance", "Mass times radius"),
     Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
-    Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
+    Quantity("hammer_blow", "H", "force", "Amplitude by which it loads and lifts its wheel"),
     Quantity("counterweight", "u_R", "unbalance", "The whole counterweight in the wheel, mass times radius"),
     Quantity("counterweight_angle", "α_R", "angle", "Its direction at φ = 0"),
 )
@@ -84,7 +92,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
             "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
         )
     if balance.roll is not None:
-        notes.append("M_roll is −M of kurbel flywheel, less what turns the masses themselves about the shaft.")
+        notes.append("M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft.")
 
     (whole,) = subjects_of(case, "balance", frame.compare)
     whole = replace(
@@ -133,7 +141,7 @@ def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTa
         circles.append(((), circle))
         ellipses.append(((), ellipse))
     title = "Orders: circles with the crank (+) and against it (−)"
-    other = "Orders: ellipses, and where the circles stand at φ = 0"
+    other = "Orders: ellipses, and phases of the rotating components at φ = 0"
     return [
         place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS),
         place_table("ellipses", other, (), ELLIPSES, ellipses, system, alone=_DIGITS),

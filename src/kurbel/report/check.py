@@ -187,7 +187,7 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
     except KurbelError as error:
         yield Entry("left out", str(error), "info")
         return
-    yield Entry("computed", "free forces and moments, their orders, best counterweights")
+    yield Entry("computed", "unbalanced forces and moments, their orders, best counterweights")
     yield from _left_out(lacking)
 
 

@@ -30,7 +30,7 @@ _ROWS = (
     ),
     Command("stress", "Bearing forces and stresses of the crankshaft.", _STALLS, "Strength of the crankshaft"),
     Command("bearings", "Loads on pins and main bearings.", _STALLS, "Bearings"),
-    Command("balance", "Free forces and moments, counterweights.", _STALLS, "Balance of the masses"),
+    Command("balance", "Unbalanced forces and moments, counterweights.", _STALLS, "Balance of the masses"),
     Command("harmonics", "Orders of the turning effort, gas and inertia apart.", (), "Orders of the turning effort"),
     Command("torsion", "Torsional vibration of the shaft line.", _STALLS, "Torsional vibration"),
     Command("plot", "Pictures, in the terminal or as SVG, PNG, PDF.", _STALLS),

@@ -34,9 +34,9 @@ from kurbel.solver.indicated import OF_CYCLES
 from kurbel.solver.trace import TracePressure
 
 STRESSES = by_id(
-    Quantity("compression", "σ_c", "stress", "Compression of a web by the force along it, negative where it is pulled"),
+    Quantity("compression", "σ_c", "stress", "Compressive stress of a web by the force along it, negative in tension"),
     Quantity("bending_in_plane", "σ_b1", "stress", "Bending in the plane of the throw"),
-    Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending square to the plane of the throw"),
+    Quantity("bending_out_of_plane", "σ_b2", "stress", "Bending perpendicular to the plane of the throw"),
     Quantity("torsion", "τ", "stress", "Torsion"),
     Quantity("combined", "σ_res", "stress", "Combined stress 0.35 σ + 0.65 √(σ² + 4(α₀τ)²) (Bach)"),
     Quantity("von_mises", "σ_v", "stress", "Equivalent stress √(σ² + 3τ²) (von Mises)"),
@@ -134,8 +134,8 @@ def _forces_notes(case: Case) -> Iterator[str]:
     ends = [end for forces in case.cylinders for gas in forces.drive.gas for end in (gas.head, gas.crank)]
     if any(isinstance(end, TracePressure) and end.trace.even for end in ends):
         yield (
-            "ΔA/A of a trace at equal angles is no rounding: the indicated work is that of the trapezoid rule on the "
-            "samples, the quadrature follows straight lines between them; it shows what their spacing leaves open."
+            "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "
+            "the quadrature by straight lines between them; the difference shows the effect of the sample spacing."
         )
 
 
@@ -174,11 +174,12 @@ def equal_bearings(case: Case) -> list[list[Bearing]]:
 def _bearing_notes(case: Case) -> Iterator[str]:
     machine, line = case.machine, case.bearings.line
     yield (
-        "Loads are those of a rod on its pin and of the shaft on its bearings. Directions count in the sense of "
-        "rotation: ε_K from the throw outward (of a main bearing from that of crank 1), ε_M from the stroke line of "
-        "cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to either "
-        "side of where it is pressed; crank pins and journals turn with the throw, crosshead pins and main shells "
-        "stand in the engine."
+        "Loads are those of a rod on its pin and of the shaft on its bearings. Directions are measured in the sense "
+        "of rotation: ε_K from the throw outward (of a main bearing from that of crank 1), ε_M from the stroke line "
+        "of "
+        "cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to "
+        "either side of the load; crank pins and journals rotate with the throw, crosshead pins and main shells do "
+        "not."
     )
     if len(machine.cylinders) > 1:
         yield "φ is the angle of crank 1."

@@ -191,14 +191,14 @@ def balance_left_out(case: Case, compare: bool = False) -> list[LeftOut]:
         placeless.append("counterweights of the machine")
     if any(one.axial_position is None for one in balance.machine.balance_shafts):
         placeless.append("balance_shafts")
-    no_speed = "no speed given; the weights against them do not depend on it"
-    no_book = "the book has no such formula for a stroke line beside the shaft"
+    no_speed = "no speed given; the counterweights do not depend on it"
+    no_book = "the book has no such formula for an offset stroke line"
     no_place = f"no axial_position given of {', '.join(placeless)}"
     return missing(
         {
             **{f"inertia of {name}": "no masses given" for name in still},
-            "free forces and moments": no_speed if balance.omega is None else "",
-            "free moments": no_place if balance.free.moment is None else "",
+            "unbalanced forces and moments": no_speed if balance.omega is None else "",
+            "unbalanced moments": no_place if balance.free.moment is None else "",
             "figures of first order": no_book if compare and balance.book is None else "",
         }
     )

@@ -86,14 +86,14 @@ def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str
     if isinstance(bound, Expected):
         low, high = bound.low - value, value - bound.high
         ok = max(low, high) <= _ROUNDING * max(abs(bound.low), abs(bound.high))
-        off = f"OFF, {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
+        off = f"FAIL, {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
         wanted = bound.text or f"{_shown(bound.low, kind, '')} to {_shown(bound.high, kind, '')}"
-        text = f"{size}, expected {wanted}  {'met' if ok else off}"
+        text = f"{size}, expected {wanted}  {'PASS' if ok else off}"
     else:
         ok = not breaks(quantity, bound, value)
         size = f"|{size}|" if quantity.id.endswith("_residual") and not quantity.is_noise(value) else size
         sign = ("≥" if ok else "<") if quantity.bounded_below else ("≤" if ok else ">")
-        text = f"{size} {sign} {_shown(bound, kind, unit)}  {'kept' if ok else 'BROKEN'}"
+        text = f"{size} {sign} {_shown(bound, kind, unit)}  {'PASS' if ok else 'FAIL'}"
     return Entry(str(path[-1]), f"{text}  ({where})", "info" if ok else "error", path)
 
 

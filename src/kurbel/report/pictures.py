@@ -476,7 +476,7 @@ PICTURES = (
     PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
-"""The pictures, the one that says most of a machine first."""
+"""The pictures, the most informative picture of a machine first."""
 
 
 _OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion")

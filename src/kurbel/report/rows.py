@@ -72,7 +72,7 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         wanted = _value(subject, command, column, factor, of, text) if column else 0.0
         found = column and subject.source.angles_where(column.id, wanted)
         if column is None or found is None:
-            why = "; kurbel check says why"
+            why = "; kurbel check shows why"
             if column and column.kind in _OF_SPEED and subject.source.omega is None:
                 why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
             raise UsageError(f"--where: '{name}' is left out for this machine{why}")

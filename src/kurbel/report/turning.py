@@ -25,58 +25,62 @@ from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibratio
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),
     Quantity("order", "ν", "ratio", "Order: periods per turn of the shaft"),
-    Quantity("M_cos", "a_ν", "torque", "Factor of cos νφ"),
-    Quantity("M_sin", "b_ν", "torque", "Factor of sin νφ"),
+    Quantity("M_cos", "a_ν", "torque", "Coefficient of cos νφ"),
+    Quantity("M_sin", "b_ν", "torque", "Coefficient of sin νφ"),
     Quantity("M_amplitude", "|M_ν|", "torque", "Amplitude of the order"),
     Quantity("M_phase", "ε_ν", "angle", "Phase: the order is |M_ν| cos(νφ − ε_ν)"),
-    Quantity("M_gas", "|M_g|", "torque", "Amplitude of what does not depend on the speed"),
-    Quantity("M_inertia", "|M_b|", "torque", "Amplitude of the inertia forces, which goes with the square of ω"),
+    Quantity("M_gas", "|M_g|", "torque", "Amplitude of the part independent of speed"),
+    Quantity("M_inertia", "|M_b|", "torque", "Amplitude of the part from inertia forces, proportional to ω²"),
     Quantity("t_order", "t_ν", "pressure", "Tangential-pressure coefficient |M_ν|/(R A)"),
 )
 """Of one order of a torque, by id."""
 
 MODES = by_id(
-    Quantity("mode", "i", "ratio", "Number of the mode; 0 is the rotation of the whole"),
+    Quantity("mode", "i", "ratio", "Mode number; 0 is rigid-body rotation"),
     Quantity("frequency", "f", "frequency", "Natural frequency"),
     Quantity("omega_natural", "ω_e", "angular_velocity", "Natural angular frequency"),
 )
 """Of one natural vibration, by id."""
 
 PIECES = by_id(
-    Quantity("M_shaft_mean", "M_w,m", "torque", "Mean torque in the piece of shaft"),
-    Quantity("M_shaft_max", "M_w,max", "torque", "Largest torque in the piece, all orders together"),
-    Quantity("M_shaft_min", "M_w,min", "torque", "Smallest torque in the piece"),
-    Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque: half of what it swings"),
-    Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque where the piece is thinnest"),
-    Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress: half of what it swings"),
+    Quantity("M_shaft_mean", "M_w,m", "torque", "Mean torque in the shaft segment"),
+    Quantity("M_shaft_max", "M_w,max", "torque", "Largest torque in the shaft segment, all orders together"),
+    Quantity("M_shaft_min", "M_w,min", "torque", "Smallest torque in the shaft segment"),
+    Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque amplitude (half peak-to-peak)"),
+    Quantity("tau_mean", "τ_m", "stress", "Stress of the mean torque at the smallest section of the segment"),
+    Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress amplitude (half peak-to-peak)"),
 )
 """Of one piece of shaft at the working speed, by id."""
 
 CRITICAL_SPEEDS = by_id(
     TORQUE_ORDERS["order"],
     MODES["mode"],
-    Quantity("speed", "n_k", "speed", "Critical speed, at which the order meets the mode"),
-    Quantity("phase_sum", "|ΣΘ|", "ratio", "Sum of the phase vectors of the cranks, Θ as in Holzer's table"),
-    Quantity("distance", "Δn/n", "ratio", "Distance from the working speed, over that"),
-    Quantity("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any piece when running there"),
-    Quantity("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any piece when running there"),
+    Quantity("speed", "n_k", "speed", "Critical speed, at which the order excites the mode"),
+    Quantity("phase_sum", "|ΣΘ|", "ratio", "Phase vector sum of the cranks, with Θ of the Holzer table"),
+    Quantity("distance", "Δn/n", "ratio", "Separation from the working speed, relative to it"),
+    Quantity("M_vibratory", "M_w,a", "torque", "Largest vibratory torque of any shaft segment when running there"),
+    Quantity("tau_vibratory", "τ_a", "stress", "Largest vibratory stress of any shaft segment when running there"),
 )
 """Of one critical speed, by id."""
 
 HOLZER = by_id(
     Quantity("inertia", "J", "inertia", "Moment of inertia of the mass"),
-    Quantity("theta", "Θ", "ratio", "Amplitude of the mass, over that of the first"),
-    Quantity("inertia_torque", "ω²JΘ", "torque", "Torque of the mass per radian of the first", "w2 J Theta"),
-    Quantity("torque_sum", "Σω²JΘ", "torque", "Torque in the piece behind the mass per radian", "sum"),
-    Quantity("stiffness", "k", "stiffness", "Stiffness of the piece behind the mass"),
-    Quantity("twist", "ΔΘ", "ratio", "Twist of the piece behind the mass"),
+    Quantity("theta", "Θ", "ratio", "Amplitude of the mass, relative to the first mass"),
+    Quantity(
+        "inertia_torque", "ω²JΘ", "torque", "Inertia torque of the mass per radian of the first mass", "w2 J Theta"
+    ),
+    Quantity(
+        "torque_sum", "Σω²JΘ", "torque", "Torque in the segment after the mass, per radian of the first mass", "sum"
+    ),
+    Quantity("stiffness", "k", "stiffness", "Stiffness of the segment after the mass"),
+    Quantity("twist", "ΔΘ", "ratio", "Twist of the segment after the mass"),
 )
 """Of one mass in Holzer's table, by id."""
 
 SPEEDS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),
-    Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque in the piece at that speed"),
-    Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress in the piece at that speed"),
+    Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque amplitude in the shaft segment at that speed"),
+    Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress amplitude in the shaft segment at that speed"),
 )
 """Of one piece at one speed, by id."""
 
@@ -362,7 +366,7 @@ def _of_piece(piece: SegmentTorque) -> dict[str, float]:
 def torsion_left_out(found: ShaftVibration) -> list[LeftOut]:
     """Return what torsional vibration leaves out."""
     bare = [found.piece_name(index) for index, piece in enumerate(found.line.pieces) if not piece.sections]
-    mean = "the mean counts; what its change excites is not computed"
+    mean = "the mean is used; parametric excitation is not computed"
     return missing(
         {
             "forced vibration, torques and stresses": found.obstacle,

@@ -82,7 +82,7 @@ _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1
 _LARGEST_MASS = 1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
 _HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
 _ASK = "is beyond anything built; is its unit right?"
-_LARGEST_FLUCTUATION = 0.25  # the books allow most to crushers and hammers, 1/5
+_LARGEST_FLUCTUATION = 0.25  # the books permit the largest, 1/5, for crushers and hammers, 1/5
 
 
 def _speed_warnings(machine: Machine) -> Iterator[str]:
@@ -320,7 +320,7 @@ def turning_warnings(case: Case) -> Iterator[str]:
             f"E and ω assume {show(abs(turning.deficit), 'torque')} {word} resistance throughout"
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
-        yield "both 'efficiency' and 'friction' are given: friction is taken off twice"
+        yield "both 'efficiency' and 'friction' are given: friction is counted twice"
     if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_the_wish:
         better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
         yield (
@@ -332,11 +332,11 @@ def turning_warnings(case: Case) -> Iterator[str]:
         grows = f"by {more:.2g} of itself" if more < _SLOWLY else f"{least}{turning.multiplier:.4g} times"
         yield f"unstable: a disturbance of the speed grows {grows} in every cycle"
     if turning.load_ignored:
-        yield "the mean torque is zero, so that a load in proportion to it does not hold the speed; it is left out"
+        yield "the mean torque is zero, so that a load proportional to it does not govern the speed; it is left out"
     if turning.elastic:
         for near in turning.elastic.resonances:
             yield (
-                f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) lies "
+                f"resonance: harmonic {near.order:g} of the torque ({show(near.amplitude, 'torque')}) is "
                 f"{100 * abs(near.distance):.2g} % from the natural order {turning.elastic.natural_order:.4g} and is "
                 f"amplified {near.amplification:.3g} times"
             )

@@ -186,15 +186,15 @@ class BalanceColumns(AtAngles):
 
     commands = ("balance",)
     F_x = _vector(
-        "force", "F_x", "force", "Free force along the stroke line of cylinder 1, outward from the shaft", np.real
+        "force", "F_x", "force", "Unbalanced force along the stroke line of cylinder 1, outward from the shaft", np.real
     )
-    F_y = _vector("force", "F_y", "force", "Free force across it, 90° on in the sense of rotation", np.imag)
-    F_free = _vector("force", "F", "force", "Free force, its magnitude", np.abs, asked=True)
+    F_y = _vector("force", "F_y", "force", "Unbalanced force across it, 90° ahead in the sense of rotation", np.imag)
+    F_free = _vector("force", "F", "force", "Magnitude of the unbalanced force", np.abs, asked=True)
     F_x_book = _vector("book force", "F_x,0", "force", "F_x by the acceleration of first order (R 291)", np.real, True)
     F_y_book = _vector("book force", "F_y,0", "force", "F_y by the acceleration of first order (R 291)", np.imag, True)
-    M_x = _vector("moment", "M_x", "torque", "Free moment Σ (z − z_0) F_x", np.real)
-    M_y = _vector("moment", "M_y", "torque", "Free moment Σ (z − z_0) F_y", np.imag)
-    M_free = _vector("moment", "M_f", "torque", "Free moment, its magnitude", np.abs, asked=True)
+    M_x = _vector("moment", "M_x", "torque", "Unbalanced moment Σ (z − z_0) F_x", np.real)
+    M_y = _vector("moment", "M_y", "torque", "Unbalanced moment Σ (z − z_0) F_y", np.imag)
+    M_free = _vector("moment", "M_f", "torque", "Magnitude of the unbalanced moment", np.abs, asked=True)
     M_x_book = _vector(
         "book moment", "M_x,0", "torque", "M_x by the acceleration of first order (R 291)", np.real, True
     )
@@ -249,9 +249,9 @@ class MachineBalance(Results):
     state = BalanceColumns
 
     _book = "The same by the acceleration of first order (R 291)"
-    F_free_max = value("F_max", "force", "Largest free force", lambda one: one.farthest["force"])
+    F_free_max = value("F_max", "force", "Largest unbalanced force", lambda one: one.farthest["force"])
     F_free_max_book = value("F_0,max", "force", _book, lambda one: one.farthest_of_book[0])
-    M_free_max = value("M_f,max", "torque", "Largest free moment", lambda one: one.farthest.get("moment"))
+    M_free_max = value("M_f,max", "torque", "Largest unbalanced moment", lambda one: one.farthest.get("moment"))
     M_free_max_book = value("M_f,0,max", "torque", _book, lambda one: one.farthest_of_book[1])
     M_roll_max = value(
         "M_roll,max",
@@ -278,27 +278,32 @@ class MachineBalance(Results):
     counterweight_best = value(
         "u_1",
         "unbalance",
-        "Counterweight against what rotates and half of what reciprocates",
+        "Counterweight balancing all rotating and half of the reciprocating mass",
         lambda one: abs(one.forward),
     )
     counterweight_best_angle = value("α_1", "angle", _direction, lambda one: one.angle_of(-one.forward))
     counterweight_least = value(
-        "u_min", "unbalance", "Counterweight that leaves the least largest free force", lambda one: abs(one.least)
+        "u_min", "unbalance", "Counterweight that minimises the largest unbalanced force", lambda one: abs(one.least)
     )
     counterweight_least_angle = value("α_min", "angle", _direction, lambda one: one.angle_of(one.least))
     share_best = value(
-        "c_min", "ratio", "Share of the reciprocating mass that it balances", lambda one: one.share_of_least()
+        "c_min",
+        "ratio",
+        "Share of the reciprocating mass that this counterweight balances",
+        lambda one: one.share_of_least(),
     )
-    F_free_best = value("F_min", "force", "Largest free force that it leaves", lambda one: one.least_and_force[1])
+    F_free_best = value("F_min", "force", "Largest unbalanced force with it", lambda one: one.least_and_force[1])
 
     counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")
-    swaying_couple = value("M_s", "torque", "Largest swaying couple, about the upright axis")
-    hammer_blow = value("H", "force", "Hammer blow: by how much a counterweight loads and lifts its wheel")
-    hammer_speed = value("n_H", "speed", "Speed of rotation at which the hammer blow is the load of the wheel")
-    hammer_train_speed = value("v_H", "velocity", "Speed of the train at which it is")
-    share_allowed = value("c_H", "ratio", "Largest share of the reciprocating masses within the limit of the blow")
+    swaying_couple = value("M_s", "torque", "Largest swaying couple, about the vertical axis")
+    hammer_blow = value("H", "force", "Hammer blow: amplitude by which a counterweight loads and lifts its wheel")
+    hammer_speed = value("n_H", "speed", "Speed of rotation at which the hammer blow equals the wheel load")
+    hammer_train_speed = value("v_H", "velocity", "Speed of the train at which the hammer blow equals the wheel load")
+    share_allowed = value(
+        "c_H", "ratio", "Largest share of the reciprocating masses that keeps the hammer blow within its limit"
+    )
 
     def __init__(self, effort: TurningEffort, compare: bool = False) -> None:
         machine = self.machine = effort.machine
@@ -308,10 +313,10 @@ class MachineBalance(Results):
             throw for throw in throws_with_masses(machine, first) if machine.cylinders[throw.number].masses
         )
         if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
-            raise UsageError(f"{machine.name}: nothing moves that could be balanced; give 'masses' to its cylinders")
+            raise UsageError(f"{machine.name}: no moving masses to balance; give 'masses' to its cylinders")
         for throw in self.throws:
             if throw.mechanism.quick_return:
-                raise UsageError(f"{throw.name}: the masses of what drives a ram back quickly are not known")
+                raise UsageError(f"{throw.name}: the masses of a quick-return mechanism are not known")
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))

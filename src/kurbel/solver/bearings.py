@@ -121,17 +121,17 @@ class Bearing(Results):
     load_max = value("F_L,max", "force", "Largest load")
     load_min = value("F_L,min", "force", "Smallest load")
     load_mean = value("F_L,m", "force", "Mean load over time")
-    load_high = value("F_L,m,½", "force", "Mean load while it exceeds half the largest")
+    load_high = value("F_L,m,½", "force", "Mean load over the time in which it exceeds half the largest")
     unloaded_arc = value("Δε_Z", "angle", "Arc of the pin or journal that is never loaded")
-    unloaded_middle = value("ε_Z", "angle", "Middle of its widest piece, in the frame of the pin")
+    unloaded_middle = value("ε_Z", "angle", "Middle of its widest part, in the frame of the pin")
     unloaded_arc_shell = value("Δε_L", "angle", "Arc of the shell that is never loaded")
-    unloaded_middle_shell = value("ε_L", "angle", "Middle of its widest piece, in the frame of the shell")
+    unloaded_middle_shell = value("ε_L", "angle", "Middle of its widest part, in the frame of the shell")
     pressure_max = value("p_L,max", "pressure", "Largest pressure, load over d l")
     pressure_mean = value("p_L,m", "pressure", "Mean pressure over time")
-    rubbing_speed_max = value("v_L,max", "velocity", "Largest speed of one surface on the other")
-    rubbing_speed_mean = value("v_L,m", "velocity", "Mean speed of one surface on the other")
+    rubbing_speed_max = value("v_L,max", "velocity", "Largest sliding speed of the surfaces")
+    rubbing_speed_mean = value("v_L,m", "velocity", "Mean sliding speed of the surfaces")
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
-    work_rubbing = value("A_f,L", "energy", "Work lost by its friction per cycle")
+    work_rubbing = value("A_f,L", "energy", "Friction work per cycle")
 
     def __init__(
         self, name: str, followed: Sequence[Follower], size: tuple[Any, Any], surfaces: tuple[str, str]
@@ -425,8 +425,8 @@ class ShaftBearings:
         self._loading = [one.drive.has_force and bool(one.drive.mechanism.has_rod) for one in cylinders]
         if not any(self._loading):
             raise UsageError(
-                f"{machine.name}: nothing loads a bearing: that needs a cylinder with a connecting rod, and a pressure "
-                "or masses and a speed"
+                f"{machine.name}: no load on any bearing: give a cylinder with a connecting rod, and a pressure or "
+                "masses and a speed"
             )
         self.obstacle = shaft_obstacle(machine)
         known = machine.crankshaft and not self.obstacle

@@ -62,7 +62,10 @@ class ElasticCoupling(SpeedLine):
         "M_K,min", "torque", "Smallest torque in the elastic coupling", lambda one: one.torque_extremes.smallest
     )
     amplification = value(
-        "V", "ratio", "Swing of the torque in the coupling over that in a rigid one", lambda one: one.amplified()
+        "V",
+        "ratio",
+        "Torque variation in the coupling, relative to that in a rigid coupling",
+        lambda one: one.amplified(),
     )
 
     def __init__(self, effort: TurningEffort, own: Array, law: SpeedLaw | None) -> None:
@@ -95,8 +98,8 @@ class ElasticCoupling(SpeedLine):
             resonates, failed = meets & (failed | endless), failed | (meets & endless)
             if effort.count is None and resonates[0]:
                 raise NoSolutionError(
-                    f"the coupling is in resonance with harmonic {nearest[0]:g} of the torque and "
-                    "nothing damps it: give 'coupling.damping', or change its stiffness or the speed"
+                    f"the coupling is in resonance with harmonic {nearest[0]:g} of the torque, without damping: give "
+                    "'coupling.damping', or change its stiffness or the speed"
                 )
             if effort.count is None and failed[0]:
                 raise NoSolutionError(

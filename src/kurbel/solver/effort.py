@@ -106,7 +106,7 @@ class TurningEffort:
         """The cycle in pieces on which every torque is a polynomial. Raises UsageError where no force acts."""
         name, speed, count = self.machine.name, self.machine.speed, self.count or 1
         if not self.groups and not self.machine.effort:
-            raise UsageError(f"{name}: no force acts, so that nothing turns the shaft; kurbel check says why")
+            raise UsageError(f"{name}: no force acts, so there is no torque; kurbel check shows why")
         if speed is not None:
             beyond = (speed != 0) & ((speed <= _SLOWEST) | (speed >= 1 / _SLOWEST))
             self.refused |= beyond

@@ -63,16 +63,16 @@ class TurningState(AtAngles):
         extremes=("flywheel",),
     )
     T_inertia = _over_the_angle(
-        "T_inertia", "T_b", "force", "Share of the inertia forces in T, at uniform rotation (Tolle)"
+        "T_inertia", "T_b", "force", "Part of T due to the inertia forces, at uniform rotation (Tolle)"
     )
     M = _over_the_angle("M", "M", "torque", "Torque on the shaft", called="torque", extremes=("flywheel",))
-    E = _over_the_angle("E", "E", "energy", "Excess of the work of M over that of the resistance since angle 0")
+    E = _over_the_angle("E", "E", "energy", "Excess work: work of M minus work of the resistance since angle 0")
     omega = _over_the_angle("omega", "ω", "angular_velocity", "Angular velocity of the shaft")
     alpha = _over_the_angle(
         "alpha",
         "α",
         "angular_acceleration",
-        "Angular acceleration of the shaft, just after a jump",
+        "Angular acceleration of the shaft; at a jump, the value after it",
         called="angular acceleration of the shaft",
         extremes=("flywheel",),
     )
@@ -170,7 +170,7 @@ class MachineTurning(Results):
     M_mean = value(
         "M_m",
         "torque",
-        "Mean torque of the turning effort: the resistance",
+        "Mean torque of the turning effort, equal to the resistance",
         lambda one: one.effort.result(one.effort.mean) if one.knows_mean else None,
     )
     work_shaft = value(
@@ -211,7 +211,7 @@ class MachineTurning(Results):
     lobes = value(
         "A_1, A_2, …",
         "energy",
-        "Excess work of the lobes, from crossing to crossing",
+        "Excess work of each lobe, from crossing to crossing",
         lambda one: one.of_crossings(one.excess.lobes),
         plain="A_1, ...",
         listed=True,
@@ -225,7 +225,7 @@ class MachineTurning(Results):
     dE = value(
         "ΔE",
         "energy",
-        "Largest swing of the excess work, over all lobes",
+        "Fluctuation of energy: largest minus smallest excess work",
         lambda one: one.effort.result(one.excess.dE),
     )
 
@@ -254,27 +254,27 @@ class MachineTurning(Results):
     J = value(
         "J",
         "inertia",
-        "Moment of inertia of the flywheel: the given one, or that for the wanted δ",
+        "Moment of inertia of the flywheel: as given, else as required for the given δ",
         lambda one: one.J_needed if one._given is None else one._given,
     )
     GD2 = value(
         "GD²",
         "gd2",
-        "Old form of the moment of inertia, 4gJ as a weight times an area",
+        "Flywheel effect GD² = 4gJ, weight times diameter squared",
         lambda one: None if one.J is None else 4 * one.J,
         plain="GD2",
     )
     J_needed = value(
         "J_δ",
         "inertia",
-        "Flywheel for the wanted δ, ΔE/(δ ω²)",
+        "Moment of inertia required for δ, ΔE/(δ ω²)",
         lambda one: one.flywheel_of_the_books(),
         unless=lambda one: one.is_the_needed,
     )
     GD2_needed = value(
         "GD²_δ",
         "gd2",
-        "The same as GD² = 4gJ",
+        "The same as flywheel effect GD² = 4gJ",
         lambda one: None if one.J_needed is None else 4 * one.J_needed,
         plain="GD2_delta",
         unless=lambda one: one.is_the_needed,
@@ -282,14 +282,14 @@ class MachineTurning(Results):
 
     @key_value("A_K", "area")
     def rim_section(self) -> Any:
-        """Section of the rim for the wanted δ, or for J: 4 J/(π ρ D (D² + h²))."""
+        """Cross-section of the rim required for δ, or for J: 4 J/(π ρ D (D² + h²))."""
         wanted = self.J if self.J_needed is None else self.J_needed
         return None if self.rim is None or wanted is None else self.rim.section(wanted)
 
     rim_speed = value(
         "v_K",
         "velocity",
-        "Speed of the middle of the rim",
+        "Rim speed at the mean diameter",
         lambda one: one.rim.speed(one.omega) if one.rim and one.turns else None,
     )
     rim_stress = value(
@@ -328,7 +328,7 @@ class MachineTurning(Results):
 
     @key_value("δ_0", "ratio", after="delta")
     def delta_book(self) -> Any:
-        """The same after the books, ΔE/(J ω²)."""
+        """The same by the textbook formula, ΔE/(J ω²)."""
         driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
         inertia = (0.0 if self.J is None else self.J) + driven
         if not self.turns or not some(inertia != 0):
@@ -337,7 +337,7 @@ class MachineTurning(Results):
 
     @key_value("μ", "ratio")
     def multiplier(self) -> Any:
-        """What is left of a disturbance after a cycle (Floquet); below 1 it dies away.
+        """Floquet multiplier: part of a disturbance that remains after one cycle; stable below 1.
 
         μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
         """
@@ -366,7 +366,7 @@ class MachineTurning(Results):
         if coupling and not self._needs_no_inertia:
             own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
             if effort.count is None and not own[0]:
-                raise UsageError("nothing before the coupling has any inertia: give 'flywheel' an inertia")
+                raise UsageError("nothing ahead of the coupling has inertia: give 'flywheel' an inertia")
             if some(natural_order(coupling, own, self.omega) <= RIGID_ABOVE):
                 return ElasticCoupling(effort, own, self.law)
         whole = np.asarray(flywheel + (coupling.inertia if coupling else 0.0), dtype=float)
@@ -425,7 +425,7 @@ class MachineTurning(Results):
 
     @key_value("n_e", "ratio")
     def natural_order(self) -> Any:
-        """Natural frequency of the coupled masses over the angular velocity."""
+        """Natural frequency of the coupled masses, relative to the angular velocity."""
         if self.machine.coupling is None or not self.turns or (self._given is None and self._wanted is None):
             return None
         needed = self.excess.dE / (self._wanted * self.omega**2) if self._given is None else self._given
@@ -475,7 +475,7 @@ class MachineTurning(Results):
 
     @key_value("J_δ,ω", "inertia", after="rim_stress")
     def J_exact(self) -> Any:
-        """Flywheel with which δ of the speed line is the wanted one.
+        """Moment of inertia with which the computed speed has the required δ.
 
         None where that of the books does, and where none is found; of many machines nan: each is searched by itself.
         """
@@ -510,7 +510,7 @@ class DeadCentre(Results):
 
     @key_value("P_d + P_p", "force")
     def P_dead_centre(self) -> Extreme | None:
-        """Force before the pump in a dead centre, without inertia.
+        """Force ahead of the pump at a dead centre, without inertia.
 
         At the end of the stroke steam and pump both oppose the motion, and the parts before the pump must carry their
         sum (R p. 613). None if the cylinder does not both drive and drive a pump.

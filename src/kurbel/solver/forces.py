@@ -44,7 +44,7 @@ class Brake(Results):
     """
 
     mean_pressure_brake = value("p_e", "pressure", "Mean effective pressure: brake work over the swept volume")
-    mean_pressure_friction = value("p_r", "pressure", "Friction mean pressure, p_i less p_e")
+    mean_pressure_friction = value("p_r", "pressure", "Friction mean effective pressure, p_i − p_e")
     eta_m = value("η_m", "ratio", "Mechanical efficiency: brake power over indicated power")
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces]) -> None:
@@ -136,8 +136,8 @@ class CylinderForces(SampledCylinder, Results):
 
     A_head = value("A_H", "area", "Piston area at the head end")
     A_crank = value("A_C", "area", "Piston area at the crank end")
-    p_max = value("p_max", "pressure", "Largest gauge pressure in the cylinder's own piston", gauge=True)
-    m = value("m", "mass", "Reciprocating mass with its share of the connecting rod")
+    p_max = value("p_max", "pressure", "Largest gauge pressure on the cylinder's own piston", gauge=True)
+    m = value("m", "mass", "Reciprocating mass, including its share of the connecting rod")
     extremes = Searched()
     P_inertia_max = value(
         "P_b,max",
@@ -156,28 +156,28 @@ class CylinderForces(SampledCylinder, Results):
     p_guide_max = value(
         "p_g,max",
         "pressure",
-        "Largest pressure of the crosshead's shoe on its guide",
+        "Largest pressure of the crosshead shoe on its guide",
         lambda forces: forces.on_guide.get("p_guide_max"),
         after="T_peak",
     )
     p_guide_mean = value(
         "p_g,m",
         "pressure",
-        "Mean over the way of the shoe's pressure on its guide",
+        "Mean pressure of the crosshead shoe on its guide over the stroke",
         lambda forces: forces.on_guide.get("p_guide_mean"),
         after="T_peak",
     )
     wear_max = value(
         "f N c_max",
         "power",
-        "Largest value of the wear line of the guide",
+        "Largest friction power on the guide",
         lambda forces: forces.on_guide.get("wear_max"),
         after="T_peak",
     )
     wear_mean = value(
         "f N c_m",
         "power",
-        "Mean of the wear line: power lost on the guide",
+        "Mean friction power on the guide",
         lambda forces: forces.on_guide.get("wear_mean"),
         after="T_peak",
     )
@@ -198,7 +198,7 @@ class CylinderForces(SampledCylinder, Results):
         "Indicated work of the driven pistons per cycle, negative",
         unless=lambda one: one.works_one_way,
     )
-    resistance_work = value("A_r", "energy", "Work per cycle of what the ram or rocker works against, negative")
+    resistance_work = value("A_r", "energy", "Work per cycle of the resistance at the ram or rocker, negative")
     power = value("N_i", "power", "Indicated power")
     mean_pressure = value("p_i", "pressure", "Mean indicated pressure of the cylinder's own piston")
 
@@ -214,7 +214,7 @@ class CylinderForces(SampledCylinder, Results):
         return Brake(machine, (self,)) if len(machine.cylinders) == 1 and machine.brake_power is not None else None
 
     work_sensitivity = value(  # an indicator's dead centre is seldom known better
-        "dA_i/A_i", "ratio", "Change of the indicated work of the traces, over that work, if they are put 0.1 deg later"
+        "dA_i/A_i", "ratio", "Relative change of the indicated work for a shift of the traces by +0.1 deg"
     )
     W = value(
         "W",
@@ -240,7 +240,7 @@ class CylinderForces(SampledCylinder, Results):
     loss_crosshead_redtenbacher = value(
         "½ λ f",
         "ratio",
-        "Redtenbacher's mean over the rod angle of the same loss (D 7)",
+        "The same loss by Redtenbacher's mean over the rod angle (D 7)",
         lambda forces: (
             forces.mechanism.lam * forces.drive.crosshead_friction / 2 if "crosshead" in forces.friction_works else None
         ),
@@ -261,12 +261,16 @@ class CylinderForces(SampledCylinder, Results):
     energy_residual = value(
         "ΔA/A",
         "ratio",
-        "Energy in minus energy out by an independent quadrature",
+        "Energy balance of the cycle, in minus out, by an independent quadrature",
         lambda forces: forces.energy_left(),
         residual=True,
     )
     residual = value(
-        "r_F", "ratio", "What Newton's law leaves open of the forces, over the largest", residual, residual=True
+        "r_F",
+        "ratio",
+        "Residual of Newton's law for the forces, relative to the largest force",
+        residual,
+        residual=True,
     )
 
     @part(RodLoads, unless=lambda forces: forces.no_compressor)

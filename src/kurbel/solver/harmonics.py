@@ -177,13 +177,13 @@ class MachineOrders(Results):
     M_mean = value(
         "M_m",
         "torque",
-        "Mean torque of the turning effort: the resistance",
+        "Mean torque of the turning effort, equal to the resistance",
         lambda one: one.effort.result(one.effort.mean),
     )
 
     @key_value("Σ|M_ν|²/2", "ratio", plain="sum M_nu2/2")
     def orders_share(self) -> Any:
-        """Share of the mean square of the torque about its mean that these orders carry (Parseval).
+        """Share of the variance of the torque contained in these orders (Parseval).
 
         None where the torque is uniform.
         """
@@ -194,7 +194,7 @@ class MachineOrders(Results):
 
     @key_value("ν_H", "ratio", listed=True)
     def major_orders(self) -> Any:
-        """Major orders, in which all cranks pull together.
+        """Major orders, in which all cranks act in phase.
 
         None with fewer than two cylinders.
         """

@@ -38,13 +38,13 @@ OF_CYCLES = (
 class Indicated(Results):
     """The key values of the traces of a cylinder's own piston, in SI; None where it has none."""
 
-    mean_pressure_gross = value("p_i,g", "pressure", "Share of p_i of compression and expansion")
-    mean_pressure_exchange = value("p_i,w", "pressure", "Share of p_i of exhaust and intake: the pumping loop")
-    V_clearance = value("V_c", "volume", "Clearance of the head-end chamber")
+    mean_pressure_gross = value("p_i,g", "pressure", "Gross part of p_i: compression and expansion")
+    mean_pressure_exchange = value("p_i,w", "pressure", "Pumping part of p_i: exhaust and intake")
+    V_clearance = value("V_c", "volume", "Clearance volume of the head-end chamber")
     n_compression = value("n_c", "ratio", "Exponent of p V^n over the compression, 90 to 40 deg before its end")
     n_expansion = value("n_d", "ratio", "Exponent of p V^n over the expansion, 60 to 100 deg after its start")
-    p_rise_max = value("dp/dφ_max", "pressure_rise", "Largest rise of pressure over 1 deg of angle")
-    cycles_measured = value("Z", "ratio", "Number of measured cycles, of whose mean the forces are")
+    p_rise_max = value("dp/dφ_max", "pressure_rise", "Largest rate of pressure rise, per degree")
+    cycles_measured = value("Z", "ratio", "Number of measured cycles averaged for the forces")
     mean_pressure_std = value("s_p_i", "pressure", "Standard deviation of p_i over the cycles")
     mean_pressure_cov = value("COV", "ratio", "Coefficient of variation of p_i: standard deviation over mean")
     p_max_mean = value("p_max,m", "pressure", "Mean of the largest gauge pressures of the cycles", gauge=True)

@@ -38,7 +38,7 @@ class MotionColumns(AtAngles):
     z = value(
         "z",
         "ratio",
-        "Fraction of the stroke, or of the swing, from the inner dead centre",
+        "Displacement as a fraction of the stroke, or of the swing, from the inner dead centre",
         lambda one: None if one.mechanism.turns else one.way / one.mechanism.stroke,
         on_request=("motion", "forces"),
     )
@@ -57,26 +57,26 @@ class MotionColumns(AtAngles):
     c = value(
         "c",
         "velocity",
-        "Velocity, positive toward the shaft; of a quick-return ram, on the working stroke",
+        "Velocity, positive toward the shaft; of a quick-return ram, positive on the working stroke",
         lambda one: one.slope * one.omega if one.mechanism.slides and one.omega is not None else None,
     )
     b = value(  # a power would raise where the product is inf
         "b",
         "acceleration",
-        "Acceleration, positive as the velocity",
+        "Acceleration, positive in the direction of positive velocity",
         lambda one: one.curvature * (one.omega * one.omega) if one.mechanism.slides and one.omega is not None else None,
     )
     x_point = value(
         "x_Q",
         "length",
-        "Place of the point of the rod from the shaft axis, along φ = 0",
+        "Coordinate of the point of the rod from the shaft axis, along φ = 0",
         lambda one: one.point and one.point.x,
         on_request=("forces",),
     )
     y_point = value(
         "y_Q",
         "length",
-        "Place of the point of the rod from the shaft axis, along φ = 90°",
+        "Coordinate of the point of the rod from the shaft axis, along φ = 90°",
         lambda one: one.point and one.point.y,
         on_request=("forces",),
     )
@@ -146,18 +146,20 @@ class Motion(Results):
     stroke = value("s", "length", "Stroke")
     phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
     phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
-    phi_work = value("φ_w", "angle", "Crank rotation of the outstroke (working stroke)", unless=_equal_strokes)
-    phi_return = value("φ_r", "angle", "Crank rotation of the return stroke", unless=_equal_strokes)
+    phi_work = value("φ_w", "angle", "Crank rotation during the outstroke (working stroke)", unless=_equal_strokes)
+    phi_return = value("φ_r", "angle", "Crank rotation during the return stroke", unless=_equal_strokes)
     time_ratio = value(
         "t_w/t_r",
         "ratio",
-        "Time of the outstroke (working stroke) over that of the return stroke",
+        "Time ratio of the outstroke (working stroke) to the return stroke",
         lambda motion: motion.mechanism.time_ratio,
         unless=_equal_strokes,
     )
     v = value("v", "velocity", "Crank-pin speed")
     c_m = value("c_m", "velocity", "Mean piston speed 2 s n (R 290)")
-    c_work_m = value("c_a,m", "velocity", "Mean speed of the outstroke (of work, R p. 615)", unless=_equal_strokes)
+    c_work_m = value(
+        "c_a,m", "velocity", "Mean speed of the outstroke (working stroke, R p. 615)", unless=_equal_strokes
+    )
     c_return_m = value("c_r,m", "velocity", "Mean speed of the return stroke (R p. 615)", unless=_equal_strokes)
     c_max = value("c_max", "velocity", "Largest velocity on the outstroke")
     c_min = value(
@@ -169,7 +171,7 @@ class Motion(Results):
     c_work_max = value("c_a,max", "velocity", "Largest speed of the working stroke (R 304)")
     c_return_max = value("c_r,max", "velocity", "Largest speed of the return stroke (R 305)")
     b_max = value("b_max", "acceleration", "Largest acceleration")
-    b_min = value("b_min", "acceleration", "Smallest acceleration: the largest deceleration, negative")
+    b_min = value("b_min", "acceleration", "Minimum acceleration (peak deceleration)")
     phi_b_zero = value("φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True)
     phi_b_zero_book = value(
         "φ_b0=0",

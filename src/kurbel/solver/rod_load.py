@@ -45,14 +45,14 @@ class RodLoads(Results):
     reversal_angle = value(
         "Δφ_G",
         "angle",
-        "Crank angle per cycle of a reversed rod load: pressed or pulled, whichever is less; a bound is the least",
+        "Crank angle per cycle with the rod in compression or in tension, whichever is smaller; a bound is a minimum",
         wanted_large=True,
     )
-    reversal_longest = value("Δφ_G,1", "angle", "The longest stretch of it; a bound is the least", wanted_large=True)
+    reversal_longest = value("Δφ_G,1", "angle", "Its longest continuous range; a bound is a minimum", wanted_large=True)
     reversal_ratio = value(
         "P_G,min/max",
         "ratio",
-        "Smaller over larger peak of the rod load, pressed and pulled; a bound is the least",
+        "Ratio of the smaller to the larger peak rod load, compression and tension; a bound is a minimum",
         wanted_large=True,
     )
 

@@ -251,7 +251,7 @@ def shaft_obstacle(machine: Machine) -> str:
     if machine.crankshaft is None:
         return "no 'crankshaft' given, which has the lengths of a throw: 'crankshaft: {a: …, b: …, …}'"
     if not machine.cylinders:
-        return "no cylinder loads them; 'effort' tells a torque and no force"
+        return "no cylinder loads them; 'effort' gives a torque and no force"
     unknown = next((one.mechanism.name for one in machine.cylinders if not one.mechanism.has_rod), None)
     if unknown is not None:
         return f"the force of a {unknown} on the crank pin is not followed to the bearings"

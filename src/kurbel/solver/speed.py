@@ -102,7 +102,7 @@ class SpeedLine(Results):
         if effort.count is None and stands[0]:
             raise Unsettled(degrees=float(self._ends[3][0]))
         if effort.count is None and beyond[0]:
-            raise UsageError("the speed line leads beyond what can be computed with: check effort and flywheel")
+            raise UsageError("numeric overflow in the speed: check effort and flywheel")
 
     def result(self, values: Array) -> Any:
         """Return values (n,), nan for machines without a speed line; for one machine a float."""
@@ -196,7 +196,7 @@ class RigidLine(SpeedLine):
         failed = least <= _NO_INERTIA * most
         if effort.count is None and failed[0]:
             angle = float(effort.pieces.degrees.T.ravel()[np.argmin(moving.T)])
-            raise UsageError(f"nothing that turns has any inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
+            raise UsageError(f"no rotating part has inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
         self.law = law
         self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))  # none of a batch stops the others
 

@@ -135,21 +135,21 @@ class State(MotionColumns):
     V = value(
         "V",
         "volume",
-        "Volume of the head-end chamber, with its clearance where that is given",
+        "Volume of the head-end chamber, including clearance if given",
         lambda state: _own_volume(state, "head"),
         on_request=("forces",),
     )
     V_crank = value(
         "V_C",
         "volume",
-        "Volume of the crank-end chamber, with its clearance where that is given",
+        "Volume of the crank-end chamber, including clearance if given",
         lambda state: _own_volume(state, "crank"),
         on_request=("forces",),
     )
     dV = value(
         "dV/dφ",
         "volume_rise",
-        "Change of the volume of the head-end chamber over the angle",
+        "Rate of change of the head-end volume with the crank angle",
         lambda state: (
             state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
         ),
@@ -170,7 +170,7 @@ class State(MotionColumns):
     P_gas_book = value(
         "P_297",
         "force",
-        "The same by the mean of both areas (R 297)",
+        "The same with the mean of both piston areas (R 297)",
         lambda state: state.force_on(alike=True),
         on_request=("forces",),
     )
@@ -247,13 +247,13 @@ class State(MotionColumns):
     P_ram = value(
         "P_r",
         "force",
-        "Force on a ram against its motion",
+        "Force opposing the motion of a ram",
         lambda state: state.resistance if state.mechanism.slides else None,
     )
     P = value(
         "P",
         "force",
-        "Force along the stroke line: gas, inertia, weight, and what a ram works against",
+        "Force along the stroke line: gas, inertia, weight and ram resistance",
         lambda state: _sum(state.P_inertia, state.P_start),
         extremes=("forces",),
         called="piston force",
@@ -262,7 +262,7 @@ class State(MotionColumns):
     P_rod = value(
         "P_G",
         "force",
-        "Rod load at the crosshead pin: gas, inertia and weight of all but the connecting rod, compression positive",
+        "Rod load at the crosshead pin: gas, inertia and weight, without the connecting rod; compression positive",
         lambda state: state.rod_load(),
         unless=lambda forces: forces.no_compressor,
     )
@@ -312,7 +312,7 @@ class State(MotionColumns):
 
     @column("S", "force", extremes=("forces",), called="rod force", peak=True)
     def S(self) -> Any:
-        """Force in the connecting rod, compression positive; of an exact rod, between the masses at its ends.
+        """Force in the connecting rod, compression positive; of an exact rod, the force between its two end masses.
 
         R 300.
         """
@@ -423,8 +423,7 @@ class State(MotionColumns):
 
     @column("N", "force", extremes=("forces",), called="guide force", peak=True)
     def N(self) -> Any:
-        """Force on the guide (yoke frame: on the piston rod), positive on the side where it lies while an
-        engine drives.
+        """Force on the guide (yoke frame: on the piston rod), positive on the side loaded while an engine drives.
 
         D 3 with signs. Raises NoSolutionError where the crosshead locks itself; of many machines those that lock have
         nan.
@@ -450,7 +449,7 @@ class State(MotionColumns):
     p_guide = value(
         "p_g",
         "pressure",
-        "Mean pressure of the crosshead's shoe on its guide, |N| over its area",
+        "Mean pressure of the crosshead shoe on its guide, |N| over its area",
         lambda state: (
             None if state.drive.guide_area is None or state.N is None else abs(state.N) / state.drive.guide_area
         ),
@@ -458,7 +457,7 @@ class State(MotionColumns):
     wear = value(
         "f N c",
         "power",
-        "Work of friction on the guide over time, by which it wears (Redtenbacher)",
+        "Friction power on the guide, the measure of its wear (Redtenbacher)",
         lambda state: (
             None if state.p_guide is None or state.c is None else state.crosshead_drag * state.c * state.direction
         ),
@@ -484,7 +483,7 @@ class State(MotionColumns):
     M_out = value(
         "M_2",
         "torque",
-        "Moment on what swings, or on the second crank, against its motion",
+        "Resisting moment on the rocker, or on the second crank",
         lambda state: None if state.mechanism.slides else state.resistance,
     )
 

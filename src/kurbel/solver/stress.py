@@ -181,9 +181,9 @@ class StressColumns(AtAngles):
     commands = ("stress",)
     D = value("D", "force", "Radial force at the crank pin, positive toward the shaft")
     T = value("T", "force", "Tangential force at the crank pin, positive when it drives")
-    A_D = value("A_D", "force", "Force on bearing A along D, in the frame that turns with the throw")
+    A_D = value("A_D", "force", "Force on bearing A along D, in the frame rotating with the throw")
     A_T = value("A_T", "force", "Force on bearing A along T")
-    B_D = value("B_D", "force", "Force on bearing B, beside the flywheel, along D")
+    B_D = value("B_D", "force", "Force on bearing B, next to the flywheel, along D")
     B_T = value("B_T", "force", "Force on bearing B along T")
     sigma = values_for(PARTS, "sigma_*", "σ_*", "stress", "Largest combined stress of * (Bach)")
     mises = values_for(PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)")
@@ -225,9 +225,9 @@ class CrankshaftStrength(Results):
     state = StressColumns
 
     P_dc = value(
-        "P_dc", "force", "Full piston force, without inertia, taken in the dead centre", lambda one: one.full_force
+        "P_dc", "force", "Full piston force, without inertia, applied at the dead centre", lambda one: one.full_force
     )
-    C_rod = value("C_r", "force", "Centrifugal force of the connecting rod's turning part, which D does not contain")
+    C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
     _dead_centre = "Combined stress of * in the dead centre under full force (Bach)"
     sigma_dc = values_for(PARTS, "sigma_*_dc", "σ_*,dc", "stress", _dead_centre, group=str)
     _bach, _mises = (
@@ -240,7 +240,7 @@ class CrankshaftStrength(Results):
     safety = values_for(PARTS, "safety_*_min", "S_*", "ratio", _safety, group=str)
     A_max = value("A_max", "force", "Largest force on bearing A", lambda one: one.pressures["A_max"])
     B_max = value(
-        "B_max", "force", "Largest force on bearing B, beside the flywheel", lambda one: one.pressures["B_max"]
+        "B_max", "force", "Largest force on bearing B, next to the flywheel", lambda one: one.pressures["B_max"]
     )
     p_pin_dc = value("p_pin,dc", "pressure", "Pressure on the crank pin under full force, P/(d l)")
     pressure_max = values_for(
@@ -275,7 +275,7 @@ class CrankshaftStrength(Results):
     equilibrium_residual = value(
         "ΣF, ΣM",
         "ratio",
-        "What is left of the sums of forces and moments on the crankshaft",
+        "Residual of the equilibrium of forces and moments on the crankshaft",
         lambda one: one.unbalanced(),
         plain="sum F, M",
         residual=True,

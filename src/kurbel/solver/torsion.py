@@ -61,7 +61,7 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
         return machine.shaft
     coupling, wheel = machine.coupling, machine.flywheel
     if coupling is None:
-        what = "write its masses and the pieces between them below it, or give a 'coupling' behind a 'flywheel'"
+        what = "write its masses and the segments between them below it, or give a 'coupling' behind a 'flywheel'"
         raise UsageError(f"{machine.name}: no 'shaft' is given; {what}")
     if wheel is None or wheel.inertia is None:
         raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
@@ -228,13 +228,13 @@ class SegmentState(AtAngles):
     M_shaft = value(
         "M_w",
         "torque",
-        "Torque in the piece of shaft, mean and vibration",
+        "Torque in the shaft segment, mean and vibratory",
         lambda one: one.segment.over(one.phi) if one.segment else None,
     )
     tau = value(
         "τ",
         "stress",
-        "Torsional stress where the piece is thinnest",
+        "Torsional stress at the smallest section of the segment",
         lambda one: one.segment.factor * one.M_shaft if one.segment and one.segment.factor else None,
     )
 
@@ -283,7 +283,7 @@ class ShaftVibration(Results):
     holzer_residual = value(
         "ΣωJΘ",
         "ratio",
-        "Torque left behind the last mass in Holzer's tables, over the largest one",
+        "Residual torque of the Holzer table, relative to the largest torque",
         lambda one: max(one.modes.holzer(index).residual for index in range(len(one.modes.omegas))),
         plain="sum w2 J Theta",
         residual=True,
@@ -291,20 +291,20 @@ class ShaftVibration(Results):
     vibration_loss = value(
         "N_d",
         "power",
-        "Mean power that the damping takes",
+        "Mean power dissipated by damping",
         lambda one: None if one.vibration is None else float(one.vibration.loss[0]),
         after="tau_vibratory",
     )
     M_vibratory = value(
         "M_w,a",
         "torque",
-        "Largest vibratory torque of any piece, half of what it swings",
+        "Largest vibratory torque amplitude (half peak-to-peak) of any shaft segment",
         lambda one: max((piece.M_vibratory for piece in one.pieces), default=None),
     )
     tau_vibratory = value(
         "τ_a",
         "stress",
-        "Largest vibratory stress of any piece",
+        "Largest vibratory stress amplitude of any shaft segment",
         lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.factor is not None), default=None),
     )
 

@@ -126,7 +126,7 @@ class RecordForm(Form):
             elif home:
                 message = f"does not belong here; {home}"
             else:
-                message = "unknown key" if listed else f"unknown key; known here are {', '.join(known)}"
+                message = "unknown key" if listed else f"unknown key; valid keys here are {', '.join(known)}"
                 listed = True
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
@@ -190,7 +190,7 @@ class Inline(RecordForm):
 def no_mapping(form: Form, value: Any) -> NoReturn:
     """Raise RuleError for a value that is no mapping."""
     if isinstance(value, Plain) and not value:
-        refused(f"nothing stands here; write below it, indented, {form.expected}")
+        refused(f"no value here; write below it, indented, {form.expected}")
     refused(f"expected {form.expected}, got {kind_of(value)}{glued_hint(value)}")
 
 
@@ -295,7 +295,7 @@ class Listing(Form):
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
-            refused("nothing stands here; write a list below it, each item after '- '")
+            refused("no value here; write a list below it, each item after '- '")
         if not isinstance(value, list):
             refused(f"expected a list, each item after '- ', got {kind_of(value)}")
         if not value:
@@ -391,7 +391,7 @@ class Keyed(Form):
             if name != telling:
                 home = reading.where_it_belongs(name, path) or "leave it out"
                 way_out = "leave one of them out" if name in known or name in cases else home
-                reading.fault((*path, name), f"cannot stand beside '{telling}'; {way_out}", at_key=True)
+                reading.fault((*path, name), f"cannot be combined with '{telling}'; {way_out}", at_key=True)
         inner = cases[telling].read(reading, value[telling], (*path, telling))
         return inner if len(value) == 1 else REFUSED
 
