@@ -219,6 +219,19 @@ def effort(source: Source) -> Iterator[Panel]:
             yield panel._replace(curves=(*panel.curves, mean_line))
 
 
+def flow(source: Source) -> Iterator[Panel]:
+    """Flow that the pumps deliver over the crank angle, and its mean; what is between them fills and empties the air
+    vessel. Below it, where there is a suction pipe without a vessel, the head that accelerates the liquid."""
+    if not source.having("flow"):
+        return
+    samples, mean = source.samples((PHI, "flow")), source.results.flow_mean
+    x, line = samples.values
+    panel = source.panel(("flow",))
+    curves = (*panel.curves, level(x, mean, source.words("flow_mean")))
+    yield panel._replace(curves=curves, shades=tuple(_between(x, np.full_like(x, mean), line)))
+    yield from source.panels(("acceleration_head",))
+
+
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
     return source.panels(tuple(f"sigma_{part}" for part in PARTS))
@@ -346,6 +359,7 @@ PICTURES = (
     PictureKind("forces", "Forces in the crank train", "forces", forces),
     PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
     PictureKind("effort", "Turning effort", "flywheel", effort),
+    PictureKind("flow", "Flow delivered", "delivery", flow),
     PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
     PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
     PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
@@ -360,7 +374,7 @@ PICTURES = (
 """The pictures, the one that says most of a machine first."""
 
 
-_OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion")
+_OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion", "delivery")
 """Commands whose pictures are of the whole machine; those of others are drawn of each cylinder or bearing."""
 
 

@@ -17,6 +17,7 @@ from kurbel.report.balance import balance_report
 from kurbel.report.check import checked
 from kurbel.report.commands import REPORTS, Command
 from kurbel.report.crank import bearings_report, forces_report, motion_report, stress_report
+from kurbel.report.delivery import IN_CASES, cases_report, delivery_report
 from kurbel.report.frame import Frame, Subject, provenance, subjects_of
 from kurbel.report.keys import every_place, meaning
 from kurbel.report.picture import Document, Grid, Item, Pair, Section
@@ -43,6 +44,7 @@ _REPORTS: dict[str, Callable[[Case, Frame], Report]] = {
     "balance": balance_report,
     "harmonics": harmonics_report,
     "torsion": torsion_report,
+    "delivery": delivery_report,
 }
 
 
@@ -52,10 +54,12 @@ def report_of(case: Case, frame: Frame) -> Report:
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
-def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
+def whole_report(
+    case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
+) -> Document:
     """Return all that a machine has: input, pictures and tables of each command, verdicts, energy, what is left out.
 
-    given: the keys of its file; step: of the tables in degrees.
+    given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
     stepped(step, 360.0)  # a step that is none is refused at once
     found, places = checked(case), every_place()
@@ -70,7 +74,10 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
     for command in REPORTS.values():
         progress(command.title.lower())
         try:
-            sections.append(Section(command.word, command.title, tuple(_items(case, command, system, step))))
+            items = _items(case, command, system, step)
+            if cases and command.word in IN_CASES:
+                items.append(cases_report(case.machine, cases, command.word, system))
+            sections.append(Section(command.word, command.title, tuple(items)))
         except UsageError as error:
             left_out.append((command.title, str(error).removeprefix(f"{case.machine.name}: ")))
 
