@@ -14,7 +14,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 
-from test_complete_lists import cylinders, missing_crossings, missing_reversals
+from test_laws import cylinders, missing_crossings, missing_reversals
 
 
 def main() -> None:

@@ -19,7 +19,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 
-from test_shaft_modes import at_random, eigenvalues
+from test_torsion import at_random, eigenvalues
 
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.solver.chain import Chain, Modes

@@ -52,6 +52,8 @@ BEST = {
     "card-volume": "compressor",
     "effort": "waterworks-two-cranks",
     "flow": "triplex-pump",
+    "effort-cranks": "waterworks-two-cranks",
+    "effort-sides": "waterworks-two-cranks",
     "free-orders": "v8-cross-plane",
     "modes": "marine-diesel",
     "orders": "marine-diesel",
@@ -61,12 +63,15 @@ BEST = {
 USUAL = "waterworks"
 MOVING = ("scotch-yoke-pump", "shaper", "crank-rocker", "coupled-axle", "yoke-frame-pump")
 """The other mechanisms of the book."""
+SET = {"effort-cranks": "efficiency=0.9", "piston-force-crank": "efficiency=0.9"}
+"""Picture -> what is set for it: without losses no line differs by them."""
 _DECLARED = {one.id: one for one in PICTURES}
 
 
 def shown() -> list[tuple[str, str]]:
     """Return every picture of the gallery with the machine that it is of."""
-    return [*((id, BEST.get(id, USUAL)) for id in _DECLARED), *(("mechanism", name) for name in MOVING)]
+    others = [*(("mechanism", name) for name in MOVING), ("construction", "shaper")]
+    return [*((id, BEST.get(id, USUAL)) for id in _DECLARED), *others]
 
 
 def every_file() -> dict[str, tuple[str, str]]:
@@ -87,7 +92,7 @@ def embedded(id: str, machine: str) -> str:
 
 def svg_of(id: str, machine: str) -> str:
     """Return a picture of a shipped machine, of its first cylinder where it has several, as SVG."""
-    case = Case(load(CONFIGS / f"{machine}.yaml"))
+    case = Case(load(CONFIGS / f"{machine}.yaml", [SET[id]] if id in SET else []))
     first = next(pictures(case, (id,), PictureOptions()))
     return svg_file([first], Look())
 
@@ -102,9 +107,10 @@ def page() -> str:
     for id, machine in shown():
         one = _DECLARED[id]
         heading = one.title if machine in (USUAL, BEST.get(id)) else f"{one.title}: {machine}"
+        more = f" --set {SET[id]}" if id in SET else ""
         blocks += [
             f"## {heading}",
-            f"```sh\nkurbel plot configs/{machine}.yaml {id} -o {id}.svg\n```",
+            f"```sh\nkurbel plot configs/{machine}.yaml {id}{more} -o {id}.svg\n```",
             embedded(id, machine),
             one.text,
         ]

@@ -55,5 +55,4 @@ def bore_of_area(area: float) -> float:
 def largest_velocity(mechanism: Mechanism) -> Extreme:
     """The largest velocity over ω in m, and its crank angle."""
     found = one_cylinder(mechanism, rpm=60 / math.tau).motion.c_max
-    assert found is not None
     return found

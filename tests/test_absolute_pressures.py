@@ -10,7 +10,6 @@ import pytest
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
-from kurbel.declared.units import unit_names
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
@@ -35,29 +34,6 @@ def run(*words: str, text: str = ABSOLUTE) -> str:
     result = CliRunner().invoke(kurbel, [*words, "-"], input=text)
     assert (result.exit_code, result.stderr) == (0, "")
     return result.stdout
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "sentence"),
-    [(ABSOLUTE, "bar abs", "Largest absolute pressure"), (GAUGE, "bar", "Largest gauge pressure")],
-)
-def test_heading_and_key_value_say_which(text: str, unit: str, sentence: str) -> None:
-    lines = run("forces", "--columns", "p_head,p_crank", "--angles", "90,270", text=text).splitlines()
-    rows = {line[:3]: line.split("  ") for line in lines if line.startswith("p_")}
-    assert all(unit in row for row in rows.values())
-    (key_value,) = (line for line in lines if line.startswith("  p_max"))
-    assert sentence in key_value
-    assert f" {unit} " in key_value
-
-
-@pytest.mark.parametrize(("text", "numbers"), [(ABSOLUTE, "1.000 7.000"), (GAUGE, "-0.013 5.987")])
-def test_the_figures_are_those_of_the_file(text: str, numbers: str) -> None:
-    (row,) = (
-        line
-        for line in run("forces", "--columns", "p_head", "--angles", "90,270", text=text).splitlines()
-        if line.startswith("p_H")
-    )
-    assert row.split()[-2:] == numbers.split()
 
 
 def test_programs_are_told_too() -> None:
@@ -130,10 +106,6 @@ def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, for
         loads(written_in(unit, "gauge" if counted == "absolute" else "absolute", form))
     assert f"'pressures: {counted}'" in str(caught.value)
     assert unit in str(caught.value)
-
-
-def test_units_that_say_which_zero_they_have_are_listed() -> None:
-    assert set(ZEROED) <= set(unit_names("pressure"))
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ def process(
     }
     return subprocess.run(
         [sys.executable, "-m", "kurbel", *arguments],
-        stdout=stdout,  # type: ignore[call-overload]
+        stdout=stdout,
         stderr=subprocess.PIPE,
         env=kept | {"PYTHONIOENCODING": "utf-8"} | environment,
         check=False,
@@ -70,12 +70,6 @@ def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None
     assert result.exit_code == 0
     assert result.stdout.startswith(f"Usage: kurbel {command}")
     assert result.stdout.isascii()
-
-
-def test_unknown_command_is_named_with_the_nearest() -> None:
-    result = CliRunner().invoke(kurbel, ["tabel"])
-    assert result.exit_code == 2
-    assert "no command 'tabel'; did you mean 'table'?" in result.stderr
 
 
 def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,14 +160,6 @@ def test_full_disk(arguments: list[str]) -> None:
 
 
 @POSIX_ONLY
-def test_closed_standard_output() -> None:
-    result = subprocess.run(["bash", "-c", f"{sys.executable} -m kurbel table >&-"], capture_output=True, check=False)
-    assert result.returncode == 2
-    assert b"standard output" in result.stderr
-    assert b"Traceback" not in result.stderr
-
-
-@POSIX_ONLY
 def test_a_terminal_gets_colour_and_as_many_angles_as_fit() -> None:
     wide, narrow = on_terminal("table", columns=220), on_terminal("table", columns=80)
     assert ESCAPE in wide
@@ -192,23 +178,6 @@ def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
     assert "sin(φ+ψ)/cos ψ".encode() in written
 
 
-@POSIX_ONLY
-def test_colours_change_no_character() -> None:
-    import re
-
-    coloured = re.sub(rb"\x1b\[[0-9;]*m", b"", on_terminal("table", "--compare"))
-    plain = on_terminal("table", "--compare", NO_COLOR="1")
-    assert [line.rstrip() for line in coloured.splitlines()] == [line.rstrip() for line in plain.splitlines()]
-
-
-def test_output_file_is_utf8_and_the_same_every_time(tmp_path: Path) -> None:
-    result = process("table", "-o", str(tmp_path / "a.txt"), PYTHONIOENCODING="ascii", PYTHONUTF8="0")
-    assert (result.returncode, result.stdout, result.stderr) == (0, b"", b"")
-    assert CliRunner().invoke(kurbel, ["table", "-o", str(tmp_path / "b.txt")]).exit_code == 0
-    assert (tmp_path / "a.txt").read_bytes() == (tmp_path / "b.txt").read_bytes()
-    assert "sin(φ+ψ)/cos ψ" in (tmp_path / "a.txt").read_text(encoding="utf-8")
-
-
 def test_example_lists_every_machine_with_its_first_line() -> None:
     folder = Path(__file__).parent.parent / "configs"
     lines = CliRunner().invoke(kurbel, ["example"]).stdout.splitlines()
@@ -220,3 +189,23 @@ def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
     shipped = (Path(__file__).parent.parent / "configs" / "waterworks.yaml").read_bytes()
     assert CliRunner().invoke(kurbel, ["example", "waterworks"]).stdout_bytes == shipped
     assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped
+
+
+@pytest.mark.parametrize(
+    ("line", "way_out"),
+    [
+        ("help", "'kurbel --help'"),
+        ("calculate", "'kurbel forces FILE'"),
+        ("forces waterworks", "'kurbel example waterworks > waterworks.yaml'"),
+        ("table 4", "'kurbel table --ratio 4'"),
+        ("keys presure", "pressure"),
+        ("forces configs/waterworks.yaml --columns pressure", "it is in the sentences of p_head"),
+    ],
+)
+def test_what_strangers_type_ends_with_the_line_to_type(
+    line: str, way_out: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(__file__).parents[1])
+    done = CliRunner().invoke(kurbel, line.split())
+    assert done.exit_code == 2
+    assert way_out in " ".join(done.stderr.split())

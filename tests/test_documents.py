@@ -1,4 +1,4 @@
-"""README and docs cannot go stale: every console block is run and compared, every generated page regenerated.
+"""README, docs and docstrings cannot go stale: what they show is run, pages that are generated and links are checked.
 
 A block of another language with a title is a file of that name for the commands of its page:
 ```yaml title="engine.yaml"
@@ -15,6 +15,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from functools import lru_cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ from click.testing import CliRunner
 import from_declarations  # docs/from_declarations.py
 import shipped  # docs/shipped.py
 from kurbel.cli import kurbel
+from representative import law_of_each
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -154,3 +156,52 @@ GENERATED = {
 def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
     text = GENERATED[name]()
     assert kept(ROOT / "docs" / name, text) == text
+
+
+# links of the pages beside the site (README and its like) lead to files and headings that there are
+
+BESIDE = sorted(ROOT.glob("*.md"))
+OUTSIDE = {"https://keepachangelog.com/en/1.1.0/"}
+"""The addresses elsewhere that these pages name."""
+
+
+def prose_of(page: Path) -> str:
+    return re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+
+
+def links_of(page: Path) -> list[tuple[str, str]]:
+    return re.findall(r"\]\(([^)\s]+)\)|(?:src|href)=\"([^\"]+)\"", prose_of(page))
+
+
+def anchors_of(page: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)$", prose_of(page), re.MULTILINE)
+    return {re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", heading).strip().lower()) for heading in headings}
+
+
+@pytest.mark.parametrize("page", BESIDE, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for link in ("".join(pair) for pair in links_of(page)):
+        if "://" in link:
+            assert link in OUTSIDE
+            continue
+        file, _, anchor = link.partition("#")
+        target = page.parent / file if file else page
+        assert target.exists(), link
+        assert not anchor or anchor in anchors_of(target), link
+
+
+# every example in a docstring gives what stands below it
+
+SOURCE = Path(__file__).parent.parent / "src"
+MODULES = [
+    ".".join(file.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
+    for file in sorted(SOURCE.rglob("*.py"))
+    if ">>> " in file.read_text(encoding="utf-8")
+]
+
+
+@law_of_each(MODULES)
+def test_examples_in_docstrings(module: str) -> None:
+    found = doctest.testmod(import_module(module))
+    assert found.attempted
+    assert found.failed == 0

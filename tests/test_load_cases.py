@@ -6,11 +6,10 @@ import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
 import kurbel as api
-from kurbel.cli import kurbel
-from kurbel.errors import MachineFileError, UsageError
+from command import run
+from kurbel.errors import UsageError
 
 PUMP = """\
 speed: 50 rpm
@@ -32,10 +31,6 @@ cases:
 def pump(tmp_path: Path) -> Path:
     (tmp_path / "pump.yaml").write_text(PUMP, encoding="utf-8")
     return tmp_path / "pump.yaml"
-
-
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(kurbel, [str(one) for one in arguments])
 
 
 def test_a_case_is_the_file_with_its_values(pump: Path) -> None:
@@ -89,33 +84,9 @@ def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
         assert float(rows[row][3]) == pytest.approx(1.6 * float(rows[row + 3][3]), rel=1e-14)
 
 
-def test_faults_are_shown_where_the_case_has_them(pump: Path) -> None:
-    pump.write_text(PUMP.replace("80 rpm", "80 rmp").replace("crank_end_rod", "crank_end_rodd"), encoding="utf-8")
-    api.load(pump)  # the machine itself is sound
-    with pytest.raises(MachineFileError, match=r"pump\.yaml:8:37: cases\[0\]\.set\.speed: unknown speed"):
-        api.load(pump, case="full speed")
-    with pytest.raises(MachineFileError, match=r"cases\[1\]\.set\.crank_end_rodd: unknown key; did you mean"):
-        api.load(pump, case="half the pressure")
-    assert run("check", pump).exit_code == 2
-
-
 def test_a_case_that_there_is_not(pump: Path) -> None:
     with pytest.raises(UsageError, match="no such load case; did you mean 'full speed'"):
         api.load(pump, case="full sped")
     with pytest.raises(UsageError, match="the file has no 'cases'"):
         api.load("configs/waterworks.yaml", case="full speed")
     assert "--cases: the file has no 'cases'" in run("sweep", "configs/waterworks.yaml", "--cases").stderr
-
-
-@pytest.mark.parametrize(
-    ("cases", "message"),
-    [
-        ("[{name: a, set: {speed: 60 rpm}}, {name: a, set: {speed: 70 rpm}}]", r"two cases are called 'a'"),
-        ("[{name: a}]", r"'set' is missing"),
-        ("[{name: a, set: {}}]", r"expected a mapping of dotted keys to values"),
-        ("{a: {speed: 60 rpm}}", r"expected a list"),
-    ],
-)
-def test_what_is_no_case(cases: str, message: str) -> None:
-    with pytest.raises(MachineFileError, match=message):
-        api.loads(f"{{crank: 400 mm, rod: 2 m, cases: {cases}}}")

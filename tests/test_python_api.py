@@ -17,9 +17,10 @@ from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command_line
+from representative import case_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
-MACHINES = ["waterworks", "gas-engine", "coupled-blower", "crank-rocker"]
+WATERWORKS = CONFIGS / "waterworks.yaml"
 
 CYLINDER = (
     "mechanism, name='cylinder 1', pistons=(), masses=None, friction=None, inclination=None, crank_position=0.0, "
@@ -83,7 +84,7 @@ def same(found: Any, told: dict[str, Any]) -> None:
     assert (found.quantity.id, found.quantity.symbol) == (told["id"], told["symbol"])
 
 
-@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("machine", ["waterworks", "gas-engine", "coupled-blower", "crank-rocker"])
 def test_key_values_of_cylinders(machine: str) -> None:
     case = solved(machine)
     parts = printed("forces", machine, "--key-values")["cylinders"]
@@ -105,14 +106,10 @@ def test_key_values_of_cylinders(machine: str) -> None:
                 assert getattr(cylinder.motion, id).degrees == told[id]["at_deg"]
 
 
-OF_THE_MACHINE = [
-    *(("flywheel", one) for one in MACHINES),
-    *(("balance", one) for one in MACHINES if one != "crank-rocker"),
-    *(("stress", "gas-engine"), ("torsion", "coupled-blower")),
-]
-
-
-@pytest.mark.parametrize(("command", "machine"), OF_THE_MACHINE)
+@pytest.mark.parametrize(
+    ("command", "machine"),
+    [("flywheel", "waterworks"), ("balance", "waterworks"), ("stress", "gas-engine"), ("torsion", "coupled-blower")],
+)
 def test_key_values_of_the_machine(command: str, machine: str) -> None:
     case = solved(machine)
     results = getattr(case, command)
@@ -124,34 +121,6 @@ def test_key_values_of_the_machine(command: str, machine: str) -> None:
     of_the_machine = {one["id"]: one for one in told}
     for id in {"dE", "J", "delta", "F_free_max", "sigma_pin_max", "natural_frequency"} & set(of_the_machine):
         same(case[id], of_the_machine[id])
-
-
-@pytest.mark.parametrize(("command", "machine"), [("forces", one) for one in MACHINES] + OF_THE_MACHINE)
-def test_columns(command: str, machine: str) -> None:
-    """By `columns`, all or some of them, and by `at`, as attributes."""
-    case, angles = solved(machine), [0.0, 45.0, 200.0]
-    results = case.cylinders[0] if command == "forces" else getattr(case, command)
-    answer = printed(command, machine, "--angles", "0,45,200")
-    told = answer["cylinders"][0]["columns"] if command == "forces" else answer["machine_columns"]
-    columns, state = results.columns(angles), results.at(np.array(angles))
-    for one in told:
-        assert columns[one["id"]].tolist() == one["values"]
-        assert results.columns(angles, one["symbol"])[one["id"]].tolist() == one["values"]
-        assert list(results.columns(angles, one["id"])) == list(dict.fromkeys(["phi", one["id"]]))
-        assert np.broadcast_to(state[one["id"]], (3,)).tolist() == one["values"]
-        if hasattr(state, one["id"]):
-            assert getattr(state, one["id"]) is state[one["id"]]
-
-
-def test_the_example_of_the_package() -> None:
-    machine = kurbel.loads("{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5, masses: {piston: 830 kg}}", name="engine")
-    case = kurbel.solve(machine)
-    cylinder = case.cylinders[0]
-    assert round(cylinder.motion.c_max.value, 4) == 2.1359
-    assert round(cylinder.motion.c_max.degrees, 4) == 79.1001
-    # m r ω² (1 ± λ) at the dead centres
-    least, most = (830 * 0.4 * (2 * math.pi * 50 / 60) ** 2 * factor for factor in (1.2, 0.8))
-    assert cylinder.at([0, 90, 180]).P_inertia[[0, 2]].tolist() == pytest.approx([-least, most], rel=1e-14)
 
 
 def test_machines_made_and_changed() -> None:
@@ -167,20 +136,6 @@ def test_machines_made_and_changed() -> None:
         kurbel.SliderCrank(crank=0.4, rod=0.3)
 
 
-def test_sweep() -> None:
-    machine = kurbel.load(CONFIGS / "waterworks.yaml")
-    found = kurbel.sweep(machine, {"rod_ratio": [3, 0.5], "speed": ["40 rpm"] * 2}, ["T_max", "dE"], with_angles=True)
-    assert list(found) == ["T_max", "T_max_at", "dE", "failure"]
-    assert isinstance(found["T_max"], np.ndarray)
-    case = kurbel.solve(kurbel.load(CONFIGS / "waterworks.yaml", ["rod_ratio=3", "speed=40 rpm"]))
-    assert found["T_max"][0] == pytest.approx(case["T_max"].value, rel=1e-13)
-    assert found["T_max_at"][0] == pytest.approx(case["T_max"].degrees, abs=1e-9)
-    assert found["dE"][0] == pytest.approx(case["dE"].value, rel=1e-12)
-    assert math.isnan(found["T_max"][1])
-    assert found["failure"][1]
-    assert not found["failure"][0]
-
-
 def test_what_a_notebook_shows(tmp_path: Path) -> None:
     case = solved("gas-engine")
     for shown in (case, case.cylinders[0], case.flywheel):
@@ -192,3 +147,79 @@ def test_what_a_notebook_shows(tmp_path: Path) -> None:
     drawing.save(str(tmp_path / "effort.svg"))
     assert (tmp_path / "effort.svg").read_text(encoding="utf-8").lstrip().startswith("<")
     assert len(kurbel.draw(case, "mechanism", angles=(30.0,), units="si").pictures) == 1
+
+
+# results by name
+
+PLAIN = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, masses: {piston: 100 kg}%s}"
+PRESSURE = ", bore: 450 mm, indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"), [("T_mx", "no key value 'T_mx'; did you mean 'T_max'"), ("e_K", "this machine has no loss_cross")]
+)
+def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
+    (cylinder,) = kurbel.solve(kurbel.loads(PLAIN % PRESSURE)).cylinders
+    with pytest.raises(kurbel.KurbelError, match=told):
+        _ = cylinder[name]
+
+
+def test_of_several_cylinders_each_has_its_own() -> None:
+    case = kurbel.solve(kurbel.load(CONFIGS / "waterworks-two-cranks.yaml"))
+    assert case["T_max"].value == case.flywheel.T_max.value
+    with pytest.raises(kurbel.KurbelError, match="each cylinder has its own P_max"):
+        _ = case["P_max"]
+    assert case.cylinders[1]["P_max"].value > 0
+
+
+@pytest.mark.parametrize("degrees", ["abc", "", [float("nan")], [0.0, math.inf], None, {"phi": 1}])
+def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> None:
+    case = case_of("gas-engine")
+    for results in (case.cylinders[0], case.flywheel, case.stress):
+        for ask in (results.columns, results.at):
+            with pytest.raises(kurbel.KurbelError, match="crank angles are"):
+                ask(degrees)
+
+
+def test_notebooks_show_tables_that_are_escaped() -> None:
+    text = "{name: '<b>A&B</b>', " + (PLAIN % PRESSURE)[1:]
+    case = kurbel.solve(kurbel.loads(text))
+    page = case._repr_html_()
+    assert "<h3>&lt;b&gt;A&amp;B&lt;/b&gt;</h3>" in page
+    assert "<b>" not in page
+    assert '<th scope="row">c_max</th><td class="r">2.563</td><td>m/s</td>' in page  # 2π · 0.4 · 1.0198331
+    assert "&lt; 10⁻¹⁴</td>" in page
+    locked = kurbel.loads((PLAIN % PRESSURE)[:-1] + ", friction: {crosshead: 20}}")
+    assert "<p>" in kurbel.solve(locked).cylinders[0]._repr_html_()
+
+
+# a machine as a text or a path, scalars, and how a figure prints
+
+FLAT = "{speed: 60 rpm, stroke: 1 m, rod_ratio: 5}"
+TAKEN = {"a path": WATERWORKS, "a path as a text": str(WATERWORKS), "a text": WATERWORKS.read_text(encoding="utf-8")}
+
+
+@pytest.mark.parametrize("given", TAKEN)
+@pytest.mark.parametrize("take", [kurbel.solve, kurbel.Case])
+def test_a_machine_may_be_a_text_or_a_path(take: Any, given: str) -> None:
+    assert take(TAKEN[given]).cylinders[0]["T_max"] == kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]["T_max"]
+
+
+@pytest.mark.parametrize("speed", [2.0, "120 rpm", np.float64(2)])
+def test_a_scalar_holds_for_every_row(speed: Any) -> None:
+    """b_max of a slider-crank is R ω² (1 + R/L), at the inner dead centre."""
+    found = kurbel.sweep(kurbel.loads(FLAT), {"rod_ratio": [4, 5], "speed": speed}, ["b_max"])
+    ratios = np.array([1 / 4, 1 / 5])
+    assert found["b_max"] == pytest.approx(0.5 * (2 * math.pi * 2) ** 2 * (1 + ratios), rel=1e-12)
+
+
+def test_a_figure_prints_as_people_read_it() -> None:
+    """10 bar on 0.01 m2 of a Scotch yoke: 10 kN · sin φ at the crank pin, and 10 kN · 0.8 m in every second."""
+    text = (
+        "{speed: 60 rpm, mechanism: scotch-yoke, crank: 400 mm, bore: 112.8379167 mm, "
+        "indicator: {head_end: {constant: {expansion: 10 bar, compression: 0 bar}}}}"
+    )
+    case = kurbel.solve(kurbel.loads(text))
+    assert str(case["T_max"]) == "10.00 kN at 90.00°"
+    assert str(case["power"]) == "8.000 kW"
+    assert str(case["stroke"]) == "800.0 mm"

@@ -64,7 +64,7 @@ def test_every_key_unit_column_key_value_and_option_is_on_the_site(site: Path) -
     options = [
         option
         for name in COMMANDS
-        for one in kurbel.get_command(click.Context(kurbel), name).params  # type: ignore[union-attr]
+        for one in kurbel.get_command(click.Context(kurbel), name).params
         for option in one.opts
         if isinstance(one, click.Option)
     ]

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import math
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import run
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = (Path(__file__).parents[1] / "configs" / "gas-engine.yaml").read_text("utf-8")
@@ -23,16 +21,12 @@ PLACES = [
 ]
 
 
-def run(*arguments: str, file: str = ENGINE) -> Result:
-    return CliRunner().invoke(kurbel, list(arguments), input=file)
-
-
 def without(*keys: str) -> str:
     return "".join(line for line in ENGINE.splitlines(True) if line.strip().split(":")[0] not in keys)
 
 
 def test_text_lists_every_place_in_three_tables() -> None:
-    text = run("stress", "-", "--step", "90").stdout
+    text = run("stress", "-", "--step", "90", text=ENGINE).stdout
     titles = ["Dead centre", "Position of the largest torque", "Whole cycle"]
     places = [text.index(title) for title in titles]
     assert places == sorted(places)
@@ -43,11 +37,11 @@ def test_text_lists_every_place_in_three_tables() -> None:
 
 
 def test_csv_over_the_crank_angle_and_by_place() -> None:
-    rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35").stdout)))
+    rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35", text=ENGINE).stdout)))
     assert [row["phi_deg"] for row in rows] == ["0", "35"]
     pull = 0.6 * 260 * 0.3 * (200 * math.pi / 30) ** 2  # of the connecting rod's turning part
     assert float(rows[0]["D_N"]) - pull == pytest.approx(float(rows[0]["A_D_N"]) * 2, rel=1e-12)
-    rows = list(csv.DictReader(io.StringIO(run("stress", "-", "--places", "-f", "csv").stdout)))
+    rows = list(csv.DictReader(io.StringIO(run("stress", "-", "--places", "-f", "csv", text=ENGINE).stdout)))
     assert [(row["part"], row["place"]) for row in rows] == PLACES * 3
     assert rows[0]["compression_Pa"] == ""
     assert float(rows[3]["torsion_Pa"]) > 0
@@ -55,7 +49,7 @@ def test_csv_over_the_crank_angle_and_by_place() -> None:
 
 def test_what_is_not_given_is_left_out_by_name() -> None:
     text = run(
-        "stress", "-", "--step", "90", file=without("inclination", "journal_diameter", "allowable_bending", "speed")
+        "stress", "-", "--step", "90", text=without("inclination", "journal_diameter", "allowable_bending", "speed")
     ).stdout
     left_out = text.partition("Left out")[2]
     for what in ("flywheel weight", "journals", "safety", "p_m v", "α₀ of the webs"):
@@ -80,21 +74,7 @@ def test_what_is_not_given_is_left_out_by_name() -> None:
     ],
 )
 def test_refused_with_a_message(file: str, message: str) -> None:
-    result = run("stress", "-", file=file)
+    result = run("stress", "-", text=file)
     assert result.exit_code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
-
-
-def test_turning_part_of_the_rod_is_told() -> None:
-    """Once: the D of an exact rod has it already."""
-    shared, exact = (json.loads(run("stress", "-", "-f", "json", file=file).stdout) for file in (ENGINE, EXACT_ROD))
-    values = {value["id"]: value["value"] for value in shared["machine_key_values"]}
-    assert values["C_rod"] == pytest.approx(0.6 * 260 * 0.3 * (200 * math.pi / 30) ** 2, rel=1e-14)
-    assert "C_rod" not in {value["id"] for value in exact["machine_key_values"]}
-
-
-def test_limits_of_a_machine_without_crankshaft_name_the_reason() -> None:
-    result = run("check", "-", file=ENGINE.partition("crankshaft:")[0] + "limits: {sigma_pin_max: 60 N/mm2}\n")
-    assert result.exit_code == 2
-    assert "no 'crankshaft' is given" in result.stderr

@@ -9,7 +9,6 @@ from click.testing import CliRunner
 
 from kurbel import loads, solve
 from kurbel.cli import kurbel
-from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -25,19 +24,6 @@ def forces_of(text: str) -> CylinderForces:
 
 def check(text: str) -> str:
     return CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + text).stdout
-
-
-def refused(text: str) -> str:
-    with pytest.raises(MachineFileError) as caught:
-        loads(ENGINE + text)
-    return str(caught.value)
-
-
-def test_a_clearance_with_a_unit_is_not_to_be_written_without_it() -> None:
-    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: 5 mm}}}\n")
-    assert "got '5 mm'; it is a share of the stroke, such as 0.05 or 5 %" in said
-    said = refused("indicator: {head_end: {compressor: {suction: 0 bar, delivery: 3 bar, clearance: '0,05'}}}\n")
-    assert "share" not in said
 
 
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])
@@ -85,46 +71,6 @@ def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
     assert "rectangular card" in check(text)
 
 
-@pytest.mark.parametrize("spring", ["1/40 in/psi", "0.025 in/lb/in2"])
-def test_a_spring_in_inches(spring: str) -> None:
-    """A spring of 40 psi to the inch: 25.4 mm are 40 psi."""
-    text = f"indicator: {{head_end: {{drawn: {{length: 4 in, spring: {spring}}}, mean_height: 25.4 mm}}}}\n"
-    assert forces_of(text).mean_pressure == pytest.approx(40 * 6894.757293168361, rel=1e-12)
-
-
-def test_a_point_beside_a_card_drawn_in_inches_is_told_in_inches() -> None:
-    lines = "expansion: [[0, 1.2], [4.5, 0.3]], compression: [[3.5, 0.1], [0, 1.2]]"
-    said = refused(f"indicator: {{head_end: {{drawn: {{length: 3.5 in, spring: 1/40 in/psi}}, {lines}}}}}\n")
-    assert "4.5 in is not on the card, which is 3.5 in long" in said
-
-
-@pytest.mark.parametrize(
-    ("card", "says"),
-    [
-        (f"{PAPER}, {LINES.replace('32.2', '132.2')}", "132.2 mm is not on the card, which is 92 mm long"),
-        (f"{PAPER}, {LINES.replace('[0, 57], [32.2', '[2, 57], [32.2')}", "must reach from 0 to 92 mm"),
-        (f"{PAPER}, {LINES}, area: 900 mm2", "leave out the one by planimeter"),
-        (f"{PAPER}, unit: bar, {LINES}", "'unit' and 'drawn' say the same thing"),
-        (f"{PAPER}", "the 'expansion' line of the two-stroke card is missing"),
-        ("area: 900 mm2", "'area' needs 'drawn' beside it"),
-        (f"{PAPER}, area: 9 cm2, mean_height: 9 mm", "'area' and 'mean_height' say the same thing"),
-        (PAPER.replace("6 mm/at", "6 mm") + f", {LINES}", "unknown spring unit 'mm'"),
-    ],
-)
-def test_what_cannot_be_drawn(card: str, says: str) -> None:
-    assert says in refused(f"indicator: {{head_end: {{{card}}}}}\n")
-
-
-def test_a_drawn_card_counts_from_the_atmospheric_line() -> None:
-    said = refused(f"indicator: {{pressures: absolute, head_end: {{{PAPER}, {LINES}}}}}\n")
-    assert "indicator.head_end.drawn: a drawn card counts from the atmospheric line" in said
-
-
-def test_a_line_that_misses_its_end_says_whose_dead_centre_is_meant() -> None:
-    said = refused("indicator: {crank_end: {unit: at, expansion: [[0, 5], [0.9, 1]], compression: [[1, 1], [0, 5]]}}\n")
-    assert "0 is this chamber's own dead centre" in said
-
-
 HEAD = "{unit: at, expansion: [[0, 5], [0.3, 5], [1, 1]], compression: [[1, 0.2], [0.2, 0.2], [0, 5]]}"
 TURNED = "{unit: at, expansion: [[1, 5], [0.7, 5], [0, 1]], compression: [[0, 0.2], [0.8, 0.2], [1, 5]]}"
 
@@ -169,38 +115,3 @@ def test_a_compressor_without_clearance() -> None:
     assert forces.work == pytest.approx(-work, rel=1e-12)
     assert abs(forces.energy_residual or 0) < 1e-12
     assert forces.at([0.001]).p_head == pytest.approx(1e5, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("card", "says"),
-    [
-        ("steam: {admission: 8 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0, compression: 0.1}", "give 'clearance'"),
-        ("otto: {intake: 0 bar, peak: 30 bar, clearance: 0}", "clearance: 0 is too small"),
-        ("compressor: {suction: 0 bar, delivery: 7 bar, clearance: 1e-7}", "clearance: 1e-7 is too small"),
-    ],
-)
-def test_where_a_clearance_is_needed(card: str, says: str) -> None:
-    assert says in refused(f"indicator: {{head_end: {{{card}}}}}\n")
-
-
-def test_fractions_of_the_stroke_in_percent_and_as_quotients() -> None:
-    lines = "expansion: [[0, 5], [35 %, 5], [100 %, 1]], compression: [[1, 1], [1/8, 1], [0, 5]]"
-    (forces, plain) = (
-        forces_of(f"indicator: {{head_end: {{unit: at, {text}}}}}\n")
-        for text in (lines, lines.replace("35 %", "0.35").replace("100 %", "1").replace("1/8", "0.125"))
-    )
-    assert forces.work == plain.work
-
-
-def test_fractions_in_percent_without_its_sign_are_told_once() -> None:
-    points = [[5 * i, 9 - i / 4] for i in range(21)]
-    said = refused(f"indicator: {{head_end: {{unit: at, expansion: {points}, compression: {points[::-1]}}}}}\n")
-    assert len(said.splitlines()) == 1
-    assert "expansion[1]: 5 is no fraction of the stroke" in said
-    assert "write 0.05 here if the line is in percent" in said
-
-
-def test_a_fluctuation_is_a_ratio() -> None:
-    machine = loads(ENGINE + "efficiency: 85 %\nrod_ratio: 10/3\nflywheel: {fluctuation: 1/80}\n".replace("rod_", "#"))
-    assert machine.flywheel is not None
-    assert (machine.flywheel.fluctuation, machine.efficiency) == (1 / 80, 0.85)

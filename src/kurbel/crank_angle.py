@@ -52,12 +52,14 @@ class CrankAngle(NamedTuple):
     @property
     def versine(self) -> Any:
         """1 − cos φ, without cancellation near φ = 0."""
-        return where(self.cos >= 0, self.sin * self.sin / (1 + abs(self.cos)), 1 + abs(self.cos))
+        beyond = 1 + abs(self.cos)
+        return where(self.cos >= 0, self.sin * self.sin / beyond, beyond)
 
     @property
     def vercosine(self) -> Any:
         """1 + cos φ, without cancellation near φ = 180°."""
-        return where(self.cos >= 0, 1 + abs(self.cos), self.sin * self.sin / (1 + abs(self.cos)))
+        beyond = 1 + abs(self.cos)
+        return where(self.cos >= 0, beyond, self.sin * self.sin / beyond)
 
 
 def unit_vector(degrees: Any) -> Any:
@@ -81,7 +83,6 @@ def _sin_cos(right_angle: Array, offset: Array) -> tuple[Array, Array]:
     """Return sine and cosine of multiples of 90°, (…, n), plus offsets in degrees of the same shape or (nodes, n)."""
     rest = np.radians(offset)
     sin, cos = np.sin(rest), np.cos(rest)
-    quarter = (right_angle / 90.0).astype(int) % 4
-    swapped = quarter % 2 == 1
-    sin, cos = np.where(swapped, cos, sin), np.where(swapped, sin, cos)
-    return sin * np.where(quarter < 2, 1.0, -1.0) + 0.0, cos * np.where((quarter + 1) % 4 < 2, 1.0, -1.0) + 0.0
+    quarter, turn = (right_angle / 90.0).astype(int), np.array([0.0, 1.0, 0.0, -1.0])
+    own_sin, own_cos = turn[quarter % 4], turn[(quarter + 1) % 4]
+    return sin * own_cos + cos * own_sin, cos * own_cos - sin * own_sin  # a zero is 0.0, never −0.0

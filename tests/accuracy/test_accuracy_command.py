@@ -89,12 +89,13 @@ def test_text_names_versions_methods_and_states() -> None:
     assert "textbook, radians" in text
     assert "plain: error of the model" in text
     assert "error of the data" not in text  # no cards
+    assert "leaving out saves" not in text  # nothing to leave out
 
 
-def test_json_has_the_three_sections(engine: dict[str, object]) -> None:
+def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
     assert engine["command"] == "accuracy"
     assert engine["machine"] == "engine"
-    assert list(tables(engine)) == ["numerical_error", "model_error", "data_error"]
+    assert list(tables(engine)) == ["numerical_error", "model_error", "data_error", "leaving_out"]
     rows = tables(engine)["numerical_error"]["rows"]
     assert {row["quantity"] for row in rows} == {"x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"}
     assert {row["state"] for row in rows} == {"ok"}
@@ -115,7 +116,7 @@ def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engi
 
 def test_csv_has_one_head_for_all_sections(formatted: Callable[..., bytes]) -> None:
     rows = list(csv.DictReader(io.StringIO(formatted("-f", "csv").decode())))
-    assert {row["table"] for row in rows} == {"numerical_error", "model_error", "data_error"}
+    assert {row["table"] for row in rows} == {"numerical_error", "model_error", "data_error", "leaving_out"}
     assert all(row["scene"] == "engine" for row in rows)
     numerical = [row for row in rows if row["table"] == "numerical_error"]
     assert all(float(row["median_ms"]) > 0 and float(row["error"]) >= 0 for row in numerical)

@@ -1,4 +1,4 @@
-"""The methods that kurbel is compared with converge as their textbooks say; rows and errors."""
+"""The methods that kurbel is compared with converge as their textbooks say; rows, errors and savings."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ import pytest
 
 from imported import modules_after
 from kurbel.accuracy import trials
-from kurbel.accuracy.trials import Trial, better, by_fit, by_gauss, equidistant, errors, examined, float_roots
+from kurbel.accuracy.trials import Trial, better, by_fit, by_gauss, equidistant, errors, examined, float_roots, savings
 from kurbel.machine_file import loads
+from kurbel.solver.case import Case
 
 SMOOTH = """
 {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, masses: {piston: 500 kg},
@@ -50,6 +51,15 @@ def test_methods_converge(rows: list[Trial], quantity: str) -> None:
     assert found["Chebyshev fit", "8"] > found["Chebyshev fit", "16"]
     assert found["Chebyshev fit", "32"] < 1e-13
     assert found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
+
+
+def test_evaluations_are_counted(rows: list[Trial]) -> None:
+    """37 angles of a closed formula, as many samples of a turn as divisions; kurbel's own are those of its solver."""
+    used = {(one.quantity, one.method, one.points): one.evaluations for one in rows}
+    assert used["x", "kurbel", "closed"] == used["x", "textbook, radians", "closed"] == 37
+    assert used["c", "Chebyshev fit", "32"] == 33
+    assert 3600 <= used["A_i", "trapezium rule", "3600"] < 3700
+    assert 16 < used["T_max, T_min", "kurbel", "roots of T′"] < 1000
 
 
 def of_pieces(x: Any, at: Any) -> Any:
@@ -101,7 +111,7 @@ def test_errors_of_arrays() -> None:
 
 
 def row(method: str, error: float | None, time: float) -> Trial:
-    return Trial("x", method, "1", "ok", error, None, time, time, 1.0)
+    return Trial("x", method, "1", "ok", 1, error, None, time, time, 1.0)
 
 
 def test_better_needs_both_error_and_time() -> None:
@@ -131,6 +141,24 @@ def test_what_has_no_reference_is_named(text: str, what: str, why: str, monkeypa
     monkeypatch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
     _, lacking = examined(loads(text), np.arange(3.0), True)
     assert any(one == what and why in reason for one, reason in lacking)
+
+
+def test_every_thing_left_out_saves_functions() -> None:
+    machine = loads(SMOOTH.replace("flywheel", "friction: {crosshead: 0.05}, inclination: 0 deg, flywheel"))
+    found = list(savings(machine, lambda one: Case(one).cylinders[0].at(np.arange(0.0, 361.0, 10.0)).T, True))
+    assert [one.machine for one in found] == [
+        "everything",
+        "no friction",
+        "no masses either",
+        "no cards either: motion alone",
+        "no speed either: positions alone",
+    ]
+    counts = [one.stages for one in found]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1] > 0
+    assert found[0].ratio == 1.0
+    bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
+    assert bare == ["everything", "no speed either: positions alone"]
 
 
 def test_mpmath_belongs_to_accuracy_alone(tmp_path: Path) -> None:

@@ -4,28 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
-from good_machines import ALL
-from kurbel.declared.forms.structures import RecordForm
-from kurbel.declared.unit_systems import SI
-from kurbel.declared.units import parse_quantity
-from kurbel.designs.binding import Binder, _every, _owner
+from kurbel.designs.binding import Binder
 from kurbel.errors import MachineFileError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import values_of
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
-from kurbel.machine_file.given import tree_of
-from kurbel.machine_file.overrides import path_of
-from kurbel.machine_file.reader import ROOT, read_machine, read_values, reading_of
-
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
+from kurbel.machine_file.reader import read_machine
 
 
 def described(value: Any) -> Any:
@@ -62,70 +53,6 @@ def same(found: Any, wanted: Any) -> bool:
     return bool(described(found) == described(wanted))
 
 
-KEYS = {
-    "waterworks.yaml": {
-        "rod_ratio": "4.5",
-        "speed": "61 rpm",
-        "tandem.0.indicator.head_end.constant.compression": "5 at",
-        "indicator.head_end.expansion.1.1": "9.3",
-        "masses.piston": "100 kg",
-        "friction.crosshead": "0.2",
-    },
-    "diesel-trace.yaml": {"bore": "200 mm", "indicator.head_end.trace.angle_zero": "0.1 deg"},
-    "four-cylinder-generator.yaml": {
-        "cylinders.each.bore": "250 mm",
-        "cylinders.each.indicator.head_end.otto.peak": "20 at",
-    },
-    "punch.yaml": {"flywheel.inertia": "900 kg m2"},
-}
-
-
-@pytest.mark.parametrize("name", KEYS)
-def test_a_bound_machine_is_the_one_that_is_read(name: str) -> None:
-    file, texts = source.read(CONFIGS / name), KEYS[name]
-    keys, values = tuple(texts), tuple(texts.values())
-    pairs = [value.partition(" ") for value in values]
-    start = [f"{1.1 * float(number):g} {unit}".rstrip() for number, _, unit in pairs]
-    found = bound(file, keys, start, [values, start, values])
-    assert same(found[0], read(file, keys, values))
-    assert same(found[1], read(file, keys, start))
-    assert same(found[0], found[2])
-    assert not same(found[0], found[1])
-
-
-FACTORS = (0.9, 0.97, 1.0, 1.05, 1.3, 0.5, 0.0, -1.0, 2.0, 7.0, 50.0)
-
-
-def numbers_of(tree: Any, path: str = "") -> Iterator[tuple[str, float, str]]:
-    """The dotted keys of a file under which a number stands, with it and its unit."""
-    for step, node in tree.items() if isinstance(tree, dict) else enumerate(tree):
-        inner = f"{path}{step}"
-        if not isinstance(node, str):
-            yield from numbers_of(node, f"{inner}.")
-        elif found := re.fullmatch(r"(-?[0-9.]+)(| [A-Za-z].*)", node):
-            yield inner, float(found[1]), found[2]
-
-
-def of_each_number(name: str) -> Iterator[tuple[str, list[tuple[str]], dict[int, Any], Origin]]:
-    """What becomes of a file when one number of it after the other is small, large, 0, negative, infinite or a word."""
-    file = source.read(CONFIGS / name)
-    for key, number, unit in numbers_of(tree_of(file)):
-        if re.search(r"\.\d+\.\d+$|^kurbel$|^name$|^expect|uncertainty", key):
-            continue
-        whole = number == int(number) and not unit
-        rows = [(f"{int(number) * k if whole and k == int(k) else number * k!r}{unit}",) for k in FACTORS]
-        rows += [("infinite",), ("many",), (f"{number!r} furlongs",)]
-        start = (f"{int(number) if whole else number!r}{unit}",)
-        yield key, rows, bound(file, (key,), start, rows), file
-
-
-@pytest.mark.parametrize("name", ["waterworks.yaml", "boxer.yaml"])
-def test_every_number_of_a_file_is_bound_as_it_is_read(name: str) -> None:
-    for key, rows, found, file in of_each_number(name):
-        for row in (0, 3, 5, 6, 7, 8, 11):  # reading takes most of the time
-            assert same(found[row], read(file, (key,), rows[row])), (key, rows[row])
-
-
 TWIN = """\
 cycle: four-stroke
 cylinders: {count: 3, bank_angles: [0 deg, 60 deg, 90 deg], each: {stroke: 80 mm, rod_ratio: 4}}
@@ -151,50 +78,6 @@ def test_each_row_fires_in_its_own_turns(text: str, key: str, values: Sequence[s
         assert same(found[row], read(file, (key,), texts)), texts
 
 
-BORES = "{crank: 400 mm, rod: 2 m, speed: 50 rpm, bore: 450 mm, crank_end_rod: 100 mm, friction: {crosshead: 0.1}}"
-
-
-def test_machines_that_differ_in_numbers_are_one_lot_and_those_of_another_kind_another() -> None:
-    file = source.decode("m.yaml", BORES.encode())
-    binder = Binder(file, ("bore", "rod", "crank_end_rod"), ("450 mm", "2 m", "100 mm"))
-    rods = ("2 m", "infinite", "2.1 m", "2.2 m", "0.3 m")
-    found = binder.bound([(f"{400 + row} mm", rods[row % 5], "0 mm" if row % 2 else "100 mm") for row in range(100)])
-    assert sorted(len(lot.rows) for lot in found.lots) == [10, 10, 30, 30]
-    assert sorted(found.failures) == list(range(4, 100, 5))
-    assert set(found.failures.values()) == {
-        "rod: 300 mm is shorter than the crank (400 mm); the crank turns fully only with a longer rod"
-    }
-
-
-GASES = "{{stroke: 1 m, rod: 3 m, offset: 0.1 m, bore: 0.4 m, cycle: {}, indicator: {{head_end: {}}}}}"
-STEAM = GASES.format("two-stroke", "{steam: {admission: 8 bar, exhaust: 0.2 bar, cut_off: 0.3, clearance: 0.05}}")
-OTTO = GASES.format("four-stroke", "{otto: {intake: 0 bar, peak: 40 bar, clearance: 0.15}}")
-
-
-@pytest.mark.parametrize(
-    ("text", "keys", "start", "end"),
-    [
-        (OTTO, ("stroke",), "1 m", "7 m"),
-        (OTTO, ("stroke", "offset"), "1 m", "5.5 m"),
-        (OTTO, ("offset", "rod"), "0.01 m", "1.5 m"),
-        (OTTO, ("indicator.head_end.otto.peak",), "40 bar", "0.1 bar"),
-        (STEAM, ("indicator.head_end.steam.admission",), "8 bar", "-0.5 bar"),
-    ],
-)
-def test_rules_take_arrays(text: str, keys: tuple[str, ...], start: str, end: str) -> None:
-    """A rule that does not is slow: its rows are made one by one."""
-    file, unit = source.decode("m.yaml", text.encode()), start.partition(" ")[2]
-    low, high = (float(one.partition(" ")[0]) for one in (start, end))
-    rows = [
-        (f"{value!r} {unit}", f"{2 - value / 5!r} {unit}")[: len(keys)] for value in np.linspace(low, high, 20).tolist()
-    ]
-    found = Binder(file, keys, rows[0]).bound(rows)
-    assert len(found.lots) == 1
-    machines = {row: found.lots[0].one(place) for place, row in enumerate(found.lots[0].rows)} | found.failures
-    for row, texts in enumerate(rows):
-        assert same(machines[row], read(file, keys, texts)), texts
-
-
 LIKE = """
 cylinders:
   - {name: a, crank: 1 m, rod: 5 m, bore: 1 m, masses: {piston: 3 kg}}
@@ -212,86 +95,3 @@ def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     assert [one.pistons[0].bore for one in found[1].cylinders] == [3.0, 3.0, 2.0]
     assert [one.masses.parts for one in found[1].cylinders] == [3.0, 6.0, 6.0]
     assert found[2].startswith("cylinders[1].masses.piston: -6 kg is too small")
-
-
-FURTHER = (
-    """\
-speed: 300 rpm
-brake_torque: 100 N m
-crank: 100 mm
-rod: 500 mm
-bore: 200 mm
-masses: {piston: 20 kg, connecting_rod: 30 kg}
-friction: {crosshead: 0.05, guide: {length: 300 mm, width: 200 mm}, constant: 50 N, crank_pin: 0.01,
-  crank_pin_diameter: 80 mm, crosshead_pin: 0.01, crosshead_pin_diameter: 60 mm, crosshead_pin_length: 90 mm,
-  journals: 0.01, journal_diameter: 90 mm}
-point: {from: crank_pin, along: 200 mm, across: 20 mm}
-flywheel: {mass: 500 kg, radius_of_gyration: 800 mm}
-counterweights: [{mass: 10 kg, radius: 120 mm, axial_position: 0.1 m}]
-balance_shafts: [{product: 0.1 kg m, order: 2, sense: with}]
-indicator: {head_end: 3 bar, crank_end: 1 bar}
-axial_position: 0 m
-""",
-    "{crank: 1 m, rod: 5 m, flywheel: {rim: {outer_diameter: 3 m, inner_diameter: 2.4 m, width: 300 mm, "
-    "density: 7300 kg/m3, allowable_tension: 5 MPa}}}",
-    "{crank: 1 m, rod: 5 m, flywheel: {fluctuation: 1/80, rim: {mean_diameter: 3 m, depth: 200 mm, mass: 2 t}}}",
-    "{crank: 1 m, rod: 5 m, bore: 1 m, indicator: {head_end: {drawn: {length: 92 mm, spring: 6 mm/at}, "
-    "mean_height: 12 mm}, crank_end: {drawn: {length: 92 mm, spring: 6 mm/at}, area: 1104 mm2}}}",
-    "{crank: 1 m, rod: 5 m, bore: 1 m, indicator: {head_end: {unit: bar, interpolate: polytropic, clearance: 0.1, "
-    "expansion: [[0, 5], [1, 1]], compression: [[1, 1], [0, 5]]}, "
-    "crank_end: {diesel: {intake: 0 bar, cut_off: 0.08, compression_ratio: 15}}}}",
-    "{crank: 1 m, rod: 5 m, bore: 1 m, indicator: {head_end: {otto: {intake: 0 bar, peak: 40 bar, clearance: 0.15}}, "
-    "crank_end: {steam: {admission: 8 bar, exhaust: 0.2 bar, cut_off: 0.3, clearance: 0.05, exponent: 1.1}}}}",
-    "{mechanism: scotch-yoke, crank: 1 m}",
-    "{mechanism: yoke-frame, crank: 1 m, rod_ratio: 5, offset: 10 mm, counterweights: {share: 0.5}}",
-    "{mechanism: slotted-lever, crank: 0.3 m, frame: 0.8 m, lever: 1.3 m, link: 0.5 m, ram_height: 1.25 m}",
-    "{shaft: [{inertia: 10 kg m2}, {stiffness: 1e6 N m/rad}, {inertia: 3 kg m2}, {gear: 2}, {inertia: 1 kg m2}, "
-    "{stiffness: 1e5 N m/rad}, {inertia: 5 kg m2}]}",
-)
-"""Machines with the numbers that no other file has."""
-
-
-def kinds_of_numbers() -> set[tuple[str, str]]:
-    """The record and the key of every number that a machine file may have."""
-    found = set()
-    seen: set[int] = set()
-
-    def visit(form: Any) -> None:
-        if id(form) in seen:
-            return
-        seen.add(id(form))
-        if isinstance(form, RecordForm):
-            name = form.record.__name__
-            found.update((name, key) for key, one in form.keys.items() if one.form.number)
-        for _, inner in form.parts:
-            visit(inner)
-        for inner in form.inline:
-            visit(inner)
-
-    visit(ROOT)
-    return found
-
-
-def test_every_number_of_every_record_may_be_an_array() -> None:
-    """Three values of each number of the shipped machines and of those of other tests, as arrays and one by one."""
-    files = [source.read(path) for path in sorted(CONFIGS.glob("*.yaml"))]
-    files += [source.decode("m.yaml", text.encode()) for text in (*ALL.values(), *FURTHER)]
-    met: set[tuple[str, str]] = set()
-    for file in files:
-        for key, number, unit in numbers_of(tree_of(file)):
-            if re.search(r"\.\d+\.\d+$|^kurbel$|^expect|^limits|uncertainty", key):
-                continue
-            text = f"{number!r}{unit}" if number != int(number) or unit else f"{int(number)}"
-            owner, name, inner = _owner(path_of(key), list(_every(read_values(file, reading_of(file)))))
-            one = (owner.form.record.__name__, name)
-            if inner or one in met or not owner.form.keys[name].form.number:
-                continue
-            met.add(one)
-            kind = owner.form.keys[name].form.kind
-            values = parse_quantity(text, kind) * np.array([1.0, 0.999, 1.001])
-            rows = [(f"{value!r} {SI[kind]}".rstrip(),) for value in values.tolist()]
-            several = bound(file, (key,), (text,), rows)
-            for row in (1, 2):
-                assert same(several[row], bound(file, (key,), (text,), rows[row : row + 1])[0]), (key, row)
-    traces = ("Known", "Measured", "Motored", "Pegging")  # are made one by one
-    assert {one for one in kinds_of_numbers() - met if one[0] not in traces} == set()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs.plan import Plan, latin_hypercube, read_axis, read_input, shard
+from kurbel.designs.plan import Plan, read_axis, read_input, shard
 from kurbel.errors import UsageError
 
 
@@ -95,7 +95,7 @@ def test_grid_list_and_sample() -> None:
 )
 def test_plans_that_are_none(inputs: list[str], options: dict[str, int], message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        Plan(list(map(read_axis, inputs)), **options)  # type: ignore[arg-type]
+        Plan(list(map(read_axis, inputs)), **options)
 
 
 def test_shards_are_the_whole() -> None:
@@ -105,14 +105,6 @@ def test_shards_are_the_whole() -> None:
     for wrong in ("0/3", "4/3", "1", "a/b", "1/0", f"1/{'9' * 5000}"):
         with pytest.raises(UsageError, match="write K/N"):
             shard(wrong, 10)
-
-
-@pytest.mark.slow
-def test_a_latin_hypercube_has_one_point_in_every_strip() -> None:
-    points = latin_hypercube(100, 4, 1)
-    assert all((np.sort(np.floor(100 * column)) == np.arange(100)).all() for column in points.T)
-    assert (points == latin_hypercube(100, 4, 1)).all()
-    assert (points != latin_hypercube(100, 4, 2)).any()
 
 
 def test_a_text_varies_in_the_folder_that_it_was_read_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

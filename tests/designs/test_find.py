@@ -11,6 +11,7 @@ from kurbel.cli import kurbel
 from kurbel.designs.find import Solutions, find
 from kurbel.errors import UsageError
 from kurbel.machine_file.source import decode, read
+from kurbel.render.findings import picture
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 
@@ -131,3 +132,31 @@ def test_of_several_solutions_one_is_taken() -> None:
     first, second = (run(*asked, "--take", str(number), text=text).stdout for number in (1, 2))
     assert first != second
     assert np.array([len(first), len(second)]).min() > 50
+
+
+def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
+    """Every design that was computed is a point, the solutions are marked, and where designs fail there is no curve."""
+    found = found_in("waterworks", "rod_ratio=0.5:8", "N_max = 20 kN")
+    (panel,) = picture(found, "metric").panels
+    curve, wanted = panel.curves
+    computed = found.values[:, 0]
+    whole = np.isfinite(computed)
+    assert (curve.x[np.isfinite(curve.x)] == found.places[whole, 0]).all()
+    assert (curve.y[np.isfinite(curve.y)] == computed[whole] / 1e3).all()
+    assert len(curve.pieces()) == len(found.failed) == 2
+    assert curve.jumps() == []
+    assert np.nanmin(curve.x) > 1
+    assert wanted.y.tolist() == [20.0, 20.0]
+    assert [(mark.x, mark.y) for mark in panel.marks] == [(found.found[0].values[0], pytest.approx(20.0))]
+    level = picture(found_in("waterworks", "speed=40:60 rpm", least="stroke"), "metric")
+    assert len(level.panels[0].curves) == 1
+
+    arguments = "find", str(CONFIGS / "waterworks.yaml"), "--vary", "rod_ratio=3:8", "N_max = 20 kN", "--plot"
+    assert "rod_ratio 4.123" in run(*arguments).stdout
+    file = tmp_path / "found.svg"
+    assert run(*arguments, "-o", str(file)).exit_code == 0
+    assert file.read_text(encoding="utf-8").startswith("<svg")
+    for wrong, message in ((("-f", "json"), "leave --format out"), (("-o", "x.csv"), "ends in .svg, .png or .pdf")):
+        assert message in run(*arguments, *wrong).stderr
+    two = "--vary", "stroke=600:1000 mm", "T_max = 88 kN"
+    assert "over one key, and two" in run(*arguments, *two).stderr

@@ -86,27 +86,6 @@ def test_rows_are_chosen_by_printed_symbols() -> None:
     assert [one["row"] for one in rows(*by_symbol, file=compressor)]
 
 
-@pytest.mark.parametrize("option", ["--sort", "--pareto"])
-def test_words_and_lists_have_no_order(option: str) -> None:
-    words = run("--vary", "rotation=over,under", "--columns", "N_max", option, "rotation")
-    assert f"{option}: rotation has words, of which none is the best" in words.output
-    listed = run(*RATIOS, "--columns", "phi_reversal", option, "phi_reversal")
-    assert f"{option}: phi_reversal is a list of values" in listed.output
-
-
-def test_a_summary_is_of_the_rows_that_are_chosen() -> None:
-    asked = (*RATIOS, "--columns", "N_max", "--summary")
-    (_, best) = rows(*asked, "--sort", "N_max", "--top", "2")
-    chosen = [one["N_max_N"] for one in rows(*RATIOS, "--columns", "N_max") if one["row"] in (4, 5)]
-    assert (best["rows"], best["mean"]) == (2, pytest.approx(np.mean(chosen)))
-    assert rows(*asked, "--pareto", "N_max")[1]["q100"] == min(chosen)
-
-
-def test_ids_that_are_a_symbol_together_are_two_columns() -> None:
-    """`p_max,m` is also the mean of the largest pressures of a trace."""
-    assert list(rows("--vary", "rod_ratio=5", "--columns", "p_max,m")[0])[2:4] == ["p_max_Pa", "m_kg"]
-
-
 def test_every_extreme_has_its_angle() -> None:
     """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
     file = str(CONFIGS / "gas-engine.yaml")
@@ -117,25 +96,8 @@ def test_every_extreme_has_its_angle() -> None:
     assert {"P_dc_at_deg", "dE_at_deg"} & set(found) == {"P_dc_at_deg"}
 
 
-def test_designs_that_fail_at_the_beginning_stay() -> None:
-    """The first 500 of 1001 cranks are longer than their rods: the whole sweep was refused."""
-    found = rows("--vary", "rod_ratio=0.5:1.5:0.001", "--columns", "stroke")
-    assert [bool(one["failure"]) for one in found] == [True] * 501 + [False] * 500
-    locked = rows("--vary", "friction.crosshead=8,0.1")
-    assert "locks itself" in str(locked[0]["failure"])
-    single = kurbel.solve(kurbel.load(WATERWORKS)).cylinders[0]
-    assert locked[1]["N_max_N"] == pytest.approx(single["N_max"].value, rel=1e-13)
-
-
 def test_python_is_told_why_the_only_design_fails() -> None:
     """As an optimiser may ask for one design at a time, and for one key value of it."""
     found = kurbel.sweep(kurbel.load(WATERWORKS), {"rod_ratio": [0.5]}, "N_max")
     assert np.isnan(found["N_max"]).tolist() == [True]
     assert found["failure"].tolist() == ["rod_ratio: 0.5 is too small; it must be more than 1"]
-
-
-def test_limits_do_not_vary() -> None:
-    """Every row was judged by the bound of the first one."""
-    result = run("--vary", "limits.N_max=16,20 kN", "--columns", "N_max")
-    told = "--vary limits.N_max: limits are the same for all rows; --where chooses those within others"
-    assert (result.exit_code, told in result.output) == (2, True)

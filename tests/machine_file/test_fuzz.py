@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import pytest
-import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,7 +13,6 @@ from good_machines import ALL
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import reader, source
-from representative import few
 
 SETTINGS = settings(max_examples=3 * settings.default.max_examples)
 INFINITE_BY_WORD = {"rod", "link"}  # `rod: infinite`
@@ -71,12 +69,6 @@ def test_random_bytes(content: bytes) -> None:
 
 
 @SETTINGS
-@given(st.lists(st.sampled_from("crank: 4m\n-[]{},&*!|>'\"#%@?\t~.eé\u2028"), max_size=120))
-def test_random_yaml_signs(signs: list[str]) -> None:
-    read("".join(signs).encode())
-
-
-@SETTINGS
 @given(st.data())
 def test_mutated_machines(data: st.DataObject) -> None:
     text = data.draw(st.sampled_from(list(ALL.values())))
@@ -110,24 +102,6 @@ NUMBERS = st.one_of(
 def test_extreme_lengths(crank: float, rod: float, offset: float, rod_key: str, crank_key: str) -> None:
     unit = " m" if rod_key == "rod" else ""
     read(f"{crank_key}: {crank!r} m\n{rod_key}: {rod!r}{unit}\noffset: {offset!r} m\n".encode())
-
-
-@pytest.mark.slow
-@SETTINGS
-@given(st.recursive(st.text(max_size=8), lambda inner: st.lists(inner) | st.dictionaries(st.text(max_size=8), inner)))
-def test_any_tree(tree: Any) -> None:
-    read(yaml.safe_dump(tree, allow_unicode=True).encode())
-
-
-PREFIXES = [(name, step) for step in (13, 5) for name in ALL]
-
-
-@pytest.mark.parametrize(("name", "step"), few(PREFIXES, PREFIXES[: len(ALL)]))
-def test_every_prefix_of_a_machine(name: str, step: int) -> None:
-    """Every fifth with the slow tests, and every thirteenth by default."""
-    text = ALL[name]
-    for end in range(0, len(text), step):
-        read(text[:end].encode())
 
 
 @pytest.mark.parametrize("size", [100_000])

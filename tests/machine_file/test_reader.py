@@ -1,14 +1,18 @@
-"""Good machine files: what arrives in the machine, in SI."""
+"""Good machine files: what arrives in the machine, in SI; values set over the file by --set."""
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
-from good_machines import ALL, DEMO, DIESEL, EFFORT, FULL, GAS_ENGINE
-from kurbel.errors import MachineFileError
+from good_machines import DEMO, DIESEL, EFFORT, EQUAL, FULL, GAS_ENGINE, LIKE_ONE
+from kurbel.cli import kurbel
+from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import load, loads
 
 
@@ -18,45 +22,44 @@ def test_the_flat_machine_of_the_contract() -> None:
     assert machine.name == "Demo steam engine"
     assert machine.speed == 50 / 60
     assert cylinder.name == "cylinder 1"
-    assert (cylinder.mechanism.crank, cylinder.mechanism.rod) == (0.4, 2.0)  # type: ignore[attr-defined]
+    assert (cylinder.mechanism.crank, cylinder.mechanism.rod) == (0.4, 2.0)
     (piston,) = cylinder.pistons
     assert piston.bore == 0.45
-    assert piston.indicator is not None
     card = piston.indicator.head_end
     assert card is piston.indicator.crank_end
-    assert card.lines[0].pressures[0] == 9.5 * 98066.5  # type: ignore[union-attr]
+    assert card.lines[0].pressures[0] == 9.5 * 98066.5
 
 
 def test_several_cylinders_with_everything() -> None:
     machine = loads(FULL)
     high, low = machine.cylinders
     assert [high.name, low.name] == ["HP", "LP"]
-    assert (high.mechanism.crank, low.mechanism.rod, low.crank_position) == (0.4, math.inf, 90)  # type: ignore[attr-defined]
+    assert (high.mechanism.crank, low.mechanism.rod, low.crank_position) == (0.4, math.inf, 90)
     assert [piston.bore for piston in high.pistons] == [0.45, 0.285]
     masses, friction = high.masses, high.friction
-    assert (masses.parts, masses.reciprocating) == (717, 717 + 110)  # type: ignore[union-attr]
-    assert friction.rings.count == 3  # type: ignore[union-attr]
-    steam = high.pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)  # type: ignore[union-attr]
+    assert (masses.parts, masses.reciprocating) == (717, 717 + 110)
+    assert friction.rings.count == 3
+    steam = high.pistons[0].indicator.head_end
+    assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)
     assert machine.limits == (("c_max", 6.0), ("delta", 1 / 200))
     wheel, coupling = machine.flywheel, machine.coupling
     # GD² of 40000 kgf m² is 4J with J in kg m²
-    assert (wheel.inertia, wheel.fluctuation) == (10000, 0.01)  # type: ignore[union-attr]
-    assert (coupling.stiffness, coupling.inertia) == (1e6, 500)  # type: ignore[union-attr]
-    assert (machine.load.power, machine.crankshaft.allowable_bending) == (2, 60e6)  # type: ignore[union-attr]
+    assert (wheel.inertia, wheel.fluctuation) == (10000, 0.01)
+    assert (coupling.stiffness, coupling.inertia) == (1e6, 500)
+    assert (machine.load.power, machine.crankshaft.allowable_bending) == (2, 60e6)
 
 
 def test_engines_and_diagrams() -> None:
-    otto = loads(GAS_ENGINE).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
+    otto = loads(GAS_ENGINE).cylinders[0].pistons[0].indicator.head_end
     # c = 1/(ε − 1), ε = 5
-    assert (otto.clearance, otto.exponent, otto.expansion_exponent) == (0.25, 1.4, 1.4)  # type: ignore[union-attr]
+    assert (otto.clearance, otto.exponent, otto.expansion_exponent) == (0.25, 1.4, 1.4)
     machine = loads(DIESEL)
-    diesel, diagram = machine.cylinders[0].pistons[0].indicator.head_end, machine.load.diagram  # type: ignore[union-attr]
-    assert (diesel.peak, diesel.expansion_exponent) == (45e5, 1.35)  # type: ignore[union-attr]
-    assert (diagram.angles, diagram.torques) == ((0, 90, 90, 720), (100, 100, 500, 100))  # type: ignore[union-attr]
+    diesel, diagram = machine.cylinders[0].pistons[0].indicator.head_end, machine.load.diagram
+    assert (diesel.peak, diesel.expansion_exponent) == (45e5, 1.35)
+    assert (diagram.angles, diagram.torques) == ((0, 90, 90, 720), (100, 100, 500, 100))
     machine = loads(EFFORT)
     assert (machine.cylinders, machine.load) == ((), None)
-    assert machine.effort.torques[1] == 300 * 9.80665  # type: ignore[union-attr]
+    assert machine.effort.torques[1] == 300 * 9.80665
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
@@ -70,44 +73,10 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
     assert load(path).name == "Tafel I"
 
 
-def test_a_trace_file_is_found_beside_the_machine_file(tmp_path: Path) -> None:
-    (tmp_path / "p.csv").write_text("angle; p\ndeg; bar\n360; 1\n540; 0,5\n720; 1\n")
-    path = tmp_path / "machine.yaml"
-    path.write_text(
-        "crank: 400 mm\nrod_ratio: 5\nbore: 90 mm\nindicator:\n  head_end:\n"
-        '    trace: {file: p.csv, unit: bar, delimiter: ";", decimal: comma, skip_rows: 2, angle_zero: 360 deg}\n'
-    )
-    trace = load(path).cylinders[0].pistons[0].indicator.head_end  # type: ignore[union-attr]
-    assert [*map(Path, trace.files)] == [tmp_path / "p.csv"]  # type: ignore[union-attr]
-    assert trace.angle_zero == 360  # type: ignore[union-attr]
-    assert trace.angles.tolist() == [360, 540, 720]  # type: ignore[union-attr]
-    assert trace.pressures.tolist() == [1e5, 5e4, 1e5]  # type: ignore[union-attr]
-
-
-def test_a_fault_of_a_flat_machine_has_no_cylinder_in_its_path() -> None:
-    with pytest.raises(MachineFileError, match=r":\d+:\d+: indicator.head_end: a four-stroke cycle needs"):
-        loads("cycle: four-stroke\n" + DEMO)
-
-
 def test_rules_of_parts_are_told_although_another_part_is_wrong() -> None:
     with pytest.raises(MachineFileError) as caught:
         loads("crank: 400 mm\nrod: 300 mm\nbore: 90 mm\nhead_end_rod: 95 mm\nflywheel: {}\n")
     assert [fault.path for fault in caught.value.faults] == [("rod",), ("head_end_rod",), ("flywheel",)]
-
-
-@pytest.mark.parametrize("text", ALL.values(), ids=ALL)
-def test_reading_twice_gives_the_same(text: str) -> None:
-    assert repr(loads(text)) == repr(loads(text))
-
-
-def test_ten_thousand_points_in_the_file_are_read_as_they_stand() -> None:
-    """What 1e5 of them take is in benchmarks/reading.py."""
-    points = [(index * 0.036, 100.0 + index % 7) for index in range(10_001)]
-    lines = "".join(f"    - [{angle:.3f}, {torque:.0f}]\n" for angle, torque in points)
-    effort = loads(f"effort:\n  unit: kN m\n  points:\n{lines}").effort
-    assert effort is not None
-    assert list(effort.angles) == [float(f"{angle:.3f}") for angle, _ in points]
-    assert list(effort.torques) == [1e3 * torque for _, torque in points]
 
 
 @pytest.mark.parametrize(
@@ -117,8 +86,66 @@ def test_a_ratio_is_written_as_people_do(text: str, value: float) -> None:
     machine = loads(
         f"crank: 1 m\nrod_ratio: 10/3\nefficiency: 75 %\nflywheel: {{fluctuation: {text}}}\nlimits: {{delta: {text}}}"
     )
-    assert machine.flywheel is not None
     assert machine.flywheel.fluctuation == value
     assert machine.limits == (("delta", value),)
     assert machine.efficiency == 0.75
-    assert machine.cylinders[0].mechanism.rod == 10 / 3  # type: ignore[attr-defined]
+    assert machine.cylinders[0].mechanism.rod == 10 / 3
+
+
+# `--set KEY=VALUE`: values over those of the file, and faults that name them
+
+
+def test_a_value_of_any_depth_is_set() -> None:
+    card = "indicator.head_end.expansion.1=[0.3, 9.5]"
+    machine = loads(
+        DEMO, "m", ["speed=9 rpm", "speed=60 rpm", "flywheel.fluctuation=1/80", card, "masses={piston: 9 kg}"]
+    )
+    (cylinder,) = machine.cylinders
+    assert machine.speed == 1  # the last one holds
+    assert machine.flywheel.fluctuation == 1 / 80
+    assert cylinder.masses.parts == 9
+    assert cylinder.pistons[0].indicator.head_end.lines[0].fractions[1] == 0.3
+
+
+def test_what_is_like_the_changed_one_changes_with_it() -> None:
+    for key in ("cylinders.0.crank", "cylinders[0].crank"):
+        assert [one.mechanism.crank for one in loads(LIKE_ONE, "m", [f"{key}=150 mm"]).cylinders] == [0.15, 0.15]
+    changed = ["cylinders.count=2", "cylinders.firing_order=1-2", "cylinders.each.bore=1 m"]
+    found = [(one.pistons[0].bore, one.crank_position) for one in loads(EQUAL, "m", changed).cylinders]
+    assert found == [(1, 0), (1, 360)]
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("boore=3", "--set boore=3: boore: unknown key; did you mean 'bore'?"),
+        ("bore=450", "--set bore=450: bore: 450 has no unit"),
+        ("crank=", "--set crank=: crank: a value is missing"),
+        ("masses={piston: 80}", "--set masses={piston: 80}: masses.piston: 80 has no unit"),
+        # a fault elsewhere says what was set
+        ("crank=3 m", "m:4:6: rod: 2000 mm is shorter than the crank (3000 mm); the crank turns fully only with"),
+        ("crank=3 m", "(with --set crank=3 m)"),
+        ("bore.x=3", "--set bore.x=3: nothing stands below 'bore', which is '450 mm'"),
+        ("cylinders.0.bore=3 m", "--set cylinders.0.bore=3 m: there is no list 'cylinders' in the file"),
+        ("indicator.head_end.expansion.9=[1, 2]", "'indicator.head_end.expansion' is a list; its items are 0 to 5"),
+        ("speed", "--set speed: write KEY=VALUE"),
+        (".=3", "--set .=3: write KEY=VALUE"),
+        (f"{'9' * 5000}=3", "99…: unknown key; known here are kurbel, name, speed"),
+        ("bore=*a", "'*a' is not supported; write the value itself; a cylinder may be 'like: NAME'"),
+        ("name=\x1b[31mred", "--set name=\\u001b[31mred: the character U+001B cannot be printed; remove it"),
+        ("name=a\udcff", "is no UTF-8"),
+        ("bore=[1", "--set bore=[1: a comma or ']' is missing"),
+    ],
+)
+def test_a_fault_names_the_override(override: str, message: str) -> None:
+    with pytest.raises(KurbelError, match=re.escape(message)) as caught:
+        loads(DEMO, "m", [override])
+    assert "Traceback" not in str(caught.value)
+
+
+def test_the_answer_is_that_of_the_changed_machine(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(DEMO)
+    asked = ["motion", str(tmp_path / "m.yaml"), "-f", "json", "--set", "crank=500 mm", "--set", "speed=60 rpm"]
+    found = json.loads(CliRunner().invoke(kurbel, asked).stdout)["cylinders"][0]["key_values"]
+    # c_m = 2 s n
+    assert next(one["value"] for one in found if one["id"] == "c_m") == pytest.approx(2 * 1.0 * 1)

@@ -1,20 +1,28 @@
-"""The JSON Schema says what the reader does."""
+"""The JSON Schema and records made in Python accept and refuse what the reader does."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
+import jsonschema
+import numpy as np
 import pytest
 import yaml
 
 from good_machines import ALL
+from kurbel.declared.forms.structures import RecordForm, records
+from kurbel.declared.keys import Key
 from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import ZEROED_UNITS, example, parse_quantity, unit_names
-from kurbel.errors import UnitError
+from kurbel.errors import RuleError, UnitError
+from kurbel.machine_file.reader import ROOT
+from kurbel.machine_file.schema import describe
+from kurbel.traces.correct import Trace
+from representative import law_of_each
 from schemas import whole_schema
-
-jsonschema = pytest.importorskip("jsonschema")
 
 
 @pytest.fixture(scope="module")
@@ -69,30 +77,71 @@ def test_patterns_know_every_unit(kind: str) -> None:
             parse_quantity(text, kind)
 
 
-def test_ratios_may_be_quotients_and_percent(validator: Any) -> None:
-    machine = {"crank": "400 mm", "rod_ratio": "10/3", "efficiency": "75 %", "limits": {"delta": "1/80"}}
-    assert validator.is_valid(machine)
-    assert validator.is_valid(machine | {"rod_ratio": "infinite"})
-
-
-def test_every_key_has_a_sentence() -> None:
-    for schema in [whole_schema(), *whole_schema()["definitions"].values()]:
-        for name, inner in schema.get("properties", {}).items():
-            assert inner["description"], name
-
-
-def test_a_wrong_unit_is_explained_in_words() -> None:
-    length = whole_schema()["definitions"]["quantity_length"]
-    assert length["errorMessage"] == "write a number with its unit, such as '450 mm'"
-    assert length["patternErrorMessage"].startswith("write a number with its unit, such as '450 mm'; units: ")
-    for unit in unit_names("length"):
-        assert unit in length["patternErrorMessage"]
-        assert unit in length["description"]
-
-
 def test_figures_may_be_named_by_their_symbols(validator: Any) -> None:
     machine = {"crank": "400 mm", "rod": "2 m"}
     good = {"b_max": "13.16 m/s2 ± 0.5 %", "φ_o": ["179 deg", "181 deg"], "dA/A": "0 +- 1e-9"}
     assert validator.is_valid(machine | {"limits": {"A_H": "1 m2", "ΔA/A": 1e-9}, "expect": good})
     for bad in ({"b_max": "13.16 m/s2"}, {"bmax": "1 m/s2 ± 1 %"}, {"φ_b=0": "1 deg ± 1 deg"}, {"b_max": ["1 m/s2"]}):
         assert not validator.is_valid(machine | {"expect": bad})
+
+
+# what keys say of one another holds alike for the file, for the schema and for records made in Python
+
+
+def all_records() -> Iterator[RecordForm]:
+    """Every record that the keys of a machine lead to."""
+    found = {ROOT.record: ROOT}
+    waiting = [ROOT]
+    while waiting:
+        record = waiting.pop()
+        for name, key in record.keys.items():
+            for _, inner in records(key.form, name):
+                if inner.record not in found:
+                    found[inner.record] = inner
+                    waiting.append(inner)
+    return iter(found.values())
+
+
+def declared(field: str) -> list[Any]:
+    return [(record, name, key) for record in all_records() for name, key in record.keys.items() if getattr(key, field)]
+
+
+def allowed_by_schema(record: RecordForm, *names: str) -> bool:
+    """Whether the rules between keys let these stand together, whatever their values."""
+    return rules_of(record).is_valid(dict.fromkeys(names, 1))
+
+
+@cache
+def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
+    rules: list[dict[str, Any]] = []
+    describe(record, {}, rules, whole_schema()["definitions"])
+    return jsonschema.Draft7Validator({"allOf": rules})
+
+
+@law_of_each(declared("instead"))
+def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: RecordForm, name: str, key: Key) -> None:
+    with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' say the same thing"):
+        record.record.from_keys(**{name: 1.5, key.instead: 1.5})
+    assert not allowed_by_schema(record, name, key.instead)
+
+
+@law_of_each(declared("needs"))
+def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) -> None:
+    with pytest.raises(RuleError, match=f"{name}: '{name}' needs '{key.needs}' beside it"):
+        record.record.from_keys(**{name: 1.5})
+    assert not allowed_by_schema(record, name)
+
+
+@pytest.mark.parametrize(
+    ("angles", "pressures", "message"),
+    [
+        ([0, 180], [1, 2], "rise over one whole cycle"),
+        ([0, 200, 180, 360], [1, 2, 3, 1], "rise over one whole cycle"),
+        ([0, 180, 360], [1, np.nan, 1], "finite samples"),
+        ([0, 180, 360], [1, 2], "as many pressures as angles"),
+        ([0], [1], "two or more"),
+    ],
+)
+def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:
+    with pytest.raises(RuleError, match=message):
+        Trace(np.array(angles, dtype=float), np.array([pressures], dtype=float))

@@ -24,10 +24,12 @@ ANGLES = np.arange(0.0, 720.0, 2.0)
 PRESSURES = np.round(absolute(ENGINE, ANGLES), 3)
 
 
-def machine(folder: Path, content: str | bytes, keys: str = "", unit: str = "bar") -> Machine:
+def machine(
+    folder: Path, content: str | bytes, keys: str = "", unit: str = "bar", cycle: str = "four-stroke"
+) -> Machine:
     (folder / "p.csv").write_bytes(content if isinstance(content, bytes) else content.encode())
     (folder / "m.yaml").write_text(
-        "cycle: four-stroke\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
+        f"cycle: {cycle}\nspeed: 1500 rpm\nstroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\n"
         f"indicator: {{pressures: absolute, head_end: {{trace: {{file: p.csv, unit: {unit}{keys}}}}}}}\n"
     )
     return load(folder / "m.yaml")
@@ -58,6 +60,7 @@ def commas(text: str) -> str:
 
 
 TURN = np.mod(ANGLES, 360.0)
+BARE = "".join(f"{p:.3f}\n" for p in PRESSURES)
 FORMS: dict[str, tuple[str | bytes, str]] = {
     "plain": (rows(), ""),
     "UTF-16": (rows().encode("utf-16"), ""),
@@ -65,10 +68,7 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "UTF-16, big end first": (b"\xfe\xff" + rows().encode("utf-16-be"), ""),
     "byte order mark": ("\ufeff" + rows(), ""),
     "decimal commas": (commas(rows(between=";")), ", delimiter: semicolon, decimal: comma"),
-    "quoted decimal commas": (
-        rows(form='"%s"').replace(".", ",").replace('""', '"'),
-        ", decimal: comma",
-    ),
+    "quoted decimal commas": (rows(form='"%s"').replace(".", ",").replace('""', '"'), ", decimal: comma"),
     "quoted numbers": (rows(form='"%s"'), ""),
     "modulo 360": (rows(TURN), ""),
     "-360 to 360": (rows(np.roll((ANGLES + 360) % 720 - 360, 180), np.roll(PRESSURES, 180)), ""),
@@ -76,8 +76,9 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "seconds": (rows(ANGLES / 9000), ", angle_unit: s, recorded_speed: 1500 rpm"),
     "milliseconds": (rows(ANGLES / 9), ", angle_unit: ms, recorded_speed: 1500 rpm"),
     "sample numbers": (rows(np.arange(360)), ", angle_step: 2 deg"),
-    "no angles": ("".join(f"{p:.3f}\n" for p in PRESSURES), ", angle_step: 2 deg, pressure_column: 1"),
+    "no angles": (BARE, ", angle_step: 2 deg, pressure_column: 1"),
     "volts": (rows(pressures=(PRESSURES - 1) / 20), ", scale: 20, offset: 1 bar"),
+    "kilopascals": (rows(pressures=PRESSURES * 100), ", scale: 0.01"),
     "against the rotation": (rows((-ANGLES[::-1]) % 720, PRESSURES[::-1]), ", angle_sense: against"),
     "falling angles": (rows(720 - ANGLES), ", angle_sense: against"),
     "line feeds of old Macs": (rows().replace("\n", "\r"), ""),
@@ -87,7 +88,9 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "semicolons by their sign": (rows(between=";"), ', delimiter: ";"'),
     "other columns": (rows(form="9,%s"), ", angle_column: 2, pressure_column: 4"),
     "a heading in Latin-1": ("Kurbelwinkel [°]\n".encode("latin-1") + rows().encode(), ", skip_rows: 1"),
+    "a heading of figures": ("1500,12.5\n" + rows(), ", skip_rows: 1"),
     "comments and empty lines": ("# bar\n\n" + rows().replace("\n20,", "\n\n20,") + "# end\n", ""),
+    "samples given twice": (rows().replace("\n20,", "\n18,36.789\n20,").replace("36.789", f"{PRESSURES[9]:.6g}"), ""),
 }
 
 
@@ -107,18 +110,6 @@ def test_turns_that_begin_within_one(tmp_path: Path, begin: float, zero: str) ->
     assert (peak - float(ANGLES[int(np.argmax(PRESSURES))])) % 360 == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_heading_of_figures(tmp_path: Path) -> None:
-    """Speed and power above the figures are no sample at 1500 deg."""
-    with pytest.raises(MachineFileError, match=r"line 2: the angle begins anew.* a heading\?"):
-        machine(tmp_path, "1500,12.5\n" + rows())
-    meant(machine(tmp_path, "1500,12.5\n" + rows(), ", skip_rows: 1"))
-
-
-def test_gauge_kilopascals(tmp_path: Path) -> None:
-    one = machine(tmp_path, rows(pressures=PRESSURES * 100), unit="kPa")
-    assert trace_of(one).pressures[:-1] == pytest.approx(PRESSURES * 1e5)
-
-
 HEADED = [
     ("Crank_Angle [deg] Cylinder_Pressure [bar]\n" + rows(between=" "), ""),
     ("Crank_Angle [deg],Cylinder Pressure [bar]\n" + rows(), ""),
@@ -126,7 +117,7 @@ HEADED = [
     ("run 7, 12 kW\nCrank_Angle [deg]\tp_cyl [bar]\n" + rows(between="\t"), ""),
     (("a\tb\n" + commas(rows(between="\t"))).encode("utf-16"), ""),
     ('"CA","p"\n' + rows(form='"%s"').replace(".", ","), ""),
-    ("p [bar]\n" + "".join(f"{p:.3f}\n" for p in PRESSURES), ", angle_step: 2 deg"),
+    ("p [bar]\n" + BARE, ", angle_step: 2 deg"),
 ]
 
 
@@ -141,186 +132,220 @@ def test_the_advice_reads_the_file(tmp_path: Path, content: str | bytes, keys: s
     meant(machine(tmp_path, content, "".join(f", {one}" for one in advice) + keys))
 
 
+@pytest.mark.parametrize(
+    ("content", "advice", "keys"),
+    [
+        (rows(np.radians(ANGLES)), "are these radians? Then write 'angle_unit: rad'", ", angle_unit: rad"),
+        (
+            rows(ANGLES / 9000),
+            "are these times? Then write 'angle_unit: s'",
+            ", angle_unit: s, recorded_speed: 1500 rpm",
+        ),
+        (
+            rows(10 * np.arange(360)),
+            "turns that are not alike; if it numbers samples, write how far apart they are, such as 'angle_step: 2",
+            ", angle_step: 2 deg",
+        ),
+        (rows(720 - ANGLES), "the rows run backward; put", ", angle_sense: against"),
+        ("1500,12.5\n" + rows(), "line 2: the angle begins anew after 1500 deg; a turn has 360", ", skip_rows: 1"),
+    ],
+)
+def test_what_counts_no_degrees(tmp_path: Path, content: str, advice: str, keys: str) -> None:
+    with pytest.raises(MachineFileError, match=re.escape(advice)):
+        machine(tmp_path, content)
+    meant(machine(tmp_path, content, keys))
+
+
+GOOD = [f"{angle},{1 + angle / 100}" for angle in range(0, 361, 10)]
+
+
+def broken(line: int, text: str) -> str:
+    return "\n".join([*GOOD[: line - 1], text, *GOOD[line:]]) + "\n"
+
+
+def holed(begin: float, end: float, step: float, last: float = 360.0) -> str:
+    angles = [angle for angle in np.arange(0, last + step / 2, step).tolist() if not begin < angle < end]
+    return rows(angles, [2 + (angle > 180) for angle in angles])
+
+
 PLAIN = "figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
-UNREADABLE: dict[str, tuple[str, str, str]] = {
-    "times of day": (rows(ANGLES, form="12:00:%s"), "", f"line 1: '12:00:0' is no number; {PLAIN}"),
-    "thousands": (
+FIVE_TIMES = np.tile(ANGLES, 5), np.tile(PRESSURES, 5)
+BUT_ONE = np.delete(np.arange(1800), np.arange(3 * 360 + 100, 3 * 360 + 130))
+REFUSED: list[tuple[str | bytes, str, str]] = [
+    # what is no number
+    (broken(5, "40,nan"), "", "line 5: the pressure is nan, not a number; leave such rows out"),
+    (broken(5, "inf,3"), "", "line 5: the angle is inf, not a number"),
+    (broken(5, "40,1e400"), "", "line 5: the pressure is inf"),
+    ("0,1\n100,1e300\n720,1\n", ", scale: 1e15", "line 2: the pressure is inf"),
+    (broken(6, "50,x3"), "", "line 6: column 2 holds no number"),
+    (broken(6, "50"), "", "line 6 has no column 2: 50"),
+    (broken(6, "50;3"), "", "line 6 has no column 2: 50;3; write 'delimiter: semicolon'"),
+    (broken(1, "angle,bar"), "", "line 1: column 1 holds no number; write 'skip_rows: 1' if it is a heading"),
+    ("0;1,5\n180;2\n360;1\n", "", "line 1: '0;1' is no number; write 'delimiter: semicolon'"),
+    ("0;1,5\n180;2,5\n360;1,5\n", ", delimiter: semicolon", "line 1: '1,5' is no number; write 'decimal: comma'"),
+    ("", "", "p.csv has no figures"),
+    ("# nothing\n\n", "", "p.csv has no figures"),
+    *(
+        (
+            broken.join(["# a form feed \x0c, and a separator \x1c \u2028", "0,1", "90,x", "360,1"]),
+            "",
+            "line 3: column 2",
+        )
+        for broken in ("\r", "\r\n", "\n")
+    ),
+    # no advice leads in a circle, or to what is set already
+    (rows(ANGLES, form="12:00:%s"), "", f"line 1: '12:00:0' is no number; {PLAIN}"),
+    (
         "".join(f"{a:.10g};{p * 1000:,.1f}\n" for a, p in zip(ANGLES, PRESSURES)),
         ", delimiter: semicolon",
-        f"is no number; {PLAIN}",
+        f"is no number; {PLAIN}, without signs between thousands",
     ),
-    "units in cells": (rows(form="%s u"), "", f"line 1: column 1 holds no number; {PLAIN}"),
-    "exponents of Fortran": (rows(form="%sD0"), "", f"line 1: column 1 holds no number; {PLAIN}"),
-    "another file": ("cycle: four-stroke\nspeed: 1500 rpm\n", "", "line 1 has no column 2; is it a file of figures?"),
-    "too few columns": (rows(), ", pressure_columns: 2-61", "line 1 has no column 61: 0,37.661; it has 2 only"),
-    "no angles": (
-        "".join(f"{p:.3f}\n" for p in PRESSURES),
+    (
+        "".join(f"{a:g};{p * 1000:,.2f}\n".translate(str.maketrans(".,", ",.")) for a, p in zip(ANGLES, PRESSURES)),
+        ", delimiter: semicolon, decimal: comma",
+        "line 1: '37.661,00' is no number",
+    ),
+    (rows(form="%s u"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    (rows(form="%sD0"), "", f"line 1: column 1 holds no number; {PLAIN}"),
+    ("cycle: four-stroke\nspeed: 1500 rpm\n", "", "line 1 has no column 2; is it a file of figures?"),
+    ("0,x\n", "", "line 1: column 2 holds no number; is it a file of figures?"),
+    ("0 1\n1\n", ", delimiter: space", "line 2 has no column 2: 1; leave such lines out, or mend them"),
+    (rows(), ", pressure_columns: 2-61", "line 1 has no column 61: 0,37.661; it has 2 only"),
+    (BARE, "", "if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"),
+    (rows() + "\nEnd\n", "", "line 362 has no column 2; leave such lines out, or mend them"),
+    (rows().replace("\n20,", "\n20,#"), "", "holds no number; leave such lines out, or mend them"),
+    (
+        "".join(f"{a:g},{p:.2f}\n".replace(".", ",") for a, p in zip(ANGLES, PRESSURES)),
         "",
-        "if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say",
+        "has a decimal comma",
     ),
-    "a last line": (rows() + "\nEnd\n", "", "line 362 has no column 2; leave such lines out, or mend them"),
-    "an empty cell": (rows().replace("\n20,", "\n20,#"), "", "holds no number; leave such lines out, or mend them"),
-}
+    # what is no text
+    (b"\xff\xfe0\x00,\x001\x00", "", "line 1"),
+    (b"PK\x03\x04[Content_Types].xml", "", "p.csv is an Excel or other workbook, or a zip archive, no text; save its"),
+    (b"TDSm\x0e\x00\x00\x00", "", "a TDMS file of LabVIEW, no text; export its channels as CSV"),
+    (b"\x1f\x8b\x08\x00", "", "compressed by gzip, no text; unpack it"),
+    (b"0,1\n\x00\x01\x02 and so on, to the end of the head of the file, which has text", "", "has zero bytes"),
+    # what is no whole cycle, and in which line
+    (broken(6, "20,3"), "", "line 6: 20 deg after 40 deg; put the points in order of the angle"),
+    ("0,1\n", "", "line 1: a trace needs samples at two angles or more"),
+    ("0,1\n0,2\n", "", "line 1: a trace needs samples at two angles or more"),
+    ("0,1\n90,2\n90,3\n90,4\n360,1", "", "line 4: three points at 90 deg; a jump has two"),
+    (
+        "".join(f"{a},2\n" for a in [*range(180, 360, 5), 0, 5, 5, 5, *range(10, 180, 5)]),
+        "",
+        "line 40: three points at 5 deg",
+    ),
+    (
+        "\n".join(GOOD[:25]),
+        "",
+        "line 25: no samples from 240 to 360 deg; a trace covers a whole cycle of 360 or 720 deg",
+    ),
+    ("0,1\n720,2\n1440,1\n", "", "line 3: the samples run over 1440 deg; cut whole cycles out"),
+    *((holed(100, 126, step), "", "no samples from 100 to 126 deg") for step in (0.5, 2)),
+    *((holed(10, 330, step), "", "no samples from 10 to 330 deg") for step in (0.5, 2)),
+    (holed(100, 118, 1, last=343), "", "no samples from 343 to 360 deg"),
+    (rows(*(one[BUT_ONE] for one in FIVE_TIMES)), "", "line 1180: no samples from 2358 to 2420 deg"),
+    (
+        "\n".join(GOOD),
+        "",
+        "the trace covers 360 deg, a four-stroke cycle has 720 deg; write 'cycle: two-stroke'",
+    ),
+    # keys that contradict or lack one another
+    (rows(), ", angle_unit: s", "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"),
+    (rows(), ", angle_unit: rad, recorded_speed: 1500 rpm", "write 'angle_unit: s'"),
+    (rows(), ", angle_unit: s, recorded_speed: 1 rpm", "are 'recorded_speed' and 'angle_unit' (s or ms) right?"),
+    (rows(), ", scale: 0", "0 leaves no pressure"),
+    (rows(), ", pressure_columns: 61-2", "runs backward or names a column twice"),
+    (rows(), ", pressure_columns: 1-3", "column 1 is that of the angles"),
+    (rows(), ", pressure_columns: 2-4", "line 1 has no column 4"),
+    (rows(), ", pressure_columns: [2, 3]", "or in quotation marks '2, 5, 7-9', got a list"),
+    (rows(), ", pressure_columns: two", "or in quotation marks '2, 5, 7-9', got 'two'"),
+    (rows(), ", pressure_column: 2, pressure_columns: 2-4", "say the same thing"),
+    (rows(), ", angle_column: 1, angle_step: 2 deg", "say the same thing"),
+    (rows(), ", clearance: 0.1, compression_ratio: 11", "say the same thing"),
+    (rows(), ", pegging: {angle: 5 deg}", "'pressure' is missing"),
+    (rows(), ", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
+    (rows(), ", decimal: comma", "a comma cannot be both in numbers and between columns"),
+    ("0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}", "has fewer than five samples within 3 deg"),
+]
 
 
-@pytest.mark.parametrize("name", UNREADABLE)
-def test_no_advice_leads_in_a_circle(tmp_path: Path, name: str) -> None:
-    """No heading is seen where the lines below are no better; what stands in the way is named instead."""
-    content, keys, said = UNREADABLE[name]
+@pytest.mark.parametrize(("content", "keys", "said"), REFUSED)
+def test_what_cannot_be_a_trace_is_named_with_its_line(
+    tmp_path: Path, content: str | bytes, keys: str, said: str
+) -> None:
     with pytest.raises(MachineFileError) as caught:
         machine(tmp_path, content, keys)
-    assert said in caught.value.faults[0].message
-    assert "skip_rows" not in caught.value.faults[0].message
+    (fault,) = caught.value.faults
+    assert said in fault.message
+    assert ("skip_rows" in fault.message) == ("skip_rows" in said)
+    if not keys and "cycle:" not in said:
+        assert fault.path == ("indicator", "head_end", "trace", "file")
+        assert (fault.line, fault.source_line[fault.column - 1 :][:5]) == (6, "p.csv")
 
 
 @pytest.mark.parametrize(
-    ("begin", "said"),
+    ("content", "keys", "notes"),
     [
+        ("\n".join(GOOD[:-1]), "", []),  # the closing sample is missing, as loggers write them
+        (holed(100, 120, 0.1), "", ["no samples from 100 to 120 deg; a straight line joins them"]),
+        (rows(np.r_[0:60:0.1, 60:361], np.full(901, 2.0)), "", []),  # a denser stretch leaves no holes elsewhere
+        ("0,1\n120,2\n120,2\n360,1\n", "", ["1 samples given twice count once"]),
         (
-            b"PK\x03\x04[Content_Types].xml",
-            "an Excel or other workbook, or a zip archive, no text",
+            "".join(f"{a},{1 + a / 100}\n" for a in [*range(180, 360, 5), *range(0, 180, 5)]),
+            "",
+            ["the angle begins anew at 0 deg; the samples from there on come first"],
         ),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an old Excel workbook"),
-        (b"TDSm\x0e\x00\x00\x00", "a TDMS file of LabVIEW, no text; export its channels as CSV"),
-        (b"MDF     3.30", "an MDF file"),
-        (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
-        (b"\x1f\x8b\x08\x00", "compressed by gzip, no text; unpack it"),
-        (b"0,1\n\x00\x01\x02 and so on, to the end of the head of the file, which has text", "has zero bytes"),
+        ("CA [deg],p [kPa]\n" + "\n".join(GOOD), ", skip_rows: 1", ["column 2 has another unit, kPa"]),
+        ("CA [deg],p (bar)\n" + "\n".join(GOOD), ", skip_rows: 1", []),
+        ("angle,p [V]\n" + "\n".join(GOOD), ", skip_rows: 1", []),
     ],
 )
-def test_what_is_no_text_is_named(tmp_path: Path, begin: bytes, said: str) -> None:
-    with pytest.raises(MachineFileError, match=re.escape(said)):
-        machine(tmp_path, begin)
+def test_what_was_tidied_up_is_noted(tmp_path: Path, content: str, keys: str, notes: list[str]) -> None:
+    trace = trace_of(machine(tmp_path, content, keys, cycle="two-stroke"))
+    assert len(trace.notes) == len(notes)
+    assert all(said in note for said, note in zip(notes, trace.notes))
+    assert trace.pressures[0] == trace.pressures[-1] or not trace.completed
 
 
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        (", angle_unit: s", "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"),
-        (", angle_unit: rad, recorded_speed: 1500 rpm", "write 'angle_unit: s'"),
-        (", scale: 0", "0 leaves no pressure"),
-        (", pressure_columns: 61-2", "runs backward or names a column twice"),
-        (", pressure_columns: 1-3", "column 1 is that of the angles"),
-        (", pressure_columns: 2-4", "line 1 has no column 4"),
-        (", pressure_columns: [2, 3]", "or in quotation marks '2, 5, 7-9', got a list"),
-        (", angle_unit: s, recorded_speed: 1 rpm", "are 'recorded_speed' and 'angle_unit' (s or ms) right?"),
-        (", pressure_column: 2, pressure_columns: 2-4", "say the same thing"),
-        (
-            ", pressure_columns: two",
-            "or in quotation marks '2, 5, 7-9', got 'two'",
-        ),
-        (", angle_column: 1, angle_step: 2 deg", "say the same thing"),
-        (", pegging: {angle: 5 deg}", "'pressure' is missing"),
-        (", angle_zero: {motored: p.csv}", "'loss_angle' is missing"),
-        (", clearance: 0.1, compression_ratio: 11", "say the same thing"),
-        (", decimal: comma", "a comma cannot be both in numbers and between columns"),
-    ],
-)
-def test_keys_that_contradict_or_lack_one_another(tmp_path: Path, keys: str, said: str) -> None:
-    with pytest.raises(MachineFileError, match=re.escape(said)):
-        machine(tmp_path, rows(), keys)
+def test_whole_degrees_and_decimal_commas_below_a_heading(tmp_path: Path) -> None:
+    """'0,37,66' is 0 deg and 37.66 bar, or three columns: refused, or doubted, with both readings."""
+    lines = "".join(f"{angle:g},{pressure:.2f}\n".replace(".", ",") for angle, pressure in zip(ANGLES, PRESSURES))
+    try:
+        one = machine(tmp_path, "Winkel,Druck\n" + lines, ", skip_rows: 1")
+        said = "\n".join(note.text for note in machine_notes(Case(one)))
+    except MachineFileError as error:
+        said = str(error)
+    assert "decimal comma" in said
+    assert "delimiter" in said
 
 
-def test_a_hole_in_any_cycle_is_refused(tmp_path: Path) -> None:
-    angles = np.tile(ANGLES, 5)
-    kept = np.delete(np.arange(len(angles)), np.arange(3 * 360 + 100, 3 * 360 + 130))
-    with pytest.raises(MachineFileError, match=r"line 1180: no samples from 2358 to 2420 deg"):
-        machine(tmp_path, rows(angles[kept], np.tile(PRESSURES, 5)[kept]))
-
-
-def test_falling_angles_are_told_to_run_backward(tmp_path: Path) -> None:
-    with pytest.raises(MachineFileError, match=r"the rows run backward.*or write 'angle_sense: against'"):
-        machine(tmp_path, rows(720 - ANGLES))
-
-
-def test_effort_holds_one_cycle(tmp_path: Path) -> None:
+def test_points_and_efforts_are_judged_in_the_same_way(tmp_path: Path) -> None:
+    (tmp_path / "m.yaml").write_text(
+        "crank: 200 mm\nrod: 900 mm\nbore: 300 mm\nspeed: 60 rpm\n"
+        "indicator: {head_end: {trace: {unit: bar, points: [[0, 1], [100, 2], [90, 1], [360, 1]]}}}\n"
+    )
+    with pytest.raises(MachineFileError, match=r"trace.points\[2\]: 90 deg after 100 deg"):
+        load(tmp_path / "m.yaml")
     (tmp_path / "e.csv").write_text(rows(np.tile(np.arange(0, 360, 2), 3), np.ones(540)))
     (tmp_path / "m.yaml").write_text("effort: {unit: N m, file: e.csv}\n")
     with pytest.raises(MachineFileError, match="holds 3 laps of 360 deg; keep one cycle"):
         load(tmp_path / "m.yaml")
 
 
-def test_sample_numbers_are_no_angles(tmp_path: Path) -> None:
-    """Samples at every tenth of a degree, numbered: read as angles they would be ten cycles, none like the other."""
-    fine = np.arange(0.0, 720.0, 0.1)
-    content = rows(np.arange(7200), absolute(ENGINE, fine))
-    with pytest.raises(MachineFileError, match=r"turns that are not alike; .* such as 'angle_step: 0.1 deg'"):
-        machine(tmp_path, content)
-    assert trace_of(machine(tmp_path, content, ", angle_step: 0.1 deg")).angles[:-1] == pytest.approx(fine)
-
-
-@pytest.mark.parametrize(
-    ("angles", "advice", "keys"),
-    [
-        (np.radians(ANGLES), "are these radians? Then write 'angle_unit: rad'", ", angle_unit: rad"),
-        (ANGLES / 9000, "are these times? Then write 'angle_unit: s'", ", angle_unit: s, recorded_speed: 1500 rpm"),
-    ],
-)
-def test_what_counts_no_degrees(tmp_path: Path, angles: Any, advice: str, keys: str) -> None:
-    with pytest.raises(MachineFileError, match=re.escape(advice)):
-        machine(tmp_path, rows(angles))
-    meant(machine(tmp_path, rows(angles), keys))
-
-
-def test_figures_beyond_all_numbers(tmp_path: Path) -> None:
-    with pytest.raises(MachineFileError, match="line 2: the pressure is inf"):
-        machine(tmp_path, "0,1\n100,1e300\n720,1\n", ", scale: 1e15")
-    with pytest.raises(MachineFileError, match="motored: has fewer than five samples within 3 deg of its peak"):
-        machine(tmp_path, "0,1\n720,1\n", ", angle_zero: {motored: p.csv, loss_angle: 0.5 deg}")
-
-
-# what is read otherwise than it is meant, or said in part
-
-
-@pytest.mark.parametrize(
-    ("heading", "said"),
-    [
-        ("CA [deg],p [kPa]", "column 2 has another unit, kPa"),
-        ("CA [deg],p (bar)", ""),
-        ("angle,p [V]", ""),
-        ("a,b", ""),
-    ],
-)
-def test_the_unit_of_a_heading(tmp_path: Path, heading: str, said: str) -> None:
-    notes = trace_of(machine(tmp_path, f"{heading}\n{rows()}", ", skip_rows: 1")).notes
-    assert [said in note for note in notes] == ([True] if said else [])
-
-
-def said_of(folder: Path, content: str, keys: str = "", unit: str = "bar") -> str:
-    """The fault of a file, or else all notes on the machine that was read."""
-    try:
-        one = machine(folder, content, keys, unit)
-    except MachineFileError as error:
-        return str(error)
-    return "\n".join(note.text for note in machine_notes(Case(one)))
-
-
-@pytest.mark.parametrize("heading", ["", "Winkel,Druck\n"])
-def test_whole_degrees_and_decimal_commas_between_comma_columns(tmp_path: Path, heading: str) -> None:
-    """'0,37,66' is 0 deg and 37.66 bar, or three columns: refused, or doubted, with both readings."""
-    lines = "".join(f"{angle:g},{pressure:.2f}\n".replace(".", ",") for angle, pressure in zip(ANGLES, PRESSURES))
-    said = said_of(tmp_path, heading + lines, ", skip_rows: 1" if heading else "")
-    assert "decimal comma" in said
-    assert "delimiter" in said
-
-
-def test_a_point_between_thousands_is_named_as_it_stands_in_the_file(tmp_path: Path) -> None:
-    german = str.maketrans(".,", ",.")
-    lines = "".join(f"{a:.10g};{f'{p * 1000:,.2f}'.translate(german)}\n" for a, p in zip(ANGLES, PRESSURES))
-    said = said_of(tmp_path, lines, ", delimiter: semicolon, decimal: comma", "mbar")
-    assert "'37.661,00'" in said
-    assert "thousands" in said
+def test_a_pipe_is_no_file_of_samples(tmp_path: Path) -> None:
+    """Opening one would wait for ever."""
+    machine(tmp_path, rows())
+    (tmp_path / "p.csv").unlink()
+    os.mkfifo(tmp_path / "p.csv")
+    with pytest.raises(MachineFileError, match="is a device or a pipe"):
+        load(tmp_path / "m.yaml")
 
 
 def _all_limits_in(text: str) -> bool:
     """Whether the three limits of size stand in a text, with or without signs between thousands."""
     plain = re.sub(r"(?<=[0-9])[ ,_\u202f](?=[0-9]{3})", "", text)
     return "64 MiB" in plain and bool(re.search(r"5000000|5 million|5·10⁶", plain)) and "500000" in plain
-
-
-def test_the_docs_have_the_limits_of_size() -> None:
-    page = Path(__file__).parents[2] / "docs" / "traces.md"
-    assert _all_limits_in(page.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("large", few(["bytes", "samples"], ["bytes"]))
@@ -335,3 +360,5 @@ def test_all_limits_of_size_are_reported_at_once(tmp_path: Path, large: str) -> 
     with pytest.raises(MachineFileError) as caught:
         load(tmp_path / "m.yaml")
     assert _all_limits_in(str(caught.value))
+    page = Path(__file__).parents[2] / "docs" / "traces.md"
+    assert _all_limits_in(page.read_text(encoding="utf-8"))

@@ -23,12 +23,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
-from kurbel.numerics.lobatto import chebyshev
-from kurbel.numerics.pieces import Angles, Pieces, refined
-from kurbel.report.frame import Frame
-from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
-from representative import few, law_of_each
+from representative import law_of_each
 
 MACHINES = {
     "straight": SliderCrank(0.4, 2.0),
@@ -105,25 +101,6 @@ def test_the_swing_has_the_derivatives_of_its_angle(machine):
     assert list(map(float, curvatures)) == pytest.approx(swing.curvature, rel=1e-11, abs=1e-13)
 
 
-@every()
-def test_every_function_is_pointwise(machine):
-    angles = np.linspace(-400.0, 800.0, 211)
-    for function in (machine.coordinate, machine.slope, machine.curvature):
-        values = function(CrankAngle.of(angles))
-        assert values.shape == angles.shape
-        assert np.isfinite(values).all()
-        assert (values[::7] == function(CrankAngle.of(angles[::7]))).all()
-        alone = [function(CrankAngle.of(float(degrees))) for degrees in angles[::30]]
-        assert values[::30] == pytest.approx(alone, rel=1e-14, abs=1e-15 * machine.stroke)
-
-
-@every(STROKES)
-def test_one_turn_later_all_is_the_same(machine):
-    angles = np.arange(0.0, 360.0, 7.5)
-    for function in (machine.coordinate, machine.slope, machine.curvature):
-        assert (function(CrankAngle.of(angles)) == function(CrankAngle.of(angles + 360.0))).all()
-
-
 @every(TURNING)
 def test_what_turns_fully_comes_round_with_the_crank(machine):
     """Without a jump, forward all the way, from `start` by `stroke` = 2π, one turn a turn."""
@@ -168,30 +145,6 @@ def test_crank_angles_at_is_the_inverse_of_the_coordinate(machine, inverse, outs
     # what the rounding of the angle, and that of the coordinate, leave open
     rounding = 3e-15 * max(machine.stroke, abs(machine.start)) + 4e-15 * abs(machine.slope(angle))
     assert (abs(machine.coordinate(angle) - machine.start - way) <= rounding).all()
-
-
-@every()
-def test_the_two_strokes_fill_the_turn(machine):
-    assert machine.phi_work + machine.phi_return == 360
-    assert machine.time_ratio == pytest.approx(machine.phi_work / (360 - machine.phi_work), rel=1e-15)
-    assert not machine.quick_return or machine.time_ratio >= 1
-
-
-@every()
-def test_what_it_offers_fits_what_it_says(machine):
-    angle = CrankAngle.of(40.0)
-    offered = {offer.quantity.id: offer.factor(machine, angle) for offer in machine.OFFERS}
-    assert machine.slides or "theta" in offered
-    assert ("theta" in offered) == hasattr(machine, "swing_at")
-    assert all(value is None or math.isfinite(value) for value in offered.values())
-    if machine.rod_angle(angle) is not None:
-        assert math.hypot(*machine.rod_angle(angle)) == pytest.approx(1, rel=1e-15)
-
-
-@pytest.mark.parametrize("name", MECHANISMS)
-def test_every_word_names_its_class(name):
-    mechanism = MECHANISMS[name].record
-    assert mechanism.name == name
 
 
 def test_every_mechanism_is_under_the_laws():
@@ -263,50 +216,3 @@ def test_size_does_not_matter(machine, scale):
         (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
     ):
         assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
-
-
-POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
-"""Unit -> the power of a length in it where forces stay; angles and ratios stay with them."""
-POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}
-"""The same where moments stay."""
-
-
-GROWING = [(machine, word) for word in ("motion", "forces") for machine in MACHINES.values()]
-
-
-@pytest.mark.parametrize(("machine", "command"), few(GROWING, GROWING[len(MACHINES) :: 7]))
-def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
-    """Twice as large: the same angles and forces, twice the ways and moments, a quarter of the pressure."""
-    angles = (0.0, 33.0, 118.0, 291.0)
-    frame = Frame(command, angles, None, "si")
-    parts = [report_of(loaded(one), frame).parts[0] for one in (machine, resized(machine, 2.0))]
-    powers = POWERS if machine.slides else POWERS_OF_A_MOMENT
-    small, large = (
-        {one.id: (one.unit, one.values) for one in part.columns}
-        | {one.id: (one.unit, one.value) for one in part.key_values}
-        for part in parts
-    )
-    assert list(small) == list(large)
-    assert {"x", "theta", "M"} & set(small)
-    for id, (unit, values) in small.items():
-        power = 1 if id == "coupler_inertia" else powers.get(unit, 0)  # of a mass, which stays
-        before, after = (np.array(each, dtype=float) for each in (values, large[id][1]))
-        assert after == pytest.approx(before * 2.0**power, rel=1e-12, abs=1e-12 * abs(before).max()), id
-
-
-@every()
-def test_each_function_is_the_derivative_of_the_one_before(machine):
-    """By the polynomials through values at Lobatto nodes, on pieces that are halved until these are exact."""
-
-    def sampled(pieces: Pieces) -> np.ndarray:
-        angle = CrankAngle.at_nodes(pieces)
-        return np.stack([one(angle) + 0 * angle.sin for one in (machine.coordinate, machine.slope, machine.curvature)])
-
-    nowhere = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
-    pieces, values = refined(Pieces.between(nowhere, 1, 360.0), sampled)
-    order = len(pieces.rule.nodes)
-    reading = chebyshev(pieces.rule.nodes, order - 1) @ pieces.rule.slope @ pieces.rule.series
-    slopes = reading @ values[:-1] / np.radians(pieces.half)
-    wide = pieces.half > 0.1  # a difference over less has no digits left
-    size = machine.stroke + abs(values[2]).max()
-    assert slopes[:, :, wide] == pytest.approx(values[1:][:, :, wide], abs=1e-10 * size)

@@ -99,7 +99,7 @@ def broken(file: str) -> Iterator[str]:
             for law, given in calls:
                 if type(given.get("machine")).__module__ == own:
                     # anew, since some keep what they once computed
-                    law(**{**given, "machine": dataclasses.replace(given["machine"])})  # type: ignore[type-var]
+                    law(**{**given, "machine": dataclasses.replace(given["machine"])})
         except AssertionError:
             yield name
 

@@ -9,7 +9,6 @@ from test_every_mechanism import MACHINES
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Sketch
-from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from representative import law_of_each
 
@@ -19,19 +18,12 @@ DRAWN = {name: one for name, one in MACHINES.items() if one.sketch(CrankAngle.of
 
 def sketch_of(mechanism: Mechanism) -> dict[str, complex]:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
-    assert sketch is not None
     return {name: np.broadcast_to(x + 1j * np.asarray(y), DEGREES.shape) for name, (x, y) in sketch.joints.items()}
 
 
 def whole(mechanism: Mechanism) -> Sketch:
     sketch = mechanism.sketch(CrankAngle.of(DEGREES))
-    assert sketch is not None
     return sketch
-
-
-def test_every_mechanism_of_the_book_is_drawn() -> None:
-    assert {one.name for one in DRAWN.values()} == set(MECHANISMS)
-    assert set(MACHINES) == set(DRAWN)
 
 
 @law_of_each(DRAWN)
@@ -62,7 +54,6 @@ def test_links_are_stiff_unless_something_slides_on_them(name: str) -> None:
 @law_of_each(name for name, one in DRAWN.items() if one.slides)
 def test_the_output_moves_as_x_does(name: str) -> None:
     mechanism, joints, sketch = DRAWN[name], sketch_of(DRAWN[name]), whole(DRAWN[name])
-    assert sketch.toward is not None
     toward = complex(*sketch.toward)
     place = (joints[sketch.output] * toward.conjugate()).real
     x = np.asarray(mechanism.coordinate(CrankAngle.of(DEGREES)))

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import math
 
-import mpmath as mp
 import pytest
-from precise import exact_angle
 
-from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
@@ -16,40 +13,6 @@ from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-from representative import law_of_each
-
-
-def exact_tilt(machine, phi):
-    return mp.atan2(mp.mpf(machine.crank) * mp.sin(phi), mp.mpf(machine.frame) + mp.mpf(machine.crank) * mp.cos(phi))
-
-
-LEVERS = [
-    SlottedLever(0.3, 0.8, 1.3),
-    SlottedLever(0.3, 0.3000001, 0.7),  # the pin close to the pivot
-    SlottedLever(0.3, 0.29999, 0.4),  # barely turning
-    SlottedLever(1e-9, 1.0, 2.0),
-    SlottedLever(1.0, 1e-9, 2.0),
-]
-PLACES = [0.0, 1e-7, 20.0, 90.0, 111.0, 179.0, 180.0, 180.001, 250.0, 359.0]
-
-
-@law_of_each((machine, degrees) for machine in LEVERS for degrees in PLACES)
-def test_fork_head_against_derivatives_in_fifty_digits(machine, degrees):
-    r, e, lever = mp.mpf(machine.crank), mp.mpf(machine.frame), mp.mpf(machine.lever)
-    exact, angle = exact_angle(degrees), CrankAngle.of(degrees)
-
-    def place(phi):
-        return lever * mp.sin(exact_tilt(machine, phi))
-
-    square = r * r + e * e + 2 * r * e * exact.cos
-    terms = lever * r * (r + e * abs(exact.cos)) * (e + r * abs(exact.cos)) / square**1.5
-    with mp.workdps(80):
-        phi = mp.radians(degrees)
-        assert abs(machine.coordinate(angle) - place(phi)) <= 1e-15 * abs(place(phi)) + 1e-60
-        assert abs(machine.slope(angle) - mp.diff(place, phi)) <= 1e-13 * terms
-        # the acceleration has terms of one sign only: relative, also beside its zeros
-        wanted = mp.diff(place, phi, 2)
-        assert abs(machine.curvature(angle) - wanted) <= 1e-14 * abs(wanted) + 1e-30
 
 
 def test_largest_speeds_of_the_book():

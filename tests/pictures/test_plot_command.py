@@ -55,14 +55,6 @@ def test_a_mechanism_at_chosen_angles(tmp_path: Path) -> None:
     assert "animate" not in text
 
 
-def test_only_one_cylinder() -> None:
-    two = str(CONFIGS["waterworks-two-cranks"])
-    assert "high pressure" not in run(two, "forces", "--cylinder", "low pressure").stdout
-    wrong = run(two, "forces", "--cylinder", "middle pressure")
-    assert wrong.exit_code == 2
-    assert "there is no 'middle pressure'; there are high pressure, low pressure" in wrong.stderr
-
-
 @pytest.mark.parametrize(
     ("args", "message"),
     [
@@ -85,14 +77,6 @@ def test_wrong_wishes(args: list[str], message: str, tmp_path: Path, monkeypatch
     assert message in result.stderr
     assert "\x1b" not in result.stderr
     assert not list(tmp_path.iterdir())
-
-
-def test_the_machine_file_is_never_overwritten(tmp_path: Path) -> None:
-    file = tmp_path / "m.svg"
-    file.write_bytes(CONFIGS["waterworks"].read_bytes())
-    result = run(str(file), "-o", str(file))
-    assert result.exit_code == 2
-    assert "would overwrite" in result.stderr
 
 
 def test_without_typst_the_way_out_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from itertools import combinations, pairwise
-from pathlib import Path
+from itertools import combinations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,16 +11,14 @@ import pytest
 from drawn import drawn, ids_of, named
 
 from kurbel.render import Look
-from kurbel.render.braille import LETTERS
-from kurbel.render.drawing import draw_file
 from kurbel.render.html import BAD, GOOD, LINK
 from kurbel.render.html import FAINT as PAGE_FAINT
 from kurbel.render.html import INK as PAGE_INK
 from kurbel.render.html import PAPER as PAGE_PAPER
 from kurbel.render.html import SHADE as PAGE_SHADE
-from kurbel.render.picture import LOOKS, Label, PanelFrame
-from kurbel.render.svg import FAINT, GAIN, INK, LOSS, PAPER, PAPER_SIZES, STROKES, css, subscripts, svg_file
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
+from kurbel.render.picture import Label, PanelFrame
+from kurbel.render.svg import FAINT, GAIN, INK, LOSS, PAPER, PAPER_SIZES, STROKES, css, svg_file
+from kurbel.report.picture import Panel
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
 from representative import CONFIGS, case_of, few
@@ -64,12 +61,6 @@ def test_contrast(mode: int) -> None:
             assert contrast(colours[mode], ground[mode]) >= 4.5
 
 
-def test_curves_are_told_apart_without_colour() -> None:
-    assert len({stroke.dashes for stroke in STROKES}) == len(STROKES) == LOOKS
-    assert len(set(LETTERS)) == LOOKS
-    assert contrast(GAIN[0], LOSS[0]) > 1.15  # of two grey values the one is darker
-
-
 def test_a_name_is_text_and_nothing_else() -> None:
     text = svg_file(list(pictures(named(), ("motion", "mechanism"), PictureOptions())), Look())
     assert "<script" not in text
@@ -104,31 +95,6 @@ def test_every_mechanism_of_the_book_moves(name: str) -> None:
     standing = svg_file(list(pictures(case_of(name), ("mechanism",), PictureOptions(angles=(45.0,)))), Look())
     assert "φ = 45°" in standing
     assert "still" not in standing.split("</style>")[1]
-
-
-BEGINS = [("svg", b"<svg"), ("pdf", b"%PDF"), ("png", b"\x89PNG")]
-
-
-@pytest.mark.parametrize(("suffix", "begin"), few(BEGINS, BEGINS[:1]))
-def test_the_same_picture_every_time(suffix: str, begin: bytes, tmp_path: Path) -> None:
-    if suffix != "svg":
-        pytest.importorskip("typst")
-    for name in ("a", "b"):
-        draw_file(list(drawn("waterworks", "card")), Look(), str(tmp_path / f"{name}.{suffix}"))
-    first, second = ((tmp_path / f"{name}.{suffix}").read_bytes() for name in ("a", "b"))
-    assert first == second
-    assert first.startswith(begin)
-
-
-def test_subscripts_are_lower() -> None:
-    assert subscripts("M_f,max 3 N m, 20°") == ["M", "f,max", " 3 N m, 20°"]
-    assert subscripts("|M_ν| in N m") == ["|M", "ν", "| in N m"]
-    assert subscripts("−P_b") == ["−P", "b", ""]
-    assert subscripts("Δφ_G") == ["Δφ", "G", ""]
-    assert subscripts("θ̇_max 6.3 rad/s") == ["θ̇", "max", " 6.3 rad/s"]
-    root = ElementTree.fromstring(svg_file(drawn("waterworks", "motion"), Look()))
-    assert {"max", "min"} <= {one.text for one in root.iter("{http://www.w3.org/2000/svg}tspan")}
-    assert not any("_" in "".join(one.itertext()) for one in root.iter("{http://www.w3.org/2000/svg}text"))
 
 
 def frame_of(panel: Panel, wide: float = 646.0, tall: float = 250.0) -> PanelFrame:
@@ -171,36 +137,3 @@ def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
             on_curves += sum(covered(frame, label) for label in found)
     assert labels > 100
     assert on_curves <= 0.01 * labels
-
-
-@pytest.mark.parametrize(("name", "lobes"), [("radial-three", 12), ("marine-diesel", 12), ("waterworks-two-cranks", 4)])
-def test_every_lobe_is_named(name: str, lobes: int) -> None:
-    labels = frame_of(drawn(name, "effort")[0].panels[0]).labels(named=False)
-    named_ = {label.text.split()[0] for label in labels if label.text.startswith("A_")}
-    assert named_ == {f"A_{number}" for number in range(1, lobes + 1)}
-
-
-def test_labels_of_a_steep_bundle_are_clear_of_it_and_lines_lead_to_them() -> None:
-    """Five marks within 15° of the left edge: their labels once were on the curves, and one on the next."""
-    x = np.linspace(0.0, 40.0, 80)
-    curves = tuple(Curve(Words("σ"), x, -30.0 * k - 4 * x) for k in range(5))
-    marks = [Mark(2.0 + 3 * k, -42.0 * k - 38, PageFigure(Words("σ_pin,max"), 51.24, "N/mm^2", 1.65)) for k in range(5)]
-    axis = Axis(Words("φ"), unit="deg", high=700.0)
-    frame = frame_of(Panel(axis, Axis(Words("σ"), unit="N/mm^2"), curves, marks=tuple(marks)))
-    labels = frame.labels(named=False)
-    assert len(labels) == 5
-    assert any(label.lead for label in labels)
-    assert not any(covered(frame, label) for label in labels)
-    assert not any(meet(one, other) for one, other in combinations(labels, 2))
-
-
-@pytest.mark.parametrize("name", ["torsional-damper", "generator-coupling", "marine-diesel"])
-def test_names_along_an_axis_are_inside_and_apart(name: str) -> None:
-    panel = drawn(name, "modes")[0].panels[0]
-    spans = [
-        (left, left + 5.8 * len(text), text) for _, left, text in frame_of(panel).ticks_across(10, -50, 660) if text
-    ]
-    assert {panel.x.names[0], panel.x.names[-1]} <= {text for _, _, text in spans}
-    assert spans[0][0] >= -50
-    assert spans[-1][1] <= 660
-    assert all(before[1] <= after[0] for before, after in pairwise(spans))

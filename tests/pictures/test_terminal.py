@@ -62,12 +62,3 @@ def test_a_name_can_do_nothing_to_a_terminal() -> None:
         text = text_of(picture, Look(encoding=encoding))
         assert "\x1b" not in text
         assert "<script>" in text  # which is no markup there
-
-
-def test_many_lobes_have_numbers_within_them_and_few_their_work() -> None:
-    crowded = text_of(drawn("radial-three", "effort")[0], Look(width=80)).split("E in")[0]
-    assert "A_4" in crowded
-    assert "A_4 88.44 J" not in crowded
-    few_ = text_of(drawn("waterworks", "effort")[0], Look(width=80))
-    assert "A_2 −18.39 kJ" in few_
-    assert all(f"A_{number}" in few_ for number in (1, 2, 3, 4))

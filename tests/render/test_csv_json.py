@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.report.tables import Column, Part, PlaceTable, Report
@@ -43,13 +42,6 @@ def test_json_reads_back_exactly(values: list[float | None]) -> None:
     assert content["cylinders"][0]["columns"][1]["values"] == values
 
 
-@given(texts("Cc", min_size=1))
-def test_any_name_survives_in_csv(name: str) -> None:
-    report = report_of([1.0], name)
-    two = report._replace(parts=report.parts * 2)
-    assert read_csv(render(two, Look("csv")))[1][0].removeprefix("'") == name.removeprefix("'")
-
-
 @pytest.mark.parametrize("name", ["=2+5", "+2", "-2+3", "@SUM(A1:A9)", '=HYPERLINK("http://a.b","c")', "＝2+5"])
 def test_no_name_is_a_formula_to_a_spreadsheet(name: str) -> None:
     part = Part(name, (PHI._replace(values=(0.0,)), Column("x", "x", "x", "m", (-2.0,))))
@@ -69,11 +61,6 @@ def test_any_name_survives_in_json(name: str, encoding: str) -> None:
 def test_json_never_holds_nan() -> None:
     with pytest.raises(ValueError, match="JSON compliant"):
         render(report_of([float("nan")]), Look("json"))
-
-
-def test_json_has_no_decimal_comma() -> None:
-    with pytest.raises(UsageError, match="decimal point only"):
-        render(ONE, Look("json", comma=True))
 
 
 @given(st.lists(texts("Cc", "Zl", "Zp"), min_size=2, max_size=2))

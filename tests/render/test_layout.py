@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from kurbel.render import Look
 from kurbel.render.formats import render
-from kurbel.render.page import book_sizes, fitting_sizes
+from kurbel.render.page import book_sizes
 from kurbel.render.text import folded, width
 from kurbel.report.zusammenstellung import zusammenstellung
 from render.sample_report import ONE, REPORT, texts
@@ -53,14 +51,6 @@ def test_blocks_as_in_the_book(count: int, sizes: list[int]) -> None:
     assert book_sizes(count) == sizes
 
 
-@given(st.integers(1, 400), st.integers(-5, 60))
-def test_blocks_that_fit_are_even_and_complete(count: int, most: int) -> None:
-    sizes = fitting_sizes(count, most)
-    assert sum(sizes) == count
-    assert max(sizes) <= max(most, 1)
-    assert max(sizes) - min(sizes) <= 1
-
-
 @pytest.mark.parametrize("columns", [40, 60, 80, 120, 200])
 def test_tables_fit_the_terminal(columns: int) -> None:
     for report in (ONE, zusammenstellung()):
@@ -79,13 +69,6 @@ def test_no_line_ends_between_a_number_and_its_unit(columns: int) -> None:
     assert " ".join(lines) == SAID
     for one in ("-1.78 %)", "10 %", "110 rpm", "2.35 kN m", "30.5 °,", "12 m/s²", "9 lbf ft/rad"):
         assert any(one in line for line in lines), one
-
-
-def test_a_browser_keeps_a_unit_beside_its_number() -> None:
-    page = render(ONE._replace(notes=(SAID,)), Look("html"))
-    kept = re.findall('<span class="n">(.*?)</span>', page)
-    assert {"10 %", "110 rpm", "2.35 kN m", "12 m/s²", "9 lbf ft/rad"} <= set(kept)
-    assert ",.n{white-space:nowrap}" in page
 
 
 @pytest.mark.parametrize(

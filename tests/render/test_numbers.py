@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.render.numbers import angle_scale, cell, rounded, scale_of, single
@@ -22,14 +22,6 @@ def test_a_cell_is_within_half_a_unit_of_its_last_decimal(row: list[float], digi
         if shown is not None:
             unit = 10.0 ** (scale.exponent - scale.decimals)
             assert abs(shown - value) <= 0.5 * unit * (1 + 1e-6) + 4 * math.ulp(value)
-
-
-@given(ROW, st.integers(1, 17))
-def test_the_largest_value_shows_the_digits(row: list[float], digits: int) -> None:
-    largest = max(abs(value) for value in row)
-    assume(largest > 0)
-    shown = cell(largest, scale_of(row, digits)).replace(".", "").lstrip("0")
-    assert len(shown) >= digits
 
 
 @given(FINITE, st.integers(0, 6))

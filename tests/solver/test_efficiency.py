@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +13,6 @@ from click.testing import CliRunner, Result
 from kurbel import load
 from kurbel.cli import kurbel
 from kurbel.crank_angle import CrankAngle
-from kurbel.errors import NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, RamForce
@@ -85,49 +82,6 @@ def test_too_little_efficiency_is_no_solution(command: str) -> None:
     assert "it runs from 'efficiency: 0.8685' on" in found.stderr
     assert run(command, TWO_CRANKS, "--set", "efficiency=0.8685").exit_code == 0
     assert run(command, TWO_CRANKS, "--set", "efficiency=0.8684").exit_code == 3
-
-
-def test_other_commands_say_that_it_cannot_run(tmp_path: Path) -> None:
-    found = run("check", TWO_CRANKS, "--set", "efficiency=0.8")
-    assert found.exit_code == 0
-    assert "cannot run" in found.stdout
-    assert "kurbel flywheel ends with status 3" in found.stdout
-    assert run("report", TWO_CRANKS, "--set", "efficiency=0.8", "-o", str(tmp_path / "report.html")).exit_code == 0
-    assert "it runs from" in (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert run("balance", TWO_CRANKS, "--set", "efficiency=0.8").exit_code == 0
-
-
-def test_sweeps_have_the_same_power_and_the_reason() -> None:
-    words = ("--vary", "efficiency=0.8,0.9,1", "--columns", "power_shaft", "-f", "json")
-    stands, *rows = map(json.loads, run("sweep", TWO_CRANKS, *words).stdout.splitlines())
-    assert stands["power_shaft_W"] is None
-    assert "it runs from 'efficiency: 0.8685' on" in stands["failure"]
-    assert [round(row["power_shaft_W"] / 1e3, 2) for row in rows] == [3.44, 14.33]
-
-
-def test_the_page_says_what_the_efficiency_acts_on() -> None:
-    page = " ".join(run("flywheel", TWO_CRANKS, "--set", "efficiency=0.9").stdout.split())
-    assert "with the efficiency 0.9; φ is its angle" in page
-    assert "the efficiency reduces the force of the driving pistons" in page
-    assert "takes its share of all of T" not in page
-    assert "friction is taken off twice" in page
-
-
-def test_an_engine_too_weak_for_its_pump_does_not_run() -> None:
-    """Steam of 74.9 kJ and a pump of 72.4 kJ on its rod: 0.9666 of the steam is what the pump takes."""
-    steam, water = (Constant.from_keys(expansion=p, compression=q) for p, q in ((74.9e5, 0.0), (0.0, 72.4e5)))
-    rod = replace(ENGINE, masses=None, friction=None, inclination=None)
-    bore = (4 * 0.01 / (0.8 * np.pi)) ** 0.5  # sweeps 0.01 m³
-    both = replace(rod, pistons=(Piston(bore, indicator=Indicator(steam)), Piston(bore, indicator=Indicator(water))))
-    with pytest.raises(NoSolutionError) as caught:
-        turning(both, eta=0.5)
-    least = float(re.search(r"efficiency: ([\d.]+)", str(caught.value))[1])
-    assert least == pytest.approx(72.4 / 74.9, abs=1e-4)
-    assert least >= 72.4 / 74.9
-    assert turning(both, eta=0.98).work_shaft == pytest.approx((0.98 * 74.9 - 72.4) * 1e3, rel=1e-9)
-    weak = replace(both, pistons=(replace(both.pistons[0], bore=0.9 * bore), both.pistons[1]))
-    with pytest.raises(NoSolutionError, match="it runs with no efficiency"):
-        turning(weak, eta=0.5)
 
 
 # the rule, at every angle

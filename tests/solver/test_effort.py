@@ -5,28 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from kurbel import load
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
-from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Indicator
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, Rings
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import DeadCentre, MachineTurning
+from kurbel.solver.flywheel import MachineTurning
 from machines import STEAM_CARD, constant_pressure
-from representative import law_of_each
 from turning_machines import of_points
-
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 
 STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
 PUMP = Piston(0.285, 0.0, 0.075, Indicator(constant_pressure(4e5), constant_pressure(4e5)), "pump")
@@ -53,14 +47,6 @@ def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
     assert machine.M_mean == machine.work_shaft == 0.0
     assert machine.dE > 100
     assert machine.energy_fluctuation is None
-
-
-@law_of_each(np.linspace(1.0, 3.0, 21))
-def test_of_two_peaks_that_are_alike_the_first_is_told(rod: float) -> None:
-    """T of masses alone is the same backwards with the other sign: which rounding is larger says nothing."""
-    alone = Case(Machine((replace(ENGINE, mechanism=SliderCrank(0.4, rod), pistons=()),), speed=1.0)).cylinders[0]
-    assert alone.T_max.degrees == pytest.approx(360 - alone.T_min.degrees, abs=1e-9)
-    assert alone.T_peak.degrees == min(alone.T_max.degrees, alone.T_min.degrees)
 
 
 @pytest.mark.parametrize("eta", [1.0, 0.95])
@@ -161,74 +147,7 @@ def test_jumps_are_crossings_and_have_both_their_values() -> None:
     assert machine.dE == pytest.approx(300 * math.pi / 2, rel=1e-15)
 
 
-def test_an_effort_that_equals_the_resistance_has_no_lobes() -> None:
-    machine = of_points([(0, 0.1), (123, 0.1), (360, 0.1)], 50, inertia=1.0)
-    assert machine.phi_crossing == machine.lobes == ()
-    assert machine.dE == 0
-    assert machine.delta == pytest.approx(0, abs=1e-16)
-
-
-# cycles that differ
-
-FOUR_LINES = Card.from_keys(
-    unit=(1e5, 1),
-    expansion=[(0, 25), (0.1, 18), (0.4, 6), (1, 2)],
-    exhaust=[(1, 0.4), (0, 0.1)],
-    intake=[(0, -0.1), (1, -0.1)],
-    compression=[(1, -0.1), (0.5, 0.9), (0.2, 3.5), (0, 10)],
-)
-GAS = Cylinder(SliderCrank(0.1, 0.45), pistons=(Piston(0.18, indicator=Indicator(FOUR_LINES)),), masses=Masses(20.0))
-PUMP_BESIDE = Cylinder(SliderCrank(0.05, 0.3), pistons=(replace(PUMP, bore=0.1),), crank_position=30.0)
-
-
-def test_a_pump_of_one_turn_beside_an_engine_of_two() -> None:
-    machine = turning(GAS, replace(PUMP_BESIDE, cycle="two-stroke"), rpm=300, cycle="four-stroke")
-    engine, pump = Case(machine.machine).cylinders
-    assert machine.effort.cycle == 720
-    assert (engine.drive.cycle, pump.drive.cycle) == (720, 360)
-    assert machine.work_shaft == pytest.approx(engine.work + 2 * pump.work, rel=1e-13)
-    at = machine.at(ANGLES + 360).M - machine.at(ANGLES).M
-    alone = turning(GAS, rpm=300, cycle="four-stroke")
-    assert at == pytest.approx(alone.at(ANGLES + 360).M - alone.at(ANGLES).M, abs=1e-9)
-
-
-def test_no_force_turns_nothing() -> None:
-    with pytest.raises(UsageError, match="no force acts"):
-        turning(Cylinder(SliderCrank(0.4, 2.0)))
-
-
-def test_parts_before_a_pump_stand_steam_and_pump_together() -> None:
-    """R p. 613, Abb. 1065: at the end of the stroke compression and pump add up, P_v + P_p."""
-    at = 98066.5
-    pump = Piston(
-        0.285,
-        0,
-        0.075,
-        Indicator(constant_pressure_pair(-0.45 * at, 5.4 * at), constant_pressure_pair(-0.45 * at, 5.4 * at)),
-    )
-    machine = turning(replace(ENGINE, pistons=(STEAM, pump)))
-    force = DeadCentre(Case(machine.machine).cylinders[0], machine.effort.cycle).P_dead_centre
-    head, crank = STEAM.head_area, STEAM.crank_area
-    steam = 9.5 * at * head - 2.2 * at * crank
-    assert force.value == pytest.approx(steam + 3710 * at / 1e4, rel=1e-3)  # the book rounds the pump's 3710 kgf
-    assert force.degrees == 0
-
-
-def constant_pressure_pair(suction: float, delivery: float) -> Card:
-    from kurbel.machine.indicator import Constant
-
-    return Constant.from_keys(expansion=suction, compression=delivery)
-
-
 # ΔE against mpmath
-
-
-def test_no_crossing_is_missed_in_random_machines() -> None:
-    """The full run over 2,000 machines is benchmarks/random_machines.py."""
-    random = np.random.default_rng(7)
-    for _ in range(7):
-        machine = random_machine(random)
-        assert missed(machine) == 0
 
 
 def random_machine(random: np.random.Generator) -> MachineTurning:
@@ -275,31 +194,3 @@ def missed(machine: MachineTurning, samples: int = 200) -> int:
     ]
     beaten = (total.max() > machine.M_max.value + 1e-12 * size) + (total.min() < machine.M_min.value - 1e-12 * size)
     return len(beside) - int(sum(beside)) + int(beaten)
-
-
-def test_whole_turns_of_a_crank_position_change_nothing() -> None:
-    near, far = (turning(ENGINE, replace(ENGINE, crank_position=p)) for p in (45.5, 45.5 + 360.0 * 2.0**30))
-    assert (far.dE, far.M_mean) == (near.dE, near.M_mean)
-    assert (far.at(ANGLES).M == near.at(ANGLES).M).all()
-
-
-@pytest.mark.parametrize(
-    ("name", "angles"), [("marine-diesel", [0, 60, 120, 180, 240, 660]), ("radial-three", [0, 720])]
-)
-def test_the_inertia_of_equal_cylinders_that_cancels_is_zero(name: str, angles: list[int]) -> None:
-    """Six and three cranks at equal distances: by symmetry only rounding is left in the dead centre of any of them."""
-    case = Case(load(CONFIGS / f"{name}.yaml"))
-    left = case.flywheel.at(np.array(angles, float)).T_inertia
-    assert np.abs(left).max() < 1e-15 * case.cylinders[0].P_inertia_max.value
-
-
-def test_excess_work_that_comes_back_is_zero_each_time() -> None:
-    """Inertia of four cranks at 180°: E is 0 each half turn, and printed 0.0 where rounding was left."""
-    work = Case(load(CONFIGS / "four-in-line.yaml")).flywheel.at(np.arange(0.0, 721.0, 180.0)).E
-    assert work.tolist() == [0.0] * 5
-
-
-def test_of_excess_works_that_come_back_the_first_is_told() -> None:
-    """Six cylinders that fire every 120°: the rounding of their works once told the second of six equal troughs."""
-    case = Case(load(CONFIGS / "marine-diesel.yaml"))
-    assert 0 < case.flywheel.E_min.degrees < case.flywheel.E_max.degrees < 120

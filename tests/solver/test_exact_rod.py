@@ -10,13 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.declared.units import GRAVITY
-from kurbel.errors import MachineFileError, RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, RamForce
+from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston
 from kurbel.machine.turning import Flywheel
-from kurbel.machine_file import loads
-from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -58,14 +55,6 @@ def test_power_is_the_change_of_the_kinetic_energy(rod: tuple[float, float, floa
     change = np.imag(kinetic_energy(np.radians(degrees) + 1e-30j, *rod)) / 1e-30
     scale = np.abs(change).max() + mass * CRANK**2 * OMEGA**2
     assert np.abs(torque + change).max() <= 1e-13 * scale
-
-
-@pytest.mark.parametrize("offset", [0.0, 0.2])
-@pytest.mark.parametrize("inclination", [None, 0.0, 37.0, 90.0])
-def test_no_work_over_a_revolution(offset: float, inclination: float | None) -> None:
-    forces = rod_alone(offset=offset, inclination=inclination)
-    assert forces.W == 0
-    assert abs(forces.energy_residual or 0.0) < 1e-15
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.15])
@@ -157,80 +146,6 @@ def test_point_masses_at_the_pins_need_no_couple() -> None:
         )
     pull = mass * 0.6 * CRANK * OMEGA**2
     assert pytest.approx(plain.at(degrees).D - pull, rel=1e-12) == forces.at(degrees).D
-
-
-def test_key_values_do_not_depend_on_a_step() -> None:
-    forces = rod_alone(inclination=90.0)
-    fine = forces.at(np.linspace(0, 360, 72001))
-    for name in ("N", "T", "S_crosshead", "S_crank"):
-        found = forces.extremes_of(name)
-        assert found is not None
-        column = getattr(fine, name)
-        assert column.max() <= found.largest.value + 1e-9 * abs(found.largest.value)
-        assert found.largest.value == pytest.approx(column.max(), rel=1e-7)
-        assert found.smallest.value == pytest.approx(column.min(), rel=1e-7)
-
-
-def test_an_infinite_rod_cannot_be_exact() -> None:
-    text = (
-        "{crank: 1 m, rod: infinite, masses: {connecting_rod: {mass: 1 kg, center_of_gravity: 1 m, inertia: 1 kg m2}}}"
-    )
-    with pytest.raises(MachineFileError, match="an infinite rod has no centre of gravity"):
-        loads(text)
-
-
-@pytest.mark.parametrize(
-    ("place", "message"),
-    [
-        ("1.5 m", "1500 mm from the crosshead pin is beyond the crank pin: the rod is 1300 mm long"),
-        ("-1 mm", "-1 mm is too small; it must be at least 0"),
-    ],
-)
-def test_the_centre_of_gravity_lies_on_the_rod(place: str, message: str) -> None:
-    with pytest.raises(MachineFileError) as caught:
-        loads(
-            "crank: 300 mm\nrod: 1300 mm\n"
-            f"masses: {{connecting_rod: {{mass: 10 kg, center_of_gravity: {place}, inertia: 1 kg m2}}}}\n"
-        )
-    (fault,) = caught.value.faults
-    assert fault.path == ("masses", "connecting_rod", "center_of_gravity")
-    assert fault.message == message
-
-
-def test_bounds_hold_in_python_too() -> None:
-    for wrong in (
-        {"mass": -1.0},
-        {"mass": 1.0, "share": 1.2},
-        {"mass": 1.0, "center_of_gravity": 0.1, "inertia": -1.0},
-    ):
-        with pytest.raises(RuleError, match="it must be at"):
-            ConnectingRod(**wrong)
-    for make in (lambda: RamForce(-1.0), lambda: RamForce(1.0, -1.0), lambda: ParallelCrank(0.3, 1.0, -5.0)):
-        with pytest.raises(RuleError, match="it must be at least 0"):
-            make()
-
-
-def test_largest_and_smallest_inertia_force_by_value() -> None:
-    forces = one_cylinder(SliderCrank(CRANK, LENGTH), RPM, masses=Masses(-5.0))
-    assert forces.P_inertia_max is not None
-    assert forces.P_inertia_min is not None
-    assert forces.P_inertia_max.value > 0 > forces.P_inertia_min.value
-
-
-@pytest.mark.parametrize("column", ["S", "S_crosshead", "S_crank"])
-def test_extremes_are_those_of_their_own_column(column: str) -> None:
-    """At the pins the forces are larger than S, which is between the masses at the ends of the rod."""
-    forces = rod_alone(inclination=30.0)
-    values = getattr(forces.at(np.arange(0.0, 360.0, 0.05)), column)
-    assert getattr(forces, f"{column}_max").value == pytest.approx(values.max(), rel=1e-6)
-    assert getattr(forces, f"{column}_min").value == pytest.approx(values.min(), rel=1e-6)
-
-
-def test_the_peak_of_the_rod_force_is_that_of_its_column() -> None:
-    forces = rod_alone(inclination=30.0)
-    column = np.abs(forces.at(np.arange(0.0, 360.0, 0.05)).S)
-    assert forces.S_peak.value == pytest.approx(column.max(), rel=1e-6)
-    assert forces.S_peak.value < -forces.S_crank_min.value
 
 
 def test_a_rod_alone_and_at_rest_hangs_on_its_pins() -> None:

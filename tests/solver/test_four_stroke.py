@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kurbel.declared.units import GRAVITY
-from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Otto
 from kurbel.machine.indicator import Card, Constant, Indicator
@@ -27,7 +25,7 @@ LINES: dict[str, list[tuple[float, float]]] = {
     "intake": [(0, 0.05), (0.05, -0.1), (1, -0.15)],
     "compression": [(1, -0.15), (0.5, 0.7), (0.2, 2.5), (0, 6)],
 }
-CARD = Card.from_keys(unit=(BAR, 1), **LINES)  # type: ignore[arg-type]
+CARD = Card.from_keys(unit=(BAR, 1), **LINES)
 MECHANISM = SliderCrank(0.15, 0.66)
 
 
@@ -95,34 +93,6 @@ def test_energy_over_the_cycle(crank_end: Any, more: dict[str, Any]) -> None:
         assert crank == pytest.approx(head * (0.22**2 - 0.06**2) / 0.22**2, rel=1e-14)
 
 
-def test_a_standing_engine_carries_its_weight() -> None:
-    still, standing = engine(masses=Masses(90.0)), engine(masses=Masses(90.0), inclination=90.0)
-    degrees = np.arange(0.0, 720.0, 15.0)
-    assert pytest.approx(90 * GRAVITY, rel=1e-9) == standing.at(degrees).P - still.at(degrees).P
-    assert pytest.approx(still.W, rel=1e-14) == standing.W
-
-
-def test_extremes_are_those_of_a_fine_search_over_both_turns() -> None:
-    forces = engine(CARD, CARD, masses=Masses(90.0), friction=Friction(0.05))
-    fine = forces.at(np.linspace(0, 720, 144001))
-    for name in ("P", "S", "N", "T"):
-        found, column = forces.extremes_of(name), getattr(fine, name)
-        assert found is not None
-        # the card's corners lie between the angles of the search
-        assert 0 <= found.largest.value - column.max() < 1e-4 * abs(column.max())
-        assert 0 <= column.min() - found.smallest.value < 1e-4 * abs(column.min())
-    signs = np.sign(fine.P)
-    changes = np.flatnonzero(signs[1:] * signs[:-1] < 0)
-    assert len(forces.phi_reversal or ()) == len(changes)
-
-
-@pytest.mark.parametrize("missing", list(LINES))
-def test_a_missing_line_is_named(missing: str) -> None:
-    lines = {name: points for name, points in LINES.items() if name != missing}
-    with pytest.raises(RuleError, match=f"the '{missing}' line of the four-stroke card is missing"):
-        Card.from_keys(unit=(BAR, 1), **lines)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     "pump",
     [
@@ -154,11 +124,3 @@ def test_a_pump_behind_a_four_stroke_engine_works_on_every_turn(pump: Any) -> No
     assert pytest.approx(expected, rel=1e-12, abs=1e-6) == both.at(degrees).P
     assert both.work == pytest.approx((alone.work or 0) + 2 * (pumping.work or 0), rel=1e-12, abs=1e-6)
     assert abs(both.energy_residual or 0.0) < 1e-12
-
-
-def test_the_cylinders_own_piston_fits_its_cycle() -> None:
-    with pytest.raises(RuleError, match="a four-stroke cycle needs the lines"):
-        Machine(
-            (Cylinder(SliderCrank(0.2, 0.9), pistons=(Piston(0.3, indicator=Indicator(STEAM_CARD)),)),),
-            cycle="four-stroke",
-        )

@@ -14,17 +14,14 @@ import numpy as np
 import pytest
 
 from kurbel.accuracy.textbook import TextbookMachine
-from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.parts import ConnectingRod, Masses, Piston
+from kurbel.machine.parts import Masses, Piston
 from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.pieces import Angles
 from kurbel.solver.case import Case
 from kurbel.solver.harmonics import MachineOrders
 from machines import STEAM_CARD
-from representative import few
 from turning_machines import of_points
 
 mp = mpmath.mp
@@ -106,37 +103,6 @@ def test_a_diagram_with_jumps_in_closed_form() -> None:
             assert complex(amplitude) == pytest.approx(complex(exact), abs=1e-12 * 900)
 
 
-@pytest.mark.parametrize("ratio", few([1.02, 2.5, 5.0], [1.02, 5.0]))
-def test_the_exact_rod_by_its_kinetic_energy(ratio: float) -> None:
-    """T_b = −½ ω² dJ/dφ with J of piston and rod from the velocities of their centres of gravity, by mpmath."""
-    crank, length, piston, mass, arm, own, omega = 0.1, 0.1 * ratio, 3.0, 2.0, 0.04, 0.011, 200.0
-    rod = ConnectingRod(mass, center_of_gravity=arm, inertia=own)
-    machine = Machine((Cylinder(SliderCrank(crank, length), masses=Masses(piston, rod)),), speed=omega / (2 * math.pi))
-    found = orders_of(machine, [1.0, 2.0, 3.0, 4.0, 12.0]).machine
-
-    def energy(phi: Any) -> Any:
-        sin, cos = mp.sin(phi), mp.cos(phi)
-        sin_psi = crank / mpmath.mpf(length) * sin
-        cos_psi = mp.sqrt(1 - sin_psi**2)
-        swing = crank * cos / (length * cos_psi)
-        slide = crank * sin + length * sin_psi * swing  # speed of the crosshead toward the shaft
-        along, across = slide - arm * sin_psi * swing, arm * cos_psi * swing
-        return piston * slide**2 + mass * (along**2 + across**2) + own * swing**2
-
-    with mpmath.workdps(40):
-        count = 400
-        angles = [2 * mp.pi * i / count for i in range(count)]
-        inertia = [energy(angle) for angle in angles]
-        for order, amplitude in zip(found.inertia.orders, found.inertia.amplitudes):
-            step = mp.expjpi(mpmath.mpf(-2 * int(order)) / count)
-            wave, total = mpmath.mpc(1), mpmath.mpc(0)
-            for value in inertia:
-                total += value * wave
-                wave *= step
-            exact = -(mpmath.mpf(omega) ** 2) / 2 * mpmath.mpc(0, int(order)) * 2 * total / count
-            assert complex(amplitude) == pytest.approx(complex(exact), abs=1e-12 * omega**2 * float(max(inertia)))
-
-
 def test_the_series_of_the_inertia_torque() -> None:
     """Den Hartog's λ/4, −½, −3λ/4, −λ²/4 are its beginnings; λ = 1/4, with 12 digits."""
     machine = Machine((Cylinder(SliderCrank(1.0, 4.0), masses=Masses(1.0)),), speed=1 / (2 * math.pi))
@@ -145,21 +111,6 @@ def test_the_series_of_the_inertia_torque() -> None:
     known += [0.002592310746, 0.000390320062, -4.3971084e-5, -8.396165e-6]
     assert found.real == pytest.approx(0, abs=1e-15)
     assert -found.imag == pytest.approx(known, abs=1e-12)
-
-
-@pytest.mark.parametrize("name", ["waterworks-two-cranks", "four-cylinder-generator", "diesel-four-stroke"])
-def test_their_sum_is_the_torque(name: str) -> None:
-    """Bessel: the mean square of what 24 orders leave is what Parseval says."""
-    machine = load(CONFIGS / f"{name}.yaml")
-    found = orders_of(machine)
-    whole = found.effort.pieces
-    every = np.arange(0.0, whole.cycle, 5.0)
-    pieces = whole.split(Angles(np.zeros(len(every), dtype=int), every))
-    left = pieces.carried(found.effort.M, whole) - found.machine.whole.at(pieces.degrees)
-    (square,) = pieces.mean(left**2)
-    swing = whole.mean((found.effort.M - found.effort.mean) ** 2)[0]
-    assert square == pytest.approx((1 - found.orders_share) * swing, rel=1e-6)
-    assert 0.99 < found.orders_share < 1
 
 
 def test_a_crank_that_follows_turns_its_orders() -> None:
@@ -173,16 +124,6 @@ def test_a_crank_that_follows_turns_its_orders() -> None:
     assert two.cylinders[1].own.whole.amplitudes == pytest.approx(
         alone.amplitudes, abs=1e-12 * np.abs(alone.amplitudes).max()
     )
-
-
-def test_masses_alone_have_sines_alone() -> None:
-    """T(−φ) = −T(φ) over the own angle of every crank: 1e-12 N m of a cosine beside 9 kN m of a sine was printed."""
-    line = tuple(steam(name=str(p), crank_position=float(p), pistons=()) for p in (0, 73, 90, 180))
-    found = orders_of(Machine(line, speed=4.0))
-    for cylinder in found.cylinders:
-        assert not cylinder.own.whole.amplitudes.real.any()
-        assert cylinder.own.whole.amplitudes.imag[:3].all()
-    assert found.M_mean == 0  # they give back what they take; 1e-14 N m was printed
 
 
 @pytest.mark.parametrize(
@@ -204,16 +145,3 @@ def test_major_orders(positions: tuple[float, ...], cycle: str, major: tuple[flo
     if len(positions) != 2:
         assert not found.machine.whole.amplitudes[others].any()
     assert orders_of(Machine(line[:1], speed=1.0, cycle=cycle)).major_orders is None
-
-
-def test_the_efficiency_takes_its_share() -> None:
-    plain, lossy = (orders_of(Machine((steam(),), speed=1.0, efficiency=eta)).machine.whole for eta in (1.0, 0.8))
-    assert lossy.amplitudes == pytest.approx(0.8 * plain.amplitudes, abs=2e-14 * np.abs(plain.amplitudes).max())
-
-
-def test_without_a_speed_there_is_no_inertia() -> None:
-    found = orders_of(Machine((steam(),)))
-    assert found.machine.inertia is None
-    assert (found.machine.whole.amplitudes == found.machine.gas.amplitudes).all()
-    with pytest.raises(UsageError, match="no force acts"):
-        orders_of(Machine((steam(pistons=(), masses=None),)))

@@ -82,13 +82,6 @@ def test_closed_work_against_50_digits(card: IdealCard, lift: float) -> None:
         assert abs(found / expected - 1) <= 1e-14
 
 
-@pytest.mark.parametrize("exponent", [1 - 1e-12, 1 + 1e-9, 1.0, 1 + 1e-5, 0.9, 1.6])
-def test_work_is_as_exact_beside_the_hyperbola(exponent: float) -> None:
-    card = Steam(8 * BAR, 1 * BAR, cut_off=0.3, clearance=0.05, exponent=exponent)
-    with mpmath.workdps(60):
-        assert abs(process_in(card).area / precise_work(card, 0.0) - 1) <= 1e-14
-
-
 def test_mean_pressure_of_the_book_for_steam() -> None:
     """Without clearance and compression: p_i = p (ε + ε ln 1/ε) − p′, the rule of every old steam book."""
     high, low, cut = 8 * BAR, 1.2 * BAR, 0.25
@@ -152,13 +145,6 @@ def _exchange(card: IdealCard) -> float:
     return getattr(card, "intake") - exhaust if isinstance(card, (Otto, Diesel)) and exhaust is not None else 0.0  # noqa: B009
 
 
-@pytest.mark.parametrize("clearance", [1e-4, 1e-3, 0.02, 0.5])
-def test_small_clearances_do_not_spoil_the_quadrature(clearance: float) -> None:
-    card = Steam(8 * BAR, 0.0, cut_off=0.1, clearance=clearance, compression=0.05, exponent=1.2)
-    forces = cylinder(card)
-    assert abs(forces.energy_residual or 0.0) < 1e-12
-
-
 def test_corners_of_the_diesel_card() -> None:
     """Compression end p ε^n held to the cut-off, then expansion; crank end one stroke later."""
     card = Diesel(0.0, cut_off=0.1, clearance=0.08, exponent=1.35, expansion_exponent=1.35)
@@ -194,36 +180,6 @@ def polytropic(clearance: float, expansion: list[tuple[float, float]], compressi
     return Card.from_keys(unit=(BAR, 1), interpolate="polytropic", clearance=clearance, **lines)
 
 
-def test_a_steep_polytropic_line_ends_with_the_pressure_that_is_given() -> None:
-    """Over 1e-10 of the stroke n is 1e10; a rounding of V/V′ raised to it was the fifth digit."""
-    forces = cylinder(
-        polytropic(0.06, [(0, 2), (0.5, 2), (0.5 + 1e-10, 9), (1, 1)], [(1, 1), (0.3 + 1e-10, 1), (0.3, 7), (0, 2)])
-    )
-    pieces = forces.samples.p_head
-    assert pieces[0, 1:] == pytest.approx(pieces[-1, :-1], rel=4e-15)
-    assert pieces.max() == pytest.approx(9 * BAR, rel=4e-15)
-
-
-def test_compression_into_a_millionth_of_the_stroke() -> None:
-    """Its end and its work: ln(V′/V) = ln(1 − 0.999999) has ten digits, − ln(1 + 999999) all."""
-    card = polytropic(1e-6, [(0, 1), (1, 1)], [(1, 1), (0, 9)])
-    forces = cylinder(card, absolute=True)
-    assert forces.at([0.0], np.array([359.0])).p_head[0] == pytest.approx(9 * BAR, rel=4e-15)
-    with mpmath.workdps(40):
-        c = mpf(1e-6)
-        n = mpmath.log(9) / mpmath.log((1 + c) / c)
-        assert abs(forces.mean_pressure / (BAR * (1 + polytropic_work(mpf(1), 1 + c, c, n))) - 1) <= 4e-15
-
-
-def test_polytropic_points_of_one_pressure_are_an_isobar() -> None:
-    card = Card.from_keys(
-        unit=(BAR, 1), expansion=[(0, 5), (1, 5)], compression=[(1, 2), (0.5, 2), (0, 5)],
-        interpolate="polytropic", clearance=0.1,
-    )  # fmt: skip
-    forces = cylinder(card)
-    assert forces.at([90.0]).p_head[0] == 5 * BAR
-
-
 @pytest.mark.parametrize(
     ("card", "message"),
     [
@@ -246,83 +202,3 @@ def test_polytropic_points_of_one_pressure_are_an_isobar() -> None:
 def test_cards_that_cannot_be(card: Any, message: str) -> None:
     with pytest.raises(RuleError, match=message):
         cylinder(card)
-
-
-def test_steam_card_needs_a_two_stroke_cycle() -> None:
-    with pytest.raises(RuleError, match="a steam card is one of a two-stroke cycle"):
-        cylinder(STEAM, "four-stroke")
-
-
-def test_drawn_cards_and_ideal_cards_agree() -> None:
-    """A constant-pressure compressor drawn with many points comes near the exact one, from outside."""
-    c, n = 0.06, 1.3
-    exact = Compressor(1 * BAR, 7 * BAR, clearance=c, exponent=n)
-    filled, emptied = c * 7 ** (1 / n) - c, (1 + c) * 7 ** (-1 / n) - c
-    fill, empty = np.linspace(0, filled, 400), np.linspace(1, emptied, 400)
-    drawn = Card.from_keys(
-        unit=(BAR, 1),
-        expansion=[*zip(fill.tolist(), (7 * (c / (c + fill)) ** n).tolist()), (1, 1)],
-        compression=[*zip(empty.tolist(), (((1 + c) / (c + empty)) ** n).tolist()), (0, 7)],
-    )
-    assert cylinder(drawn, absolute=True).work == pytest.approx(cylinder(exact, absolute=True).work or 0, rel=1e-5)
-
-
-@pytest.mark.parametrize("beside", [np.nextafter(0.3, 1), np.nextafter(0.3, 1) + 1e-16, 0.3 + 1e-15])
-@pytest.mark.parametrize("crank_end", [False, True])
-def test_fractions_a_rounding_apart_are_a_jump(beside: float, crank_end: bool) -> None:
-    """A line cannot be followed over no crank angle: the pressure stays among those of the card."""
-    lines = [(1.0, 1.0), (float(beside), 1.0), (0.3, 5.0), (0.0, 5.0)]
-    card = Card.from_keys(unit=(BAR, 1), expansion=[(0, 5), (1, 5)], compression=lines)
-    piston = Piston(0.15, indicator=Indicator(None, card) if crank_end else Indicator(card))
-    own = Cylinder(SliderCrank(0.09, 0.36), pistons=(piston,))
-    forces = CylinderForces(Machine((own,)), own)
-    found = forces.extremes_of("P")
-    assert found is not None
-    assert max(abs(found.largest.value), abs(found.smallest.value)) == pytest.approx(
-        5 * BAR * piston.head_area, rel=1e-9
-    )
-    assert abs(forces.energy_residual or 0.0) < 1e-12
-
-
-def test_a_rounding_beside_the_dead_centre_is_a_jump_too() -> None:
-    lines = [(1.0, 1.0), (5e-324, 1.0), (0.0, 5.0)]
-    forces = cylinder(Card.from_keys(unit=(BAR, 1), expansion=[(0, 5), (1e-300, 3), (1, 3)], compression=lines))
-    assert forces.at([0.0, 90.0, 270.0, 359.99]).p_head == pytest.approx(np.array([3, 3, 1, 1]) * BAR, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("key", "indicator"),
-    [
-        ("steam.exponent", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 0.05, exponent: 1000}"),
-        ("steam.clearance", "steam: {admission: 9 bar, exhaust: 1 bar, cut_off: 0.3, clearance: 1e-300}"),
-        ("diesel.exponent", "diesel: {intake: 0 bar, cut_off: 0.1, compression_ratio: 16, exponent: 250}"),
-        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1e300}"),
-        ("otto.compression_ratio", "otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 1.0000000000000002}"),
-        ("diesel.intake", "diesel: {intake: 1e300 bar, cut_off: 0.1, compression_ratio: 16}"),
-        (
-            "clearance",
-            "unit: bar, interpolate: polytropic, clearance: 1e-300, expansion: [[0, 5], [1, 1]], "
-            "compression: [[1, 1], [0, 5]]",
-        ),
-    ],
-)
-def test_what_cannot_be_computed_with_is_a_fault_with_its_place(key: str, indicator: str) -> None:
-    from kurbel.errors import MachineFileError
-    from kurbel.machine_file import loads
-
-    with pytest.raises(MachineFileError) as caught:
-        loads(f"crank: 1 m\nrod: 5 m\nbore: 1 m\nindicator: {{head_end: {{{indicator}}}}}\n")
-    (fault,) = caught.value.faults
-    assert ".".join(map(str, fault.path)) == f"indicator.head_end.{key}"
-    assert "it must be at" in fault.message
-
-
-def test_no_pressure_passes_the_corner_of_a_steep_line_at_a_dead_centre() -> None:
-    """Where x stands still, its rounding is 1e8 times as much in the pressure: a turn beside it stood higher."""
-    card = Card.from_keys(
-        unit=(1.0, 1), expansion=[(0, 1e5), (1 - 1e-8, 2e5), (1, 8e5)], compression=[(1, 8e5), (0, 1e5)]
-    )
-    for crank in np.linspace(0.05, 0.5, 25).tolist():
-        own = Cylinder(SliderCrank(crank, 2 * crank), pistons=(Piston(0.2, indicator=Indicator(card)),))
-        forces = CylinderForces(Machine((own,)), own)
-        assert forces.extremes_of("P").largest.value == pytest.approx(8e5 * forces.A_head, rel=4e-16)

@@ -23,7 +23,6 @@ ENGINE = """
 
 def residual() -> float:
     found = Case(loads(ENGINE)).cylinders[0].residual
-    assert found is not None
     return found
 
 
@@ -58,12 +57,11 @@ def less_inertia(state: State) -> Any:
 
 
 def exact(state: State) -> ExactRod:
-    assert state.drive.rod is not None
     return state.drive.rod
 
 
-LOSSES = State.pin_losses.func  # type: ignore[attr-defined]
-COUPLE = State.rod_couple.func  # type: ignore[attr-defined]
+LOSSES = State.pin_losses.func
+COUPLE = State.rod_couple.func
 FAULTS: dict[str, tuple[Any, str, Any]] = {
     "side of the guide friction in N": (State, "below", property(wrong_side)),
     "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.machine_file import loads
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
@@ -24,10 +22,6 @@ PARTS = "masses: {piston: 60 kg, piston_rod: 30 kg, crosshead: 50 kg, other: 10 
 
 def solved(text: str) -> CylinderForces:
     return Case(loads(text)).cylinders[0]
-
-
-def run(*arguments: str, file: str) -> Result:
-    return CliRunner().invoke(kurbel, list(arguments), input=file)
 
 
 def pressure(fraction: mpf, rises: bool) -> mpf:
@@ -78,19 +72,6 @@ def test_weight_counts_where_the_stroke_line_leans() -> None:
     assert leaning - solved(RLO1).at([30.0]).P_rod == pytest.approx(150 * 9.80665, rel=1e-10)
 
 
-def test_one_end_unloaded_reverses_by_inertia_alone() -> None:
-    unloaded = RLO1.replace(
-        "head_end: {compressor: {suction: 1 bar, delivery: 6 bar, clearance: 0.1, exponent: 1.3}}", "head_end: 1 bar"
-    )
-    slow, fast = (solved(unloaded.replace("300 rpm", speed)) for speed in ("1 rpm", "300 rpm"))
-    assert fast.reversal_angle == pytest.approx(71.8322459, abs=5e-8)  # RLO3
-    assert slow.reversal_angle == 0
-    assert slow.reversal_ratio == 0
-    assert slow.rod_compression_max.value == 0
-    told = run("forces", "-", "--key-values", file=unloaded.replace("300 rpm", "1 rpm")).stdout
-    assert "the rod load never reverses" in told
-
-
 def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
     """A pressure that pulls on the outstroke from 20° to 30° and from 50° to 80° only; harder on the way back."""
     steps = ((0, 20, 2), (20, 30, -1), (30, 50, 2), (50, 80, -1), (80, 180, 2), (180, 360, 3))
@@ -105,29 +86,12 @@ def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
 
 def test_limits_bound_it_from_below() -> None:
     limits = "limits: {reversal_angle: 15 deg, reversal_ratio: 0.03}\n"
-    broken, kept = (run("check", "-", file=text + limits) for text in (RLO5, RLO1))
+    broken, kept = (run("check", "-", text=text + limits) for text in (RLO5, RLO1))
     assert broken.exit_code == 1
     assert "5.88474652 deg < 15 deg  BROKEN" in broken.stdout
     assert "0.0256515391 < 0.03  BROKEN" in broken.stdout
     assert kept.exit_code == 0
     assert kept.stdout.count("kept") == 2
-
-
-def test_an_engine_is_asked_for_it_by_name_only() -> None:
-    engine = (Path(__file__).parents[2] / "configs" / "waterworks.yaml").read_text("utf-8")
-    assert "P_G" not in run("forces", "-", file=engine).stdout
-    parsed = json.loads(run("forces", "-", "--columns", "P_rod", "-f", "json", "--angles", "0", file=engine).stdout)
-    assert [column["id"] for column in parsed["cylinders"][0]["columns"]] == ["phi", "P_rod"]
-
-
-def test_a_sum_of_masses_is_taken_whole_and_that_is_said() -> None:
-    told = run("forces", "-", "--step", "90", file=RLO1.replace("other", "reciprocating")).stdout
-    assert "P_G counts all of it" in " ".join(told.split())
-
-
-def test_api_618_is_quoted_where_either_half_of_its_rule_is_broken() -> None:
-    assert "API 618 requires 15 deg and 3 %" in " ".join(run("check", "-", file=RLO5).stdout.split())
-    assert "asks for 15 deg" not in run("check", "-", file=RLO1).stdout
 
 
 ALWAYS_PRESSED = """

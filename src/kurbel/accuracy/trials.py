@@ -1,18 +1,20 @@
-"""What `kurbel accuracy` measures on a machine: methods by error and time, and errors of model and data."""
+"""What `kurbel accuracy` measures on a machine: methods by error and time, errors of model and data, what is saved."""
 
 import math
 import statistics
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
+from types import FrameType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel import crank_formulas
-from kurbel.accuracy.textbook import DIGITS, Number, TextbookMotion, mp, mpf, reference, stance
+from kurbel.accuracy.textbook import DIGITS, Number, Stance, TextbookMotion, mp, mpf, reference, stance
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError
@@ -34,7 +36,7 @@ class Zero(Exception):
 
 
 class Trial(NamedTuple):
-    """A method; error: relative, and in units of the last place below 1e-12.
+    """A method; evaluations: crank angles of the motion; error: relative, and in units of the last place below 1e-12.
 
     median, least: of the time in seconds; ratio: of the median over that of kurbel's own method.
     """
@@ -43,6 +45,7 @@ class Trial(NamedTuple):
     method: str
     points: str
     state: str
+    evaluations: int
     error: float | None
     ulp: float | None
     median: float
@@ -56,6 +59,16 @@ class Difference(NamedTuple):
     quantity: str
     cause: str
     error: float
+
+
+class Saving(NamedTuple):
+    """A machine with something left out; stages: functions of the solver that run for it; times as in `Trial`."""
+
+    machine: str
+    stages: int
+    median: float
+    least: float
+    ratio: float
 
 
 # what can be examined
@@ -295,11 +308,12 @@ def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -
         raise Zero
     own_median = None
     for name, points, run in methods:
-        error, ulp = errors(np.atleast_1d(np.asarray(run(), dtype=float)), reference)
+        values, _, evaluations = watched(run)
+        error, ulp = errors(np.atleast_1d(np.asarray(values, dtype=float)), reference)
         median, least = timed(run, quick)
         own_median = own_median or median
         state = "blow-up" if error is None else "ok"
-        yield Trial(quantity, name, points, state, error, ulp, median, least, median / own_median)
+        yield Trial(quantity, name, points, state, evaluations, error, ulp, median, least, median / own_median)
 
 
 def errors(values: Array, reference: Array) -> tuple[float | None, float | None]:
@@ -326,6 +340,25 @@ def timed(run: Callable[[], Any], quick: bool) -> tuple[float, float]:
         run()
         times.append(time.perf_counter() - begin)
     return statistics.median(times), min(times)
+
+
+def watched(run: Callable[[], Any]) -> tuple[Any, int, int]:
+    """Return what a computation gives, how many functions of the solver run, and of how many crank angles."""
+    functions, evaluations = set(), 0
+
+    def watch(frame: FrameType, event: str, result: Any) -> None:
+        nonlocal evaluations
+        if event == "call" and frame.f_globals.get("__name__", "").startswith("kurbel.solver"):
+            functions.add(frame.f_code)
+        elif event == "return" and frame.f_code.co_name in ("of", "at_nodes", "stance"):
+            evaluations += np.size(result[1]) if isinstance(result, (CrankAngle, Stance)) else 0
+
+    before = sys.getprofile()
+    sys.setprofile(watch)
+    try:
+        return run(), len(functions), evaluations
+    finally:
+        sys.setprofile(before)
 
 
 def better(found: list[Trial]) -> list[Trial]:
@@ -419,3 +452,31 @@ def _changes(whole: dict[str, float], other: dict[str, float], cause: str) -> It
     for quantity, value in whole.items():
         if abs(value) > 1e-12 * max(map(abs, whole.values())):
             yield Difference(quantity, cause, abs(other[quantity] / value - 1))
+
+
+# what leaving out saves
+
+
+def savings(machine: Machine, compute: Callable[[Machine], Any], quick: bool) -> Iterator[Saving]:
+    """Yield the whole machine, and the same without friction, masses, cards and speed, one after another.
+
+    compute: all that a command prints.
+    """
+    stages, every = {"everything": machine}, machine.cylinders
+    less: tuple[tuple[str, bool, dict[str, Any]], ...] = (
+        ("no friction", any(one.friction for one in every), {"friction": None}),
+        ("no masses either", any(one.masses for one in every), {"masses": None, "inclination": None}),
+        ("no cards either: motion alone", any(one.pistons for one in every), {"pistons": ()}),
+    )
+    for name, given, change in less:
+        if given:
+            lighter = (replace(one, **change) for one in machine.cylinders)
+            machine = stages[name] = replace(machine, cylinders=tuple(lighter), limits=())
+    if machine.speed is not None:
+        stages["no speed either: positions alone"] = replace(machine, speed=None)
+    whole = None
+    for name, one in stages.items():
+        _, count, _ = watched(partial(compute, one))
+        median, least = timed(partial(compute, one), quick)
+        whole = whole or median
+        yield Saving(name, count, median, least, median / whole)

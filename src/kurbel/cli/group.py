@@ -50,7 +50,9 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
-        raise click.UsageError(f"no command '{name}'{did_you_mean(name, tuple(COMMANDS))}", ctx)
+        meant = did_you_mean(name, tuple(COMMANDS))
+        way_out = "; 'kurbel forces FILE' computes a machine, 'kurbel --help' and 'kurbel COMMAND --help' explain"
+        raise click.UsageError(f"no command '{name}'{meant or way_out}", ctx)
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
         # no message fails because standard error is closed or an encoding lacks one of its characters

@@ -99,17 +99,6 @@ def spread(text: str) -> tuple[str, str]:
 
 # --- what a shell completes, looked up when TAB is pressed
 
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# a wheel carries the machines inside the package; in a checkout they lie beside src, where people look for them
-_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
-
-
-def shipped() -> dict[str, str]:
-    """Return the machines that come with kurbel: the path of each file by its name."""
-    folder = next(filter(os.path.isdir, _PLACES))
-    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
-    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
-
 
 def _quantities() -> Lists:
     from kurbel.quantities import every_quantity

@@ -34,6 +34,7 @@ _PATIENCE = 1.0
 @set_options
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
 @click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@click.option("--title", help="Title of the page; the name of the machine if not given.")
 @units_option
 @number_options
 def report(
@@ -42,6 +43,7 @@ def report(
     overrides: tuple[str, ...],
     file_name: str | None,
     step: float,
+    title: str | None,
     units: str | None,
     decimal: str,
     digits: int | None,
@@ -70,6 +72,7 @@ def report(
         document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
     else:
         document = side_by_side(cases, keys, system, progress)
+    document = document._replace(title=title or document.title)
     progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
@@ -97,7 +100,7 @@ def progress_of(command: str) -> Callable[[str], None]:
     "--list", "listed", is_flag=True, help="Say which pictures this machine has; without FILE, which there are."
 )
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
-@click.option("--angles", type=numbers, metavar="A,B,...", help="The mechanism at these crank angles, not moving.")
+@click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
 @cylinder_option
 @units_option
 @number_options
@@ -123,7 +126,7 @@ def plot(
     and pdf need typst. FILE may be - for standard input.
     """
     from kurbel.cli.request import case_of
-    from kurbel.render.drawing import check_file, draw_file, draw_stdout
+    from kurbel.render.drawing import check_file, draw
     from kurbel.report.picture_source import PictureOptions
     from kurbel.report.pictures import PICTURES, pictures, pictures_of
 
@@ -142,11 +145,7 @@ def plot(
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, options)
-    if file_name is None:
-        draw_stdout(drawn, look)
-    else:
-        draw_file(list(drawn), look, file_name)
+    draw(pictures(case, names, options), look, file_name)
 
 
 @click.command()

@@ -13,7 +13,6 @@ from kurbel.cli.options import (
     number,
     output_option,
     output_options,
-    shipped,
     units_option,
     words,
 )
@@ -23,13 +22,14 @@ from kurbel.near_words import did_you_mean
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
 from kurbel.report.tables import crank_angles
+from kurbel.shipped import shipped
 
 
 def _ratio(text: str) -> float:
     return math.inf if text in ("inf", "infinite") else number(text)
 
 
-@click.command()
+@click.command(context_settings={"allow_extra_args": True})
 @click.option(
     "--ratio",
     "ratios",
@@ -45,7 +45,7 @@ def _ratio(text: str) -> float:
     type=words,
     default="b,c",
     metavar="ROW,ROW,...",
-    help="Of b, c, x, psi, S, N, D; b,c if not given.",
+    help="Of b, c, x, psi, S, N, D, T_b, x/s; b,c if not given.",
 )
 @click.option(
     "--formula",
@@ -79,11 +79,16 @@ def table(
       S    rod force over piston force    1/cos psi
       N    guide force over piston force  tan psi
       D    radial force over piston force cos(phi+psi)/cos psi
+      T_b  tangential inertia force over m R omega^2  -b c
+      x/s  share of the stroke
 
-    v is the crank-pin speed, R the crank radius, L the rod length.
+    v is the crank-pin speed, R the crank radius, L the rod length. Below b: where it is zero, exactly and by first
+    order.
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
+    if extra := click.get_current_context().args:
+        raise click.UsageError(f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R")
     ratios = ratios or RATIOS
     printed = crank_angles(step, angles, 180, len(ratios))
     output.write(zusammenstellung(ratios, rows, printed, formula, compare))

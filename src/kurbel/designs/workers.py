@@ -1,5 +1,6 @@
 """Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
 
+import logging
 import os
 import pickle
 import subprocess
@@ -7,7 +8,10 @@ import sys
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
+from queue import SimpleQueue
+from signal import Signals
 from typing import Any
 
 from kurbel.designs.sweep import Design, Spec, Sweep, computed
@@ -71,9 +75,6 @@ def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], i
 
 @contextmanager
 def _processes(jobs: int) -> Iterator[Submit]:
-    from concurrent.futures import ThreadPoolExecutor
-    from queue import SimpleQueue
-
     # isolated, so that none looks for modules in the working directory; a session of its own hears no interrupt
     code = f"import sys; sys.path[:] = {list(filter(None, sys.path))}; from kurbel.designs.workers import work; work()"
     pipe = subprocess.PIPE
@@ -121,8 +122,6 @@ def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list
 def _end_of(status: int) -> str:
     if status >= 0:
         return f"a worker process ended early with status {status}"
-    from signal import Signals
-
     try:
         name = Signals(-status).name
     except ValueError:  # one that has no name, as those for real time
@@ -157,8 +156,6 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
         from distributed.comm import CommClosedError
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
-    import logging
-    from concurrent.futures import CancelledError
 
     logging.disable()  # of a lost scheduler it writes tracebacks
     try:

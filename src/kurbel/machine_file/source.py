@@ -7,6 +7,7 @@ import sys
 from kurbel.declared.numerals import SPACES
 from kurbel.errors import Fault, MachineFileError, UnreadableFileError
 from kurbel.machine.origin import Origin, lines_of
+from kurbel.shipped import shipped
 
 SIZE_LIMIT = 16 * 1024 * 1024
 """Largest machine file in bytes; a longer measurement belongs into a file of its own."""
@@ -29,7 +30,9 @@ def read(path: str | os.PathLike[str]) -> Origin:
         with open(name, "rb") as file:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
-        what = f"{name or 'the empty name'}: there is no such file; 'kurbel example' lists machines to start from"
+        writes = f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
+        hint = writes if name in shipped() else "'kurbel example' lists machines to start from"
+        what = f"{name or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
         what = f"{name} is a folder; name the machine file in it"
     except PermissionError:

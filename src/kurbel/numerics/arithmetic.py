@@ -1,10 +1,9 @@
-"""The few operations besides + − × ÷ that formulas need, for floats, arrays and high-precision numbers.
-
-numpy is imported where an array comes, so that the help of the command line loads without it.
-"""
+"""The few operations besides + − × ÷ that formulas need, for floats, arrays and high-precision numbers."""
 
 import math
 from typing import Any
+
+import numpy as np
 
 
 def is_number(value: Any) -> bool:
@@ -18,8 +17,6 @@ def sqrt(value: Any) -> Any:
         return math.sqrt(value)
     if hasattr(value, "sqrt"):
         return value.sqrt()
-    import numpy as np
-
     return np.sqrt(value)
 
 
@@ -27,8 +24,6 @@ def where(condition: Any, value: Any, otherwise: Any) -> Any:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
     if not getattr(condition, "ndim", 0):
         return value if condition else otherwise
-    import numpy as np
-
     return np.where(condition, value, otherwise)
 
 
@@ -40,8 +35,6 @@ def bearing(sin: Any, cos: Any) -> Any:
     """
     if isinstance(sin, (float, int)) and isinstance(cos, (float, int)):
         return math.degrees(math.atan2(sin, cos))
-    import numpy as np
-
     return np.degrees(np.arctan2(sin, cos))
 
 
@@ -49,8 +42,6 @@ def ulp(value: Any) -> Any:
     """Return the unit in the last place of a positive float or array."""
     if isinstance(value, (float, int)):
         return math.ulp(value)
-    import numpy as np
-
     return np.spacing(value)
 
 
@@ -98,8 +89,6 @@ def unless_cancelled(whole: Any, sizes: Any, rounding: float = _ROUNDING) -> Any
     >>> unless_cancelled(0.1 + 0.2 - 0.3, 0.6), unless_cancelled(0.1, 0.6)
     (array(0.), array(0.1))
     """
-    import numpy as np
-
     if np.iscomplexobj(whole):
         return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
     return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 
@@ -51,8 +51,9 @@ _NO_WIDTH = 1e-11
 _AT_ONCE = 512
 """Pieces whose polynomials are summed together: what fits into the cache."""
 
-Sample = Callable[["Pieces"], Array]
-"""Gives quantities at the nodes of pieces, (quantities, nodes, pieces)."""
+Samples = Union[Array, Sequence[Array]]
+Sample = Callable[["Pieces"], Samples]
+"""Gives quantities at the nodes of pieces, each (nodes, pieces)."""
 
 
 class Angles(NamedTuple):
@@ -204,7 +205,7 @@ class Pieces:
 
     def largest(self, values: Array) -> Array:
         """Return the largest magnitude (…, machines) of samples (…, nodes, pieces)."""
-        return np.maximum.reduceat(np.abs(values).max(axis=-2), self.first, axis=-1)
+        return np.maximum.reduceat(np.maximum(values.max(axis=-2), -values.min(axis=-2)), self.first, axis=-1)
 
     def integral(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) over the cycle, (…, machines)."""
@@ -275,28 +276,29 @@ class Pieces:
         odd = np.bincount(np.cumsum(begins) - 1) % 2 == 1 if len(degrees) else begins
         return Angles(machine[begins][odd], degrees[begins][odd])
 
-    def extremes(self, values: Array, size: Array | None = None) -> SampledExtremes:
-        """Return largest and smallest values of quantities (q, nodes, pieces), of equal ones the first.
+    def extremes(self, values: Samples, size: Array | None = None) -> SampledExtremes:
+        """Return largest and smallest values of quantities, each (nodes, pieces), of equal ones the first.
 
         size: (q, machines), of the terms whose sums the quantities are; a value that is rounding relative to it is 0.
         """
-        largest = self.largest(values)
+        low, high = ranges = _ranges(values)
+        largest = np.maximum.reduceat(np.maximum(high, -low), self.first, axis=-1)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self.highest(sign * values, size) for sign in (1, -1))
+        (high, high_at), (low, low_at) = (self.highest(values, ranges, size, sign) for sign in (1.0, -1.0))
         # relative to values of the other sign: a zero at a dead centre whose angle is no float, for example
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return SampledExtremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def highest(self, values: Array, size: Array) -> tuple[Array, Array]:
-        """Return the largest values, and the angles of the first summits that reach them, each (q, machines).
+    def highest(self, values: Samples, ranges: Array, size: Array, sign: float = 1.0) -> tuple[Array, Array]:
+        """Return the largest values times a sign, and the angles of the first summits there, each (q, machines).
 
-        values: (q, nodes, pieces); size: (q, machines), of the terms whose sums they are.
+        values: each (nodes, pieces); ranges: see `_ranges`; size: (q, machines), of the terms whose sums they are.
         """
-        tops, bottoms = values.max(axis=1), values.min(axis=1)
+        bottoms, tops = sign * ranges[:: int(sign)]
         best = np.maximum.reduceat(tops, self.first, axis=-1)
         # a polynomial exceeds its samples by less than they differ
         which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
-        samples = values.transpose(1, 0, 2)[:, which, piece]
+        samples = sign * np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
         rows, places, turning = _turning_points(samples, self.rule)
         inside = np.abs(places) < _INSIDE
         rows, places, turning = rows[inside], places[inside], turning[inside]
@@ -345,8 +347,8 @@ def common(parts: Sequence[tuple[Pieces, Number]], cycle: float) -> Pieces:
 
 
 def resolved(
-    pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Array]
-) -> tuple[Pieces, Array, Array]:
+    pieces: Pieces, parts: Array, kinks: Array, size: Array, function: Callable[[Pieces, Array], Samples]
+) -> tuple[Pieces, Samples, Array]:
     """Return pieces on which functions with kinks, such as magnitudes of the parts, are polynomials.
 
     The pieces are cut at the zeros of `kinks`, then halved. Returned with them: the values of the functions (q, nodes,
@@ -358,24 +360,30 @@ def resolved(
     return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
 
 
-def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Array]:
-    """Return pieces halved until the samples are polynomials on them, and the samples there, (q, nodes, pieces)."""
+def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Samples]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, each (nodes, pieces)."""
     nothing = np.zeros((0, *pieces.degrees.shape))
     return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing)[:2]
 
 
-def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Array]) -> tuple[Array, Array]:
+def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Samples]) -> tuple[Array, Array]:
     """Return the largest values of functions ≥ 0 of the parts, and the first angles in degrees, each (q, machines).
 
     parts: (p, nodes, pieces), with polynomials on the pieces. Only pieces that may hold the largest value are halved.
     """
     fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
-    return fine.highest(values, fine.largest(values))
+    ranges = _ranges(values)
+    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))
+
+
+def _ranges(values: Samples) -> Array:
+    """Return the smallest and the largest samples of quantities on every piece, (2, q, pieces)."""
+    return np.array([[edge(one, axis=0) for one in values] for edge in (np.min, np.max)])
 
 
 def _halved_until_smooth(
-    pieces: Pieces, function: Callable[[Pieces, Array], Array], parts: Array, only_highest: bool = False
-) -> tuple[Pieces, Array, Array]:
+    pieces: Pieces, function: Callable[[Pieces, Array], Samples], parts: Array, only_highest: bool = False
+) -> tuple[Pieces, Samples, Array]:
     """Return pieces halved until the functions of parts are polynomials on them, the functions, and the parts there.
 
     only_highest: where they may have their largest values; the other pieces are left out.
@@ -385,12 +393,13 @@ def _halved_until_smooth(
     found: list[Array] = []
     while True:
         values = function(todo, parts)
-        top = np.zeros((len(values), pieces.count))
-        np.maximum.at(top.T, todo.machine, np.abs(values).max(axis=1).T)
+        low, high = _ranges(values)
+        top, first = np.zeros((len(values), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
+        top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
         judged = values
         if only_highest:
-            may = ~(2 * values.max(axis=1) - values.min(axis=1) < (1 - _REPEATED) * size[:, todo.machine])
+            values, may = np.asarray(values), ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
             todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
             judged = values * may[:, None, some]
@@ -398,7 +407,7 @@ def _halved_until_smooth(
         if not (done or rough.any()):
             return todo, values, parts
         done.append(todo.taken(~rough))
-        found.append(np.concatenate((values[..., ~rough], parts[..., ~rough])))
+        found.append(np.concatenate((np.asarray(values)[..., ~rough], parts[..., ~rough])))
         if not rough.any():
             break
         nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
@@ -409,12 +418,12 @@ def _halved_until_smooth(
     return whole, both[: len(values)], both[len(values) :]
 
 
-def _rough(pieces: Pieces, values: Array, size: Array, halvings: int) -> Flags:
+def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags:
     """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known.
 
     halvings: how many times these have been. A crowd of rough pieces that halving does not thin out is noise.
     """
-    tails = np.abs(pieces.rule.series[-2:] @ values).max(axis=1)
+    tails = np.array([np.abs(pieces.rule.series[-2:] @ one).max(axis=0) for one in values])
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
     rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
@@ -454,7 +463,7 @@ def _first_summits(
 def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Array]:
     """Return columns, places in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
     slopes = of.scan_slope @ values
-    i, rows = np.nonzero((slopes[1:] < 0) != (slopes[:-1] < 0))
+    i, rows = _where((slopes[1:] < 0) != (slopes[:-1] < 0))
     series = of.series @ values[:, rows]
     places = _roots(of.slope @ series, of.places[i], of.places[i + 1], slopes[i, rows], slopes[i + 1, rows])
     return rows, places, series_at(series, places)
@@ -462,9 +471,13 @@ def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Arr
 
 def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Array]:
     """Return columns and places in [−1, 1] where polynomials through samples (nodes, n) pass tiny (n,), nearly zero."""
+    # a polynomial exceeds its samples by less than they differ
+    bottoms, tops = values.min(axis=0), values.max(axis=0)
+    some = np.flatnonzero((2 * bottoms - tops <= -tiny) & (2 * tops - bottoms >= tiny))
+    values, tiny = values[:, some], tiny[some]
     fine = of.scan @ values
     below = fine < tiny
-    i, rows = np.nonzero(below[1:] != below[:-1])
+    i, rows = _where(below[1:] != below[:-1])
     low, high, first, last = of.places[i], of.places[i + 1], fine[i, rows], fine[i + 1, rows]
     # between two places of one sign a summit may pass zero and come back
     near = np.flatnonzero(np.abs(fine).min(axis=0) < _NEAR * np.ptp(fine, axis=0))
@@ -478,7 +491,12 @@ def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Ar
     low, high = np.concatenate((low, of.places[before], turns)), np.concatenate((high, turns, of.places[before + 1]))
     first = np.concatenate((first, fine[before, owner], value))
     last = np.concatenate((last, value, fine[before + 1, owner]))
-    return rows, _roots(of.series @ values[:, rows], low, high, first, last)
+    return some[rows], _roots(of.series @ values[:, rows], low, high, first, last)
+
+
+def _where(flags: Flags) -> tuple[Indices, Indices]:
+    """Return rows and columns of what is true, as `numpy.nonzero`, which takes five times as long."""
+    return np.divmod(np.flatnonzero(flags), flags.shape[1])
 
 
 def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:

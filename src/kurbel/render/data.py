@@ -137,7 +137,8 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
     elif report.parts:
         content[report.group] = [{"name": part.name, **_results(part, look)} for part in report.parts]
     if report.whole is not None:
-        content |= {f"machine_{key}": value for key, value in _results(report.whole, look).items()}
+        whole = _results(report.whole, look).items()
+        content |= {f"machine_{key}": value for key, value in whole if value or report.group != "ratios"}
     if report.notes:
         content["notes"] = list(report.notes)
     return chain(_pieces(content, "\n", look), "\n")

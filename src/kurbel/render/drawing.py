@@ -33,6 +33,14 @@ def check_file(file_name: str, option: str = "--output") -> str:
     return kind
 
 
+def draw(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
+    """Draw pictures to a file, or to standard output where none is named."""
+    if file_name is None:
+        draw_stdout(pictures, look)
+    else:
+        draw_file(list(pictures), look, file_name)
+
+
 def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
     """Draw pictures one below the other to a file. Raises UsageError where it cannot be written."""
     kind, look = check_file(file_name), replace(look, encoding="utf-8")

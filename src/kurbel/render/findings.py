@@ -1,9 +1,13 @@
 """What `kurbel find` prints of what it found: rows, JSON, and remarks on jumps, failing designs and bounds."""
 
+import numpy as np
+
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.find import Solution, Solutions
 from kurbel.designs.sweep import Design
+from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
+from kurbel.report.picture_source import level
 
 Heads = tuple[tuple[str, str], ...]
 
@@ -55,6 +59,29 @@ def as_json(found: Solutions) -> dict[str, object]:
         "jumps": [list(one.values) for one in found.jumps],
         "failed": [{"low": one.low, "high": one.high, "failure": one.why} for one in found.failed],
     }
+
+
+def picture(found: Solutions, system: str) -> Picture:
+    """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
+    key, wanted = found.varied[0], found.wanted[0]
+    numbers, values, kind = found.places[:, 0], found.values[:, 0], wanted.answer.kind
+    unit = shown_unit(kind, system, float(np.nanmax(np.abs(values))))
+    # one nan at a jump, two for a design that fails
+    numbers, values = (np.repeat(one, 1 + np.isnan(values)) for one in (numbers, values))
+    jumps = np.searchsorted(numbers, [one.values[0] for one in found.jumps])
+    numbers, values = np.insert(numbers, jumps, np.nan), np.insert(values, jumps, np.nan)
+    x, y = np.where(np.isnan(values), np.nan, convert(numbers, key.kind, key.unit)), convert(values, kind, unit)
+    symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
+    curves = [Curve(symbol, x, y)]
+    if wanted.value is not None:
+        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text.strip())))
+    name = Words(key.key.rpartition(".")[2])
+    places = [(key.in_unit(one.values[0]), float(convert(one.key_values[0], kind, unit))) for one in found.found]
+    marks = tuple(Mark(*place, PageFigure(name, place[0], key.unit)) for place in places)
+    across = Axis(Words(key.key), unit=key.unit, low=key.in_unit(key.low), high=key.in_unit(key.high))
+    panel = Panel(across, Axis(symbol, unit=unit), tuple(curves), marks=marks)
+    text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
+    return Picture("find", f"{found.names[0]} over {key.key}", text, (panel,), found.machine)
 
 
 def remarks(found: Solutions) -> list[str]:

@@ -224,12 +224,13 @@ class PanelFrame:
         for curve in panel.curves:
             if curve.kind == "faint" and curve.name.symbol:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[-1], curve.y[-1])))
-            if curve.kind == "arrow" and named:
+            if curve.kind == "arrow" and curve.name.symbol and named:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[1], curve.y[1])))
 
         # of several curves each where it is farthest from the others
         thin = [track[::4] for track in tracks]
-        lines = [one for one in zip(panel.curves, looks_of(panel), thin) if one[0].kind in ("line", "dots")]
+        named_ones = (one for one in zip(panel.curves, looks_of(panel), thin) if one[0].name.symbol)
+        lines = [one for one in named_ones if one[0].kind in ("line", "dots")]
         for curve, number, own in lines if named and len(lines) > 1 else ():
             others = np.concatenate([track for other, _, track in lines if other is not curve])
             farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()

@@ -95,8 +95,9 @@ _NOTES = (
     "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
     "zero, relative to the largest value. Of model and data it is the largest difference over the cycle, relative to "
     "the largest value. ulp: the same in units of the last place, below 1e-12.",
-    "Ratio: median time over that of kurbel's own method. Points: divisions of a turn, or points on each piece between "
-    "corners, which the methods between corners are given.",
+    "Ratio: median time over that of kurbel's own method, or of the whole machine. Points: divisions of a turn, or "
+    "points on each piece between corners, which the methods between corners are given. Evaluations: crank angles of "
+    "which the motion is computed. Stages: functions of the solver that run for all that `kurbel forces` prints.",
 )
 
 
@@ -114,10 +115,13 @@ def accuracy_report(
         for one, turns in scenes:
             degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
             rows, lacking = trials.examined(one, degrees, quick)
+            heavy = any(cylinder.masses or cylinder.pistons for cylinder in one.cylinders)
+            saved = [*trials.savings(one, _everything, quick)] if heavy else []
             tables = (
                 _table(NUMERICAL, f"{one.name}: numerical error", rows, 4),
                 _table("model_error", f"{one.name}: error of the model", [*trials.model_errors(one)], 2),
                 _table("data_error", f"{one.name}: error of the data", [*trials.data_errors(one), *uncertain], 2),
+                _table("leaving_out", f"{one.name}: what leaving out saves", saved, 1),
             )
             left_out = tuple(LeftOut(*what) for what in lacking)
             parts.append(Part(one.name, (), left_out=left_out, place_tables=tuple(t for t in tables if t.names)))
@@ -146,6 +150,11 @@ def _column(id: str, values: Sequence[Value]) -> Column:
     if id in ("median", "least"):  # times in s
         return Column(id, id, id, "ms", tuple(value and value * 1e3 for value in values), alone=2)
     return Column(id, id, id, "", tuple(values), alone=2)
+
+
+def _everything(machine: Machine) -> None:
+    """Compute all that `kurbel forces` prints: every column at 37 angles, and every key value."""
+    report_of(Case(machine), Frame("forces", tuple(np.arange(0.0, 361.0, 10.0)), None, "si"))
 
 
 def environment() -> str:

@@ -49,6 +49,8 @@ WEIGHTS = by_id(
     Quantity("product", "u", "unbalance", "Mass times radius"),
     Quantity("angle", "α", "angle", "Direction at φ = 0 from the stroke line of cylinder 1"),
     Quantity("hammer_blow", "H", "force", "By how much it loads and lifts its wheel"),
+    Quantity("counterweight", "u_R", "unbalance", "The whole counterweight in the wheel, mass times radius"),
+    Quantity("counterweight_angle", "α_R", "angle", "Its direction at φ = 0"),
 )
 """Columns of the tables of weights."""
 
@@ -156,9 +158,13 @@ def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
         tables.append(place_table("best_weights", title, ("weight",), WEIGHTS, rows, system))
     if balance.machine.locomotive:
         square = (balance.omega or 0.0) ** 2
-        wheels = zip("AB", balance.wheels, balance.in_wheels())
-        rows = [row(name, place, product, square) for name, place, product in wheels]
-        tables.append(place_table("wheels", "Beyond what turns, in the wheels", ("wheel",), WEIGHTS, rows, system))
+        rows, wheels = [], zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
+        for name, place, product, weight in wheels:
+            head, values = row(name, place, product, square)
+            whole = {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
+            rows.append((head, {**values, **whole}))
+        title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
+        tables.append(place_table("wheels", title, ("wheel",), WEIGHTS, rows, system))
     return tables
 
 

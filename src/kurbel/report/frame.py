@@ -73,9 +73,9 @@ class Subject:
         return row and row.of(self.results)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
-        """Yield the key values of a command that it has, in SI."""
+        """Yield the key values of a command that it has, in SI, but for those on request."""
         for quantity in self.lists.key_values(command).values():
-            value = self.answer(quantity) if self.says(quantity) else None
+            value = self.answer(quantity) if command not in quantity.on_request and self.says(quantity) else None
             if value is not None:
                 yield quantity, value
 
@@ -228,6 +228,8 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     near = ""
     for some in (there, known):
         near = near or did_you_mean(name, tuple(word for one in some.values() for word in (one.id, one.symbol)))
+    if not near and len(name) > 2 and (ids := [one.id for one in there.values() if name.lower() in one.text.lower()]):
+        near = f"; it is in the sentences of {', '.join(ids)}"
     others = ", ".join(id for id in known if id not in there)
     listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
     return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, listed))})"

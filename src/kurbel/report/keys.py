@@ -9,7 +9,7 @@ from kurbel.declared.keys import Key, required
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.near_words import did_you_mean
+from kurbel.near_words import did_you_mean, near
 
 
 class ListedKey(NamedTuple):
@@ -77,7 +77,9 @@ def places_at(path: str) -> list[ListedKey]:
     if found:
         return found
     ends = [name for name in places if name.rpartition(".")[2] == steps[-1]]
-    hint = f"; it stands at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
+    hint = f"; it is at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
+    if not hint and (word := near(steps[-1], tuple(name.rpartition(".")[2] for name in places))):
+        hint = f"; did you mean {' or '.join(name for name in places if name.rpartition('.')[2] == word)}?"
     raise UsageError(f"no key '{shown(path)}'{hint}; 'kurbel keys' lists them")
 
 

@@ -38,7 +38,7 @@ class Axis(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Points x, y (n,), nan at a jump; of a moving curve (1 + m, n): the moment shown at rest, then m in a loop.
+    """Points x, y (n,), one nan at a jump, more at a gap; of a moving curve (1 + m, n): at rest, then m in a loop.
 
     kind: `line`, `faint` (to compare with, such as a mean), or `dots` joined by a thin line; in mechanisms `guide`,
     `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
@@ -51,18 +51,21 @@ class Curve(NamedTuple):
     kind: str = "line"
     look: int | None = None
 
-    def pieces(self) -> list[tuple[Array, Array]]:
-        """Return the points between jumps."""
+    def _parted(self) -> list[tuple[Array, Array]]:
         jumps = np.flatnonzero(np.isnan(self.x))
         starts, ends = [0, *(jumps + 1)], [*jumps, len(self.x)]
         return [(self.x[start:end], self.y[start:end]) for start, end in zip(starts, ends)]
 
+    def pieces(self) -> list[tuple[Array, Array]]:
+        """Return the points between jumps and gaps."""
+        return [piece for piece in self._parted() if len(piece[0])]
+
     def jumps(self) -> list[tuple[Array, Array]]:
         """Return the two points of each jump."""
-        pieces = self.pieces()
         return [
             (np.array([before[0][-1], after[0][0]]), np.array([before[1][-1], after[1][0]]))
-            for before, after in pairwise(pieces)
+            for before, after in pairwise(self._parted())
+            if len(before[0]) and len(after[0])
         ]
 
     def at_moment(self, moment: int) -> "Curve":
@@ -164,6 +167,22 @@ class Grid(NamedTuple):
     verdicts: tuple[str, ...] = ()
 
 
+class Fact(NamedTuple):
+    """A key value that says much of a machine: what it is, its number and unit, its symbol, its crank angle or part."""
+
+    title: str
+    value: str
+    unit: str
+    symbol: str
+    where: str = ""
+
+
+class Facts(NamedTuple):
+    """Key values next to one another."""
+
+    facts: tuple[Fact, ...]
+
+
 class Pair(NamedTuple):
     """A picture of each of two machines, None of one that does not have it."""
 
@@ -171,7 +190,7 @@ class Pair(NamedTuple):
     right: Picture | None
 
 
-Item = Union[str, Grid, Report, Picture, Pair]
+Item = Union[str, Grid, Facts, Report, Picture, Pair]
 
 
 class Section(NamedTuple):
@@ -183,8 +202,9 @@ class Section(NamedTuple):
 
 
 class Document(NamedTuple):
-    """A report on one machine, or on several next to one another."""
+    """A report on one machine, or on several next to one another; subtitle: what kind of machine it is."""
 
     title: str
     provenance: tuple[Provenance, ...]
     sections: tuple[Section, ...]
+    subtitle: str = ""

@@ -12,15 +12,19 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.machine.cylinder import gathered, work_alike
+from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
+from kurbel.report.constructions import construction, polar_force
 from kurbel.report.crank import equal_bearings
 from kurbel.report.frame import subjects_of
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
-from kurbel.report.picture_source import PHI, PictureOptions, Source, in_units, level
+from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, Values, in_units, level
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
+from kurbel.solver.effort import Term
+from kurbel.solver.state import State
 from kurbel.solver.stress import PARTS
 
 _CROSSING = 1e-9
@@ -30,6 +34,8 @@ _MOST_SHADES = 100
 _HIGHEST = 12
 """Order up to which bars are drawn: beyond it they are too small to be seen."""
 _MODES = 4
+_MOST_CRANKS = 4
+"""Each has a stroke of its own, next to the sum with and without losses."""
 _LONGEST_NAME = 14
 _FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
 
@@ -83,24 +89,54 @@ def _between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
 
 def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
     """The same over the displacement of the piston, stroke by stroke (R Abb. 1055)."""
-    results, drive = source.results, source.results.drive
-    if len(source.having("P", "x")) < 2 or drive.mechanism.turns:
+    if len(source.having("P", "x")) < 2 or source.results.drive.mechanism.turns:
         return
     parts = source.having("P_start", "P_inertia")
     ids = parts if len(parts) == 2 else ("P",)
+    for how, title in _strokes(source, partial(source.values, ("x", *ids)), source.results.phi_reversal or ()):
+        yield _remaining_force(source, ids, "x", **how)._replace(title=title)
+
+
+def _strokes(source: Source, of: Values, also: Sequence[float] = ()) -> Iterator[tuple[dict[str, Any], str]]:
+    """Yield how `Source.samples` takes values over each stroke, with points at the angles `also`, and its name."""
+    results, drive = source.results, source.results.drive
     cycle, (inner, outer) = drive.cycle, drive.mechanism.dead_centres()
-    bends = [angle + turn for angle in (*results.breaks, *(results.phi_reversal or ())) for turn in (0.0, cycle)]
+    bends = [angle + turn for angle in (*results.breaks, *also) for turn in (0.0, cycle)]
 
     def values(degrees: Array, within: Array) -> Array:
         turned = cycle * np.floor(within / cycle)  # the end of the cycle is not its beginning
-        return source.values(("x", *ids), degrees - turned, within - turned)
+        return of(degrees - turned, within - turned)
 
     ends = sorted({(end + turn) % cycle for turn in range(0, int(cycle), 360) for end in (inner, outer)})
     for start, end in pairwise((*ends, ends[0] + cycle)):
         breaks = np.array(sorted({start, *(angle for angle in bends if start < angle < end), end}))
-        panel = _remaining_force(source, ids, "x", values=values, breaks=breaks)
         name = "Outstroke" if math.cos(math.radians(start - inner)) > 1 - 1e-9 else "Return stroke"
-        yield panel._replace(title=f"{name} {start:.4g}–{end:.4g}°")
+        yield {"values": values, "breaks": breaks}, f"{name} {start:.4g}–{end:.4g}°"
+
+
+def piston_force_of_crank(source: Source) -> Iterator[Panel]:
+    """Force of the driving pistons, with the efficiency, over the stroke, against that of the driven ones and of the
+    masses: what is left between them passes through the crank (R Abb. 1065)."""
+    results, drive = source.results, source.results.drive
+    if len(source.having("P", "x")) < 2 or not (drive.drives and drive.driven):
+        return
+    moved = bool(source.having("P_inertia"))
+    ids = ("x", "P", "P", "P") if moved else ("x", "P", "P")
+
+    def values(degrees: Array, within: Array) -> Array:
+        state = results.at(degrees, within)
+        steam = state.P_driving
+        lines = [state.x, drive.machine.efficiency * steam, -driven_force(state)]
+        return np.stack([*lines, steam - state.P] if moved else lines)
+
+    masses = " − P_b − P_w" if source.having("P_weight") else " − P_b"
+    names = Words("η P_driving", "eta P_driving"), Words("−P_driven"), Words(f"−P_driven{masses}")
+    for how, title in _strokes(source, values):
+        samples = source.samples(ids, **how)
+        x, *lines = samples.values
+        curves = [samples.curve(name, x, line) for name, line in zip(names, lines)]
+        shades = tuple(_between(x, lines[-1], lines[0]))
+        yield Panel(source.axis("x"), source.axis("P"), (*curves, level(x)), shades, title=title)
 
 
 def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
@@ -151,7 +187,7 @@ def forces(source: Source) -> Iterator[Panel]:
 
 
 def polar_effort(source: Source) -> Iterator[Panel]:
-    """Tangential force T drawn outward from the circle of the crank pin (R Abb. 1063)."""
+    """Tangential force T drawn outward from the circle of the crank pin."""
     if not source.having("T"):
         return
     (force,) = source.samples(("T",)).values
@@ -176,13 +212,38 @@ def polar_effort(source: Source) -> Iterator[Panel]:
 
 
 def motion(source: Source) -> Iterator[Panel]:
-    """Displacement, velocity and acceleration over the crank angle (R Abb. 1047 to 1050)."""
-    return source.panels(("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",))
+    """Displacement, velocity and acceleration over the crank angle; dashed those of an infinite rod (R Abb. 1047 to
+    1050)."""
+    for ids in (("x",), ("c",), ("b",), ("theta",), ("theta_dot",), ("theta_ddot",)):
+        for panel in source.panels(ids):
+            yield _with_infinite_rod(source, panel, ids[0], PHI)
 
 
 def motion_over_stroke(source: Source) -> Iterator[Panel]:
-    """Velocity and acceleration over the displacement (R Abb. 1049, 1050)."""
-    return source.panels(("c",), ("b",), over="x")
+    """Velocity and acceleration over the displacement; dashed those of an infinite rod, an ellipse and a straight line
+    (R Abb. 1049, 1050)."""
+    for id in ("c", "b"):
+        for panel in source.panels((id,), over="x"):
+            yield _with_infinite_rod(source, panel, id, "x")
+
+
+def _with_infinite_rod(source: Source, panel: Panel, id: str, over: str) -> Panel:
+    """Return a panel of x, c or b of a slider-crank with the same for an infinite rod."""
+    drive = source.results.drive
+    if not isinstance(drive.mechanism, SliderCrank) or math.isinf(drive.mechanism.rod):
+        return panel
+
+    def values(degrees: Array, within: Array) -> Array:
+        turned, crank, omega = np.radians(degrees), drive.mechanism.crank, drive.omega or 0.0
+        way = crank * (1 - np.cos(turned))
+        of = {"x": way, "c": crank * omega * np.sin(turned), "b": crank * omega**2 * np.cos(turned)}
+        return np.stack([degrees if over == PHI else way, of[id]])
+
+    # over the displacement once to and fro, of a straight line once only: dashes over dashes are no dashes
+    once = np.array([0.0, 180.0] if id == "b" else [0.0, 180.0, 360.0]) if over == "x" else None
+    samples, symbol = source.samples((over, id), values=values, breaks=once), source.words(id).symbol
+    name = Words(f"{symbol}, L/R = ∞", f"{symbol}, L/R = inf")
+    return panel._replace(curves=(*panel.curves, samples.curve(name, *samples.values)))
 
 
 # the whole machine
@@ -230,6 +291,56 @@ def flow(source: Source) -> Iterator[Panel]:
     curves = (*panel.curves, level(x, mean, source.words("flow_mean")))
     yield panel._replace(curves=curves, shades=tuple(_between(x, np.full_like(x, mean), line)))
     yield from source.panels(("acceleration_head",))
+
+
+def crank_efforts(source: Source) -> Iterator[Panel]:
+    """Tangential force of each cylinder as its crank stands, their sum, and dashed the sum with the efficiency (R Abb.
+    1062, 1064)."""
+    effort, crank = source.results.effort, source.results.crank
+    acting = [one for one in effort.cylinders if one.drive.has_force]
+    lossy = bool(effort.machine.efficiency != 1)
+    if effort.given is not None or not source.having("T") or len(acting) > _MOST_CRANKS or len(acting) + lossy < 2:
+        return
+    lines = [(source.words("T"), 0, effort.sampled([Term(1.0, group) for group in effort.groups]))]
+    lines += [(Words("T with η", "T with eta"), 1, effort.M)] if lossy else []
+    for number, one in enumerate(acting if len(acting) > 1 else ()):
+        lines.append((Words(one.drive.name[:_LONGEST_NAME]), 2 + number, effort.sampled([Term(1.0, [one])])))
+    samples = _efforts(source, [torque for *_, torque in lines])
+    x, *found = samples.values
+    curves = [samples.curve(name, x, y)._replace(look=look) for (name, look, _), y in zip(lines, found)]
+    mean = level(x, float(effort.mean[0]) / crank, Words("W"))
+    yield Panel(source.axis(PHI), source.axis("T"), (*curves, mean), marks=source.marks("T", lambda angle: angle))
+
+
+def effort_of_sides(source: Source) -> Iterator[Panel]:
+    """Turning effort of the driving pistons, with losses and masses, against the resistance line of the driven ones
+    (R Abb. 1067)."""
+    effort = source.results.effort
+    driven = [group for group in effort.groups if group[0].drive.driven]
+    if effort.given is not None or not source.having("T") or not driven or not effort.drives:
+        return
+    resistance = -effort.sampled([Term(1.0, group, lambda one: driven_force(one) * one.slope) for group in driven])
+    samples = _efforts(source, [effort.M + resistance, resistance])
+    x, driving, against = samples.values
+    curves = samples.curve(Words("T_driving"), x, driving), samples.curve(Words("−T_driven"), x, against)
+    shades = tuple(_between(x, against, driving))
+    yield Panel(source.axis(PHI), source.axis("T"), (*curves, level(x)), shades)
+
+
+def driven_force(state: State) -> Any:
+    """Return the force in N of the pistons of a rod that do not drive, and of what a ram works against."""
+    gas = 0.0 if state.P_gas is None else state.P_gas - (0.0 if state.P_driving is None else state.P_driving)
+    return gas if state.P_ram is None else gas + state.P_ram
+
+
+def _efforts(source: Source, torques: Sequence[Array]) -> Sampled:
+    """Return crank angles and torques on the pieces of the machine as forces on crank 1."""
+    effort, crank = source.results.effort, source.results.crank
+
+    def values(degrees: Array, within: Array) -> Array:
+        return np.stack([degrees, *(effort.at(effort.pieces, one, degrees, within) / crank for one in torques)])
+
+    return source.samples((PHI, *("T" for _ in torques)), values=values)
 
 
 def throw_stress(source: Source) -> Iterator[Panel]:
@@ -354,12 +465,16 @@ class PictureKind(NamedTuple):
 PICTURES = (
     PictureKind("piston-force", "Piston force", "forces", piston_force),
     PictureKind("piston-force-way", "Piston force over the stroke", "forces", piston_force_over_stroke),
+    PictureKind("piston-force-crank", "Piston force that the crank passes on", "forces", piston_force_of_crank),
     PictureKind("card", "Indicator diagram", "forces", cards),
     PictureKind("card-volume", "Indicator diagram over the volume", "forces", cards_over_volume),
     PictureKind("forces", "Forces in the crank train", "forces", forces),
     PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
+    PictureKind("force-polar", "Piston force in polar form", "forces", polar_force),
     PictureKind("effort", "Turning effort", "flywheel", effort),
     PictureKind("flow", "Flow delivered", "delivery", flow),
+    PictureKind("effort-cranks", "Turning effort of each crank", "flywheel", crank_efforts),
+    PictureKind("effort-sides", "Turning effort against the driven pistons", "flywheel", effort_of_sides),
     PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
     PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
     PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
@@ -370,6 +485,7 @@ PICTURES = (
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
     PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
+    PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the one that says most of a machine first."""
 

@@ -1,5 +1,6 @@
 """The report of `kurbel report`: all that a machine has, section by section; or two machines side by side."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import zip_longest
@@ -10,17 +11,17 @@ import numpy as np
 
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.numerics.extreme import number_of, size_of
+from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.balance import balance_report
-from kurbel.report.check import checked
+from kurbel.report.check import Checked, checked
 from kurbel.report.commands import REPORTS, Command
 from kurbel.report.crank import bearings_report, forces_report, motion_report, stress_report
 from kurbel.report.delivery import IN_CASES, cases_report, delivery_report
 from kurbel.report.frame import Frame, Subject, provenance, subjects_of
 from kurbel.report.keys import every_place, meaning
-from kurbel.report.picture import Document, Grid, Item, Pair, Section
+from kurbel.report.picture import Document, Fact, Facts, Grid, Item, Pair, Section
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
 from kurbel.report.tables import Report, stepped
@@ -35,6 +36,8 @@ Progress = Callable[[str], None]
 """Called with what is computed next."""
 _VERDICTS = "Limits", "Expected"
 _NONE = "–"
+_SHORT = re.compile(r"[:;,(]| over | of the (?:cycle|turning)")
+"""Where the first words of a sentence end."""
 _REPORTS: dict[str, Callable[[Case, Frame], Report]] = {
     "motion": motion_report,
     "forces": forces_report,
@@ -53,47 +56,100 @@ def report_of(case: Case, frame: Frame) -> Report:
     return _REPORTS[frame.command](case, frame)
 
 
+_FACTS = (
+    *(("flywheel", id) for id in ("power_shaft", "M_max", "dE", "delta", "J")),
+    *(("delivery", id) for id in ("flow_mean", "capacity")),
+    *(("forces", id) for id in ("mean_pressure", "p_max", "P_peak", "N_peak", "T_max")),
+    *(("bearings", "load_max"), ("stress", "safety_pin_min"), ("torsion", "f_1"), ("balance", "F_free_max")),
+    *(
+        ("motion", id)
+        for id in ("stroke", "swing", "c_m", "c_max", "b_max", "time_ratio", "theta_max", "theta_dot_max")
+    ),
+)
+"""Commands and ids of the key values that say most of a machine, the first ones first."""
+_MOST_FACTS = 8
+_ORDER = ("flywheel", "delivery", "forces", "bearings", "stress", "balance", "torsion", "harmonics", "motion")
+
+
 @np.errstate(all="ignore")  # what overflows is refused by name
 def whole_report(
     case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
 ) -> Document:
-    """Return all that a machine has: input, pictures and tables of each command, verdicts, energy, what is left out.
+    """Return all that a machine has: what says most of it, pictures and tables of each command, energy, input.
 
     given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
     stepped(step, 360.0)  # a step that is none is refused at once
     found, places = checked(case), every_place()
-    rows = tuple((path, value, meaning(path, places)) for path, value in given)
-    items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), rows)] if rows else []
-    for part in found.shown_once:
-        if part.title not in _VERDICTS:
-            items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
-    sections = [Section("input", "Input as understood", tuple(items))]
+    known = {part.title: part for part in found.sections}
+    sections = [Section("summary", "Summary", tuple(_summary(case, found, system)))]
 
     left_out: list[tuple[str, str]] = []
-    for command in REPORTS.values():
+    for word in _ORDER:
+        command = REPORTS[word]
         progress(command.title.lower())
         try:
-            items = _items(case, command, system, step)
-            if cases and command.word in IN_CASES:
-                items.append(cases_report(case.machine, cases, command.word, system))
-            sections.append(Section(command.word, command.title, tuple(items)))
+            made = _items(case, command, system, step)
+            if cases and word in IN_CASES:
+                made.append(cases_report(case.machine, cases, word, system))
+            sections.append(Section(word, command.title, tuple(made)))
         except UsageError as error:
             left_out.append((command.title, str(error).removeprefix(f"{case.machine.name}: ")))
 
-    verdicts: list[Item] = []
+    rows = tuple((path, value, meaning(path, places)) for path, value in given)
+    items: list[Item] = [Grid("Given", ("Key", "Value", "Meaning"), rows)] if rows else []
+    for part in found.shown_once:
+        if part.title not in (*_VERDICTS, "Warnings"):
+            items.append(Grid(part.title, ("", ""), tuple((one.what, one.text) for one in part.entries)))
+    sections += [
+        Section("energy", "Energy balance", tuple(_energy(case, system))),
+        Section("left-out", "Left out", (Grid("", ("Part", "Why"), tuple(left_out)),) if left_out else ()),
+        Section("input", "Input as understood", tuple(items)),
+    ]
+    about = {one.what: one.text for one in known["Machine"].entries}
+    count = about.get("cylinders", "")
+    cylinders = f"{count} cylinder{'s' * (count != '1')}" if count else ""
+    kind = ", ".join(filter(None, (cylinders, about.get("cycle"), about.get("speed"))))
+    sources = (provenance(case.machine),)
+    return Document(case.machine.name, sources, tuple(one for one in sections if one.items), kind)
+
+
+def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
+    """Yield the mechanism, the key values that say most, limits and expectations with their verdicts, and warnings."""
+    mechanism = next(one for one in PICTURES if one.id == "mechanism")
+    for one in _if_any(partial(pictures_if_any, case, mechanism, PictureOptions(system)))[:1]:
+        yield one._replace(machine="")
+    if facts := tuple(_facts(case, system)):
+        yield Facts(facts)
     for part in found.sections:
         if part.title in _VERDICTS:
             listed = tuple((one.what, one.text) for one in part.entries)
             colours = tuple("bad" if one.severity == "error" else "good" for one in part.entries)
-            verdicts.append(Grid(part.title, ("Key value", "Verdict"), listed, verdicts=colours))
-    verdicts += [str(error) for error in found.errors]
-    sections += [
-        Section("verdicts", "Limits and expectations", tuple(verdicts)),
-        Section("energy", "Energy balance", tuple(_energy(case, system))),
-        Section("left-out", "Left out", (Grid("", ("Part", "Why"), tuple(left_out)),) if left_out else ()),
-    ]
-    return Document(case.machine.name, (provenance(case.machine),), tuple(one for one in sections if one.items))
+            yield Grid(part.title, ("Key value", "Verdict"), listed, verdicts=colours)
+    yield from map(str, found.errors)
+    warnings = [entry for part in found.sections for entry in part.entries if entry.severity == "warning"]
+    if warnings:
+        yield Grid("Warnings", ("Part", "Warning"), tuple((one.what, one.text) for one in warnings))
+
+
+def _facts(case: Case, system: str) -> Iterator[Fact]:
+    """Yield the first eight of the key values that say most, each of the part where its magnitude is largest."""
+    left = _MOST_FACTS
+    for command, id in _FACTS:
+        values = []
+        for subject in _if_any(partial(subjects_of, case, command)):
+            for quantity, value in _if_any(partial(subject.key_values, command)):
+                if quantity.id == id and isinstance(number := number_of(value), float):
+                    values.append((abs(number), quantity, value, subject.name))
+        if not values or not left:
+            continue
+        left -= 1
+        size, quantity, value, name = max(values, key=itemgetter(0))
+        unit = shown_unit(quantity.kind, system, size)
+        at = f"at {value.degrees:.4g}°" if isinstance(value, Extreme) else ""
+        where = f"{name} {at}".strip() if len(values) > 1 else at
+        text = f"{convert(number_of(value), quantity.kind, unit):.4g}"
+        yield Fact(_SHORT.split(quantity.text)[0], text, quantity.marked(unit), quantity.symbol, where)
 
 
 def _items(case: Case, command: Command, system: str, step: float) -> list[Item]:
@@ -110,9 +166,9 @@ def _items(case: Case, command: Command, system: str, step: float) -> list[Item]
         table = f"No solution: {error}"
     found: list[Item] = []
     for one in PICTURES:
-        if one.command == command.word:
+        if one.command == command.word and one.id != "mechanism":  # which is in the summary
             try:
-                found += pictures_if_any(case, one, PictureOptions(system))
+                found += (one._replace(machine="") for one in pictures_if_any(case, one, PictureOptions(system)))
             except NoSolutionError as error:
                 found.append(f"{one.title}: {error}")
     return [*found, table]

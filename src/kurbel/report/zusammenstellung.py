@@ -12,7 +12,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
-from kurbel.report.tables import Column, Part, Report
+from kurbel.report.tables import Column, Part, PlaceTable, Report
 
 FACTORS = by_id(
     Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
@@ -22,6 +22,10 @@ FACTORS = by_id(
     Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
     Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
     Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),
+    Quantity(
+        "inertia_torque_factor", "T_b/(m R ω²)", "ratio", "Tangential inertia force, −(b R/v²)(c/v) (Tolle, R p. 614)"
+    ),
+    Quantity("stroke_share", "x/s", "ratio", "Share of the stroke"),
 )
 """Rows of Zusammenstellung 112, by id."""
 
@@ -35,11 +39,24 @@ ROWS = {
     "S": "rod_force_factor",
     "N": "guide_force_factor",
     "D": "radial_force_factor",
+    "T_b": "inertia_torque_factor",
+    "x/s": "stroke_share",
 }
 """What `--rows` calls a row -> its id."""
 
-_ODD = ("velocity_factor", "psi", "guide_force_factor")  # they change their sign on the return stroke
+_ODD = (
+    "velocity_factor",
+    "psi",
+    "guide_force_factor",
+    "inertia_torque_factor",
+)  # they change their sign on the return stroke
 
+
+ROOTS = by_id(
+    Quantity("phi_b_zero", "φ_b=0", "angle", "Crank angle at which the acceleration is zero, on the outstroke"),
+    Quantity("phi_b_zero_book", "φ_b0=0", "angle", "The same by the acceleration of first order (R 291)"),
+)
+"""Of one L/R, by id."""
 
 _OTHER_SYMBOLS = {
     ("exact", "acceleration_factor"): ("b R/v²", "b R/v^2"),
@@ -91,7 +108,8 @@ def zusammenstellung(
         odd = [column.symbol for column in parts[0].columns if column.id in _ODD]
         changes = f"{_listed(odd, 'and')} {'has' if len(odd) == 1 else 'have'} the opposite sign" if odd else ""
         mirrored = f"On the return stroke (360° − φ) {changes or 'the values are the same'}."
-    report = Report(title, "table", None, "ratios", tuple(parts), mirrored=mirrored)
+    whole = Part("", (), place_tables=(_roots(tuple(dict.fromkeys(ratios))),)) if "acceleration_factor" in ids else None
+    report = Report(title, "table", None, "ratios", tuple(parts), whole, mirrored)
     return _with_printed(report, formula) if compare else report
 
 
@@ -116,7 +134,27 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
     if formula == "first-order":
         factors["velocity_factor"] = formulas.first_order_velocity(sin, cos, lam)
         factors["displacement_factor"] = formulas.first_order_displacement(sin, cos, lam)
+    factors["inertia_torque_factor"] = -factors["acceleration_factor"] * factors["velocity_factor"] + 0.0
+    factors["stroke_share"] = factors["displacement_factor"] / 2
     return factors
+
+
+def _roots(ratios: tuple[float, ...]) -> PlaceTable:
+    """Return where b is zero on the outstroke, exactly and by the acceleration of first order, B example 33."""
+    exact, first_order = array("d"), array("d")
+    for ratio in ratios:
+        lam, low, high = 1 / ratio, 0.0, 90.0
+        first_order.append(math.degrees(math.acos(2 * lam / (1 + math.sqrt(1 + 8 * lam * lam)))))
+        while low < (middle := (low + high) / 2) < high:
+            behind = _factors(CrankAngle.of(middle), ratio, "exact")["acceleration_factor"] < 0
+            low, high = (low, middle) if behind else (middle, high)
+        exact.append(high)
+    columns = [
+        Column(one.id, one.symbol, one.ascii_symbol, "deg", values, one.text)
+        for one, values in zip(ROOTS.values(), (exact, first_order))
+    ]
+    names = tuple((f"L/R_=_{ratio:g}",) for ratio in ratios)
+    return PlaceTable("roots", "Where b = 0: exactly, and by first order", ("ratio",), names, tuple(columns))
 
 
 def _listed(words: list[str], last: str) -> str:

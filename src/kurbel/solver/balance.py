@@ -291,6 +291,7 @@ class MachineBalance(Results):
     )
     F_free_best = value("F_min", "force", "Largest free force that it leaves", lambda one: one.least_and_force[1])
 
+    counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")
     swaying_couple = value("M_s", "torque", "Largest swaying couple, about the upright axis")
@@ -512,15 +513,16 @@ class MachineBalance(Results):
 
     # the wheels of a locomotive
 
-    def in_wheels(self, alone: bool = False) -> tuple[Any, Any]:
+    def in_wheels(self, of: str = "all") -> tuple[Any, Any]:
         """Return what turns in each wheel in kg m, as by a lever: counterweights and rotating masses together.
 
-        alone: what the reciprocating masses would give, if they turned with the crank.
+        of: `counterweights`, those alone; `reciprocating`, what these masses would give, if they turned with the crank.
         """
-        weights = [(one.name, one.weight(one.mass if alone else one.rotating)) for one in self.throws]
-        weights += [] if alone else [("counterweights", one) for one in self.counterweights]
-        near, far = zip(*(levered(one, self.wheels, owner) for owner, one in weights))
-        return sum(one.product for one in near), sum(one.product for one in far)
+        weights = [(one.name, one.weight(one.mass if of == "reciprocating" else one.rotating)) for one in self.throws]
+        added = [] if of == "reciprocating" else [("counterweights", one) for one in self.counterweights]
+        each = added if of == "counterweights" else [*weights, *added]
+        pairs = [levered(one, self.wheels, owner) for owner, one in each]
+        return sum(near.product for near, _ in pairs), sum(far.product for _, far in pairs)
 
     @cached_property
     def answers(self) -> dict[str, Any]:
@@ -536,8 +538,10 @@ class MachineBalance(Results):
             "traction_variation": self.farthest["force along"],
             "swaying_couple": self.farthest.get("moment along"),
         }
-        wheels = [map(abs, self.in_wheels(alone)) for alone in (False, True)]
-        most, whole = (where(near >= far, near, far) for near, far in wheels)
+        wheels = [map(abs, self.in_wheels(of)) for of in ("all", "reciprocating", "counterweights")]
+        most, whole, weight = (where(near >= far, near, far) for near, far in wheels)
+        if self.counterweights:
+            found["counterweight_wheel"] = weight
         if omega is not None and some(omega != 0):
             found["hammer_blow"], blow = most * (omega * omega), whole * (omega * omega)
             if given.hammer_limit is not None:

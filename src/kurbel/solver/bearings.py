@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -376,30 +376,31 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array,
     direction = np.degrees(np.angle(towards * np.conj(strongest))) + np.degrees(np.angle(strongest))
     low, high = pieces.ranges(direction)
     starts, widths = low + contact - HALF_CONTACT, high - low + 2 * HALF_CONTACT
-    # every machine has pieces here, but one that nothing presses
-    arcs = np.split(np.stack((starts, widths), axis=1), np.searchsorted(pieces.machine, np.arange(1, pieces.count)))
-    free = np.array([unreached(one.tolist()) for one in arcs])
-    return free[:, 0], free[:, 1]
+    return unreached(starts, widths, pieces.machine, pieces.count)
 
 
-def unreached(arcs: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Return in degrees what of a circle arcs leave free, and the middle of its widest stretch.
+def unreached(starts: Array, widths: Array, machine: Indices, count: int) -> tuple[Array, Array]:
+    """Return in degrees what of a circle arcs leave free, and the middle of its widest stretch, each (machines,).
 
-    arcs: where each starts, and how wide it is. Of stretches equally wide it is the first from 0° on; nan where there
-    is none, and for both where there is no arc.
+    starts, widths: of the arcs (n,) in degrees; machine: of each, ascending. Of stretches equally wide it is the first
+    from 0° on; nan where there is none, and for both where there is no arc.
     """
-    if not arcs:
-        return math.nan, math.nan
-    ordered = sorted((360.0 - (-start) % 360.0, width) for start, width in arcs)
-    reached, gaps = max(start + width for start, width in ordered) - 360.0, []
-    for start, width in ordered:
-        gaps.append((max(start - reached, 0.0), start))
-        reached = max(reached, start + width)
-    widest, end = max(gaps)
-    if widest == 0:
-        return 0.0, math.nan
-    widest, end = next(one for one in gaps if one[0] > widest - _EQUAL)
-    return sum(gap for gap, _ in gaps), float(_axial(np.asarray(math.remainder(end - widest / 2, 360.0)), _EQUAL))
+    starts = 360.0 - np.mod(-starts, 360.0)
+    order, many = np.lexsort((widths, starts, machine)), np.bincount(machine, minlength=count)
+    # of each machine a row, filled up with arcs that reach nothing
+    place = np.arange(len(machine)) - np.repeat(np.cumsum(many) - many, many)
+    start, width = np.full((2, count, max(1, many.max())), [[[-math.inf]], [[0.0]]])
+    start[machine, place], width[machine, place] = starts[order], widths[order]
+
+    ends = start + width
+    before = np.append(ends.max(axis=1, keepdims=True) - 360.0, ends[:, :-1], axis=1)
+    with np.errstate(invalid="ignore"):  # without any arc
+        gaps = np.maximum(start - np.maximum.accumulate(before, axis=1), 0.0)
+        widest = gaps.max(axis=1, keepdims=True)
+        first = np.arange(count), np.argmax(gaps > widest - _EQUAL, axis=1)
+        middle = start[first] - gaps[first] / 2
+        middle = _axial(middle - 360.0 * np.rint(middle / 360.0), _EQUAL)
+    return gaps.sum(axis=1), np.where(widest[:, 0] > 0, middle, math.nan)
 
 
 def _axial(directions: Array, rounding: float) -> Array:

@@ -77,7 +77,7 @@ class SampledCylinder:
     @property
     def tail(self) -> float:
         """Largest tail of the Chebyshev series on a piece that could be halved, relative to the largest value."""
-        values = _smooth(self.samples, self.pieces)
+        values = np.stack(_smooth(self.samples, self.pieces))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
         tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
@@ -94,7 +94,7 @@ class SampledCylinder:
         found = {name: values for name in columns if (values := self.sampled(name)) is not None}
         if not found:
             return {}
-        return dict(zip(found, self.pieces.extremes(np.stack([*found.values()])).each(self.told)))
+        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self.told)))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
@@ -105,13 +105,13 @@ class SampledCylinder:
 def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
     """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
 
-    def before(some: Pieces) -> Array:
+    def before(some: Pieces) -> list[Array]:
         state = State.on(drive, some).unrubbed
-        return _stacked(some, state.rod_angle and state.guide_sense, state.curvature, state.P_gas, state.P)
+        return _known(some, state.rod_angle and state.guide_sense, state.curvature, state.P_gas, state.P)
 
-    def rubbed(some: Pieces) -> Array:
+    def rubbed(some: Pieces) -> list[Array]:
         state = State.on(drive, some)
-        return _stacked(some, state.rod_angle and state.guide_sense, *(state.rubbing or ()))
+        return _known(some, state.rod_angle and state.guide_sense, *(state.rubbing or ()))
 
     pieces, (sense, *_) = refined(pieces, before)
     if drive.rubs:
@@ -137,18 +137,18 @@ def _refuse_locking(drive: Drive, pieces: Pieces) -> None:
             raise NoSolutionError(drive.locks(first))
 
 
-def _smooth(state: State, pieces: Pieces) -> Array:
+def _smooth(state: State, pieces: Pieces) -> list[Array]:
     """Return what is to be a polynomial on every piece."""
     offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
     if not state.drive.has_force:
-        return _stacked(pieces, state.curvature, *offered)
-    forces = (state.P_gas, state.P, state.N, state.T, state.D, *(state.rubbing or ()))
-    return _stacked(pieces, state.curvature, *forces, *offered)
+        return _known(pieces, state.curvature, *offered)
+    forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ()))
+    return _known(pieces, state.curvature, *forces, *offered)
 
 
-def _stacked(pieces: Pieces, *values: Any) -> Array:
-    """Return what there is of columns at the nodes of pieces, (q, nodes, pieces)."""
-    return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None])
+def _known(pieces: Pieces, *values: Any) -> list[Array]:
+    """Return what there is of columns at the nodes of pieces, each (nodes, pieces)."""
+    return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
 
 
 def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:

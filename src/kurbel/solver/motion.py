@@ -16,7 +16,7 @@ from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Angles, Pieces, refined
+from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
 from kurbel.quantity import value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
 
@@ -103,14 +103,23 @@ class MotionColumns(AtAngles):
         self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
-        cos_psi = self.rod_angle[1] if self.rod_angle else 1.0
-        self.rod_slope = formulas.rod_slope(angle.cos, cos_psi, mechanism.lam)
         self.coordinate = mechanism.coordinate(self.posed)
         self.way = self.coordinate - mechanism.start
-        self.slope, self.curvature = mechanism.slope(self.posed), mechanism.curvature(self.posed)
+        self.curvature = mechanism.curvature(self.posed)
         self._of_point = of_point
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
+
+    @cached_property
+    def slope(self) -> Any:
+        """Slope dx/dφ in m per radian."""
+        return self.mechanism.slope(self.posed)
+
+    @cached_property
+    def rod_slope(self) -> Any:
+        """Slope dψ/dφ of the rod."""
+        cos_psi = self.rod_angle[1] if self.rod_angle else 1.0
+        return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
 
     @cached_property
     def point(self) -> PointMotion | None:
@@ -162,6 +171,14 @@ class Motion(Results):
     b_max = value("b_max", "acceleration", "Largest acceleration")
     b_min = value("b_min", "acceleration", "Smallest acceleration: the largest deceleration, negative")
     phi_b_zero = value("φ_b=0", "angle", "Crank angles at which the acceleration passes zero", listed=True)
+    phi_b_zero_book = value(
+        "φ_b0=0",
+        "angle",
+        "The same by the acceleration of first order, cos φ + R/L cos 2φ = 0 (R 291)",
+        lambda motion: motion.roots_of_the_book(),
+        listed=True,
+        on_request=("forces",),
+    )
     of_the_mechanism = Searched()
 
     def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
@@ -197,6 +214,18 @@ class Motion(Results):
         found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
         return found
 
+    def roots_of_the_book(self) -> tuple[Any, ...] | None:
+        """Return where the acceleration of first order is zero, in degrees.
+
+        None where the book has none, and with the infinite rod, of which it is exact.
+        """
+        mechanism, turn = self.mechanism, self._turn[0]
+        offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
+        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(mechanism.lam == 0):
+            return None
+        taken_on = mechanism if self._count is None else taken(mechanism, turn.machine)
+        return turn.zeros(np.asarray(offer.factor(taken_on, CrankAngle.at_nodes(turn)))).listed(self._count)
+
     # the extremes over a turn
 
     @cached_property
@@ -207,18 +236,19 @@ class Motion(Results):
         return [one for one in declared if one.factor(self.mechanism, here) is not None]
 
     @cached_property
-    def _turn(self) -> tuple[Pieces, Array]:
+    def _turn(self) -> tuple[Pieces, Samples]:
         """One revolution, halved until all that the mechanism does is a polynomial on every piece, and its samples.
 
-        These are dx/dφ, d²x/dφ², and what the mechanism offers besides, (q, nodes, pieces).
+        These are dx/dφ, d²x/dφ², and what the mechanism offers besides, each (nodes, pieces).
         """
 
-        def sampled(pieces: Pieces) -> Array:
+        def sampled(pieces: Pieces) -> Samples:
             mechanism = self.mechanism if self._count is None else taken(self.mechanism, pieces.machine)
             angle = CrankAngle.at_nodes(pieces)
+            angle = angle._replace(rod=mechanism.rod_angle(angle))
             offered = [one.factor(mechanism, angle) for one in self._offers]
             found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
-            return np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None])
+            return [np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None]
 
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)

@@ -63,7 +63,7 @@ class RodLoads(Results):
     def answers(self) -> dict[str, Any]:
         """The key values."""
         found, count = dict[str, Any](), self.drive.count
-        extremes = self.pieces.extremes(np.stack([*self.loads.values()])).each(partial(told, count=count))
+        extremes = self.pieces.extremes([*self.loads.values()]).each(partial(told, count=count))
         peaks = dict(zip(self.loads, extremes))
         for load in _LOADS:
             column, _, way = load.rpartition("_")

@@ -15,8 +15,7 @@ P here is what friction leaves. An exact rod adds the side force of its couple, 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property, reduce
-from operator import add
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -106,7 +105,8 @@ class State(MotionColumns):
     @property
     def unrubbed(self) -> State:
         """The state without friction in pins and journals: its loads are those that this friction is computed from."""
-        return State(self.drive, self.angle, self.within, rubs=False) if self.rubs else self
+        friction = self.rubs and self.drive.pin_friction
+        return State(self.drive, self.angle, self.within, rubs=False) if friction else self
 
     @property
     def rows(self) -> Mapping[str, Row]:
@@ -183,16 +183,16 @@ class State(MotionColumns):
 
         shares: of each piston, what counts of it; True or all of it, False or nothing.
         """
-        terms: list[Any] = []
+        force: Any = None
         for number, gas in enumerate(self.drive.gas):
             share = True if shares is None else spread(shares[number], self.drive.index)
             if share is False:
                 continue
             areas = [spread(one, self.drive.index) * share for one in (gas.piston.head_area, gas.piston.crank_area)]
             head, crank = ((areas[0] + areas[1]) / 2,) * 2 if alike else areas
-            terms += [self.pressure(gas.head) * head] if gas.head else []
-            terms += [self.pressure(gas.crank) * -crank] if gas.crank else []
-        return reduce(add, terms) if terms else None
+            for end, area in ((gas.head, head), (gas.crank, -crank)):
+                force = _sum(force, self.pressure(end) * area) if end else force
+        return force
 
     @cached_property
     def P_driving(self) -> Any:

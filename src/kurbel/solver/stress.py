@@ -332,7 +332,7 @@ class CrankshaftStrength(Results):
             return np.stack([np.hypot(*load) for load in loads])
 
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
-        return _Cycle(fine, found, loads)
+        return _Cycle(fine, found, np.asarray(loads))
 
     @property
     def breaks(self) -> Array:

@@ -22,11 +22,9 @@ from kurbel.traces.correct import (
     Trace,
     drift_of,
     exponent,
-    extrapolated,
     joined_in_pairs,
     noise_of,
     parabola_peak,
-    volumes_in,
     without_drift,
 )
 
@@ -50,7 +48,10 @@ class Reading:
     """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees after the dead centre.
 
     each: pressures (m, n) of every cycle, corrected; after (n,): rising angles from the chamber's own (firing) dead
-    centre; place (n,): the same within ± half a cycle.
+    centre; place (n,): the same within ± half a cycle; low: level below which the cycle lies for 15 % of it; ratio: of
+    the peak over it, absolute; engine: whether something is compressed, or burns, in a small space; usual: whether the
+    peak is where such a cycle has it; motored: whether nothing burns, since both sides of the peak are alike. (The sign
+    of the work does not show that: a motored trace that is too late does work.)
     """
 
     def __init__(self, trace: Trace, setting: Setting, each: Array) -> None:
@@ -59,7 +60,7 @@ class Reading:
         self.place = setting.from_dead_centre(trace)
         self.after = trace.angles - trace.angles[0] + self.place[0]
         self.step = trace.period / (len(self.p) - 1)
-        widths = np.append(np.diff(trace.angles), 0.0) + np.append(0.0, np.diff(trace.angles))
+        widths = np.convolve(np.diff(trace.angles), [1.0, 1.0])
         order = np.argsort(self.p)
         share = np.cumsum(widths[order]) / (2 * trace.period)
         self.low = float(self.p[order[np.searchsorted(share, _LOW)]])
@@ -68,11 +69,17 @@ class Reading:
         # a single top sample may be noise; the closing one would count twice
         self.vertex = parabola_peak(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
         self.peak_at = self.vertex.place if self.vertex else float(self.place[self.top])
-        self.half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
+        half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
         # of a trace that goes down to the vacuum, the ratio as over a good vacuum
-        floor = max(self.low + setting.lift, 0.2 * setting.ambient, 1.0)
-        self.ratio = (self.peak + setting.lift) / floor
-        self.engine = self.half_width <= _NARROW and self.ratio > _ENGINE
+        self.ratio = (self.peak + setting.lift) / max(self.low + setting.lift, 0.2 * setting.ambient, 1.0)
+        self.engine = half_width <= _NARROW and self.ratio > _ENGINE
+        self.usual = _FIRED if setting.cycle == 720 else _TWO_STROKE
+
+        around = trace.angles[self.top] + np.linspace(-_AROUND, _AROUND, 21)
+        places = np.multiply.outer([-1.0, 1.0], _MOTORED_SIDES)[..., np.newaxis] + around
+        sides = np.interp(places, trace.angles, self.p + setting.lift, period=trace.period).mean(axis=-1)
+        alike = (_MOTORED_RATIO[0] * sides[0] <= sides[1]) & (sides[1] <= _MOTORED_RATIO[1] * sides[0])
+        self.motored = bool(alike.all() and self.peak + setting.lift > _MOTORED_RISE * max(sides[:, -1]))
 
     def exponent(self, stretch: tuple[float, float], later: float = 0.0, raised: float = 0.0) -> Exponent | None:
         """Return the exponent of a stretch if the trace were so many degrees later, and raised by Pa."""
@@ -85,29 +92,25 @@ class Reading:
         At equal angles the trapezoid rule of p dz/dφ, at others the integral of the straight lines in between.
         """
         angles, p = self.after if after is None else after, self.p if pressures is None else pressures
-        along = rule(2 if self.trace.even else 10 if len(p) < _FEW_SAMPLES else 4)
+        mechanism, along = self.setting.mechanism, rule(2 if self.trace.even else 10 if len(p) < _FEW_SAMPLES else 4)
         share = (1 + along.nodes[:, np.newaxis]) / 2
-        values = (p[:-1] + share * np.diff(p)) * self._slope(angles[:-1] + share * np.diff(angles))
-        terms = along.weights @ values * np.radians(np.diff(angles)) / 2
+        at = angles[:-1] + share * np.diff(angles)
+        slope = mechanism.slope(CrankAngle.of(at + self.setting.own_dead_centre)) / mechanism.stroke
+        pieces = along.weights @ ((p[:-1] + share * np.diff(p)) * slope)
+        terms = pieces * np.radians(np.diff(angles)) / (2 if self.setting.head_end else -2)
         total = float(terms.sum())
         return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
 
-    def _slope(self, after: Array) -> Array:
-        """Return dz/dφ of the stroke fraction, so many degrees after the chamber's dead centre."""
-        mechanism = self.setting.mechanism
-        slope = mechanism.slope(CrankAngle.of(after + self.setting.own_dead_centre)) / mechanism.stroke
-        return np.asarray(slope if self.setting.head_end else -slope)
-
-    def then(self, corrected: float) -> str:
-        """Return p_i as corrected, in Pa, and as it is."""
-        now, then = in_bar(self.p_i()), in_bar(corrected)
+    def then(self, after: Array | None = None, pressures: Array | None = None, times: float = 1.0) -> str:
+        """Return p_i of other angles, or other pressures, or multiplied, and as it is."""
+        now, then = in_bar(self.p_i()), in_bar(times * self.p_i(after, pressures))
         return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"
 
     def put_later(self, degrees: float) -> tuple[str, str]:
         """Return the key that puts the dead centre so many degrees later, and what it does to p_i."""
         zero, period = self.trace.as_written(self.trace.angle_zero + degrees), self.trace.period
         shown = round((zero + 180) % period - 180, 3)
-        return f"'angle_zero: {shown:g} deg'", self.then(self.p_i(self.after - degrees))
+        return f"'angle_zero: {shown:g} deg'", self.then(self.after - degrees)
 
 
 def in_bar(pressure: float) -> str:
@@ -169,15 +172,14 @@ def _turns_in_pairs(reading: Reading) -> str:
     peaks = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
         return (
-            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; p_i is then "
-            f"{in_bar(2 * reading.p_i())} instead of {in_bar(reading.p_i())}"
+            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {reading.then(times=2.0)}"
         )
     joined = joined_in_pairs(trace.samples).mean(axis=0)
     step = trace.period / (len(joined) - 1)
     after = reading.after[0] - trace.angles[0] + step * np.arange(len(joined))
     return (
         f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
-        f"{reading.then(reading.p_i(after, joined))}"
+        f"{reading.then(after, joined)}"
     )
 
 
@@ -211,7 +213,7 @@ def _rounded_angles(reading: Reading) -> str:
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
     key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
     even = reading.after[0] + reading.step * np.arange(len(trace.angles))
-    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(reading.p_i(even))}"
+    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(even)}"
 
 
 def _drift(reading: Reading) -> str:
@@ -219,35 +221,31 @@ def _drift(reading: Reading) -> str:
     p, trace = reading.p, reading.trace
     jump = float(drift_of(trace, p[np.newaxis])[0])
     closes = abs(float(p[0]) - reading.low)
-    if abs(jump) <= max(_RANGE * closes, _LEAST * reading.setting.ambient, _bends(reading)):
+    least = max(_RANGE * closes, _LEAST * reading.setting.ambient)
+    if trace.even:
+        least = max(least, _SURE_OF_NOISE * noise_of(p[:-1]))
+    if trace.completed:  # what resolution, and the bend of the pressure, may do to a jump between lines
+        bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
+        steps = np.abs(np.diff(p))
+        resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
+        least = max(least, resolution, 3.0 * float(bends.max()))
+    if abs(jump) <= least:
         return ""
-    dense = len(p) >= _FEWEST and trace.angles[-1] - trace.angles[-4] <= 3 * LAST
-    if dense and 3 * abs(float(extrapolated(trace.angles, p[np.newaxis])[0])) < abs(jump) and not trace.completed:
+    dense = len(p) >= _FEWEST and trace.angles[-1] - trace.angles[-4] <= 3 * LAST and not trace.completed
+    if dense and 3 * abs(float(drift_of(trace, p[np.newaxis], extrapolated=True)[0])) < abs(jump):
         angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
         return (
             f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} "
             f"and comes back to it just before: leave that sample out; "
-            f"{reading.then(reading.p_i(pressures=np.append(p[:-1], p[0])))}"
+            f"{reading.then(pressures=np.append(p[:-1], p[0]))}"
         )
-    levelled = reading.p_i(pressures=without_drift(trace, p[np.newaxis])[0])
-    if abs(levelled - reading.p_i()) <= _WORTH_IT * abs(reading.p_i()):
+    (levelled,) = without_drift(trace, p[np.newaxis])
+    if abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
         return ""
     return (
         f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
-        f"'drift: linear'; {reading.then(levelled)}"
+        f"'drift: linear'; {reading.then(pressures=levelled)}"
     )
-
-
-def _bends(reading: Reading) -> float:
-    """Return in Pa what noise, resolution, and the bend of the pressure may do to the jump where the cycle closes."""
-    p = reading.p
-    noise = _SURE_OF_NOISE * (noise_of(p[:-1]) if reading.trace.even else 0.0)
-    if not reading.trace.completed:
-        return noise
-    bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
-    steps = np.abs(np.diff(p))
-    resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
-    return max(noise, resolution, 3.0 * float(bends.max()))
 
 
 # sign and unit
@@ -278,7 +276,7 @@ def _inverted(reading: Reading) -> str:
         return ""
     return (
         f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: is it inverted? write "
-        f"'scale: {-reading.trace.scale:g}'; {reading.then(-reading.p_i())}"
+        f"'scale: {-reading.trace.scale:g}'; {reading.then(times=-1.0)}"
     )
 
 
@@ -305,14 +303,13 @@ def _unit(reading: Reading) -> str:
     factor, unit = _likely_unit(reading, least, max(2 * compressed, 1.0), max(most, ambient), _ENGINE if flat else 0.0)
     if factor == 1:
         return ""
-    times = max(factor, 1 / factor)
-    what = f"{times:.3g}" if times < 1000 else f"{times:.0f}"
-    what += " times too large" if factor < 1 else " times too small"
+    times, size = max(factor, 1 / factor), "large" if factor < 1 else "small"
+    what = f"{times:.3g} times too {size}" if times < 1000 else f"{times:.0f} times too {size}"
     power = math.log10(factor)
     scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (
         f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'"
-        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(factor * reading.p_i())}"
+        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(times=factor)}"
     )
 
 
@@ -357,52 +354,46 @@ _MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is
 
 
 def _backward(reading: Reading) -> str:
+    peak_at = reading.peak_at
     judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
-    early = -60.0 < reading.peak_at < -_MOTORED_LEAD - reading.step
-    if not judged or not early or reading.p_i() >= 0 or _motored(reading):
+    early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step and reading.usual[0] <= -peak_at <= reading.usual[1]
+    if not judged or not early or reading.motored or reading.p_i() >= 0:
         return ""
-    turned = reading.p_i(-reading.after[::-1], reading.p[::-1])
-    if turned <= 0 or not _is_usual(reading, -reading.peak_at):
+    turned = -reading.after[::-1], reading.p[::-1]
+    if reading.p_i(*turned) <= 0:
         return ""
     return (
-        f"the peak is {-reading.peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
-        f"count against the rotation? write 'angle_sense: against'; {reading.then(turned)}"
+        f"the peak is {-peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
+        f"count against the rotation? write 'angle_sense: against'; {reading.then(*turned)}"
     )
 
 
-def _is_usual(reading: Reading, place: float) -> bool:
-    low, high = _FIRED if reading.setting.cycle == 720 else _TWO_STROKE
-    return low <= place <= high
-
-
 def _peak_elsewhere(reading: Reading) -> str:
-    if not reading.engine or _is_usual(reading, reading.peak_at):
+    peak_at, cycle, zero = reading.peak_at, reading.setting.cycle, reading.trace.angle_zero
+    if not reading.engine or reading.usual[0] <= peak_at <= reading.usual[1]:
         return ""
-    cycle, top = reading.setting.cycle, float(reading.place[reading.top])
-    quarters = np.arange(90.0, cycle, 90.0).tolist()
-    moved = {quarter: (reading.peak_at - quarter + cycle / 2) % cycle - cycle / 2 for quarter in quarters}
     # by quarter turns, or else to where such a peak usually is
-    later = next((quarter for quarter, peak in moved.items() if _AIMED[0] <= peak <= _AIMED[1]), None)
-    if _motored(reading):
-        later = reading.peak_at
-    elif later is None:
-        zero = reading.trace.angle_zero
-        later = round(zero + reading.peak_at - _USUAL) - zero
+    by_quarters = (
+        quarter
+        for quarter in np.arange(90.0, cycle, 90.0).tolist()
+        if _AIMED[0] <= (peak_at - quarter + cycle / 2) % cycle - cycle / 2 <= _AIMED[1]
+    )
+    later = peak_at if reading.motored else next(by_quarters, round(zero + peak_at - _USUAL) - zero)
     key, effect = reading.put_later(later)
     where = "firing dead centre" if cycle == 720 else "dead centre"
-    gas_exchange = ", in the gas exchange" if abs(reading.peak_at) > 180 else ""
+    gas_exchange = ", in the gas exchange" if abs(peak_at) > 180 else ""
     return (
-        f"the peak is {abs(top):.4g} deg {'after' if reading.peak_at > 0 else 'before'} the {where}"
+        f"the peak is {abs(reading.place[reading.top]):.4g} deg {'after' if peak_at > 0 else 'before'} the {where}"
         f"{gas_exchange}: write {key}; {effect}"
     )
 
 
 def _motored_peak(reading: Reading) -> str:
     peak, after = reading.vertex, reading.peak_at
-    if peak is None or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
+    if peak is None or not reading.motored or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
         return ""
     sure = _OFF + _SURE * peak.error
-    if -_MOTORED_LEAD - sure <= after <= sure or not _motored(reading):
+    if -_MOTORED_LEAD - sure <= after <= sure:
         return ""
     key, effect = reading.put_later(after)
     return (
@@ -410,19 +401,6 @@ def _motored_peak(reading: Reading) -> str:
         f"the dead centre; that of a motored engine is at it or just before: check angle_zero; with "
         f"{key} {effect.replace('is then', 'is')}"
     )
-
-
-def _motored(reading: Reading) -> bool:
-    """Judge by the shape whether nothing burns: the two sides of the peak are alike.
-
-    The sign of the work does not show it, since a motored trace that is too late does work.
-    """
-    trace, p = reading.trace, reading.p + reading.setting.lift
-    around = trace.angles[reading.top] + np.linspace(-_AROUND, _AROUND, 21)
-    places = np.multiply.outer([-1.0, 1.0], _MOTORED_SIDES)[..., np.newaxis] + around
-    before, after = np.interp(places, trace.angles, p, period=trace.period).mean(axis=-1)
-    alike = (_MOTORED_RATIO[0] * before <= after) & (after <= _MOTORED_RATIO[1] * before)
-    return bool(alike.all() and p[reading.top] > _MOTORED_RISE * max(before[-1], after[-1]))
 
 
 # level, and the exponents of compression and expansion
@@ -489,8 +467,9 @@ def _exponents(reading: Reading) -> str:
     if _is_sensible(reading.exponent(COMPRESSION, raised=swapped)):
         word = "absolute" if swapped < 0 else "gauge"
         return f"{seen}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
-    volumes, absolute = volumes_in(reading.setting, reading.trace.clearance or 0.0, reading.place, COMPRESSION)
-    pressures = reading.p[absolute] + reading.setting.lift
+    inside = (COMPRESSION[0] <= reading.place) & (reading.place <= COMPRESSION[1])
+    volumes = reading.setting.stroke_fraction(reading.place[inside]) + (reading.trace.clearance or 0.0)
+    pressures = reading.p[inside] + reading.setting.lift
     raised = -float(np.polyfit(volumes**-_AIR, pressures, 1)[1])  # p = C V^−n − Δp
     level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
     return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
@@ -498,14 +477,11 @@ def _exponents(reading: Reading) -> str:
 
 def _common_exponent(reading: Reading) -> float:
     """Return by how many degrees later compression and expansion have one exponent, by secants; nan where not."""
-
-    def apart(later: float) -> float:
+    now, later = math.nan, 0.0
+    for step in range(4):
         compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
-        return compression.value - expansion.value if compression and expansion else math.nan
-
-    now, later = apart(0.0), 1.0
-    for _ in range(3):
-        later *= now / (now - apart(later) or math.nan)
+        apart = compression.value - expansion.value if compression and expansion else math.nan
+        now, later = (now, later * now / (now - apart or math.nan)) if step else (apart, 1.0)
     return later
 
 

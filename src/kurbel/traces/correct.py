@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Indivisible
+from kurbel.arrays import Array, Indivisible
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Rule
 from kurbel.errors import refused
@@ -23,6 +23,11 @@ TURNS = {"two-stroke": 1, "four-stroke": 2}
 PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
+
+
+def period_of(span: float) -> float:
+    """Return 360 or 720, the shortest cycle that angles over so many degrees fit into; 0 if neither."""
+    return next((period for period in PERIODS if span <= period * (1 + _ROUNDING)), 0.0)
 
 
 @dataclass(frozen=True)
@@ -71,8 +76,8 @@ class Trace(Indivisible):
     def __post_init__(self) -> None:
         if self.angles.ndim != 1 or len(self.angles) < 2 or self.samples.shape[1:] != self.angles.shape:
             refused("a trace needs as many pressures as angles, two or more")
-        finite = np.isfinite(self.angles).all() and np.isfinite(self.samples).all()
-        if not finite or (np.diff(self.angles) < 0).any() or not self.period:
+        rising = (np.diff(self.angles) >= 0).all() and self.period  # nan is not
+        if not rising or not np.isfinite(self.samples).all():
             refused("a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg")
 
     @cached_property
@@ -88,7 +93,8 @@ class Trace(Indivisible):
     def period(self) -> float:
         """360 or 720; 0 where the angles cover neither."""
         span = float(self.angles[-1] - self.angles[0])
-        return next((period for period in PERIODS if abs(span - period) <= _ROUNDING * period), 0.0)
+        period = period_of(span)
+        return period if span >= period * (1 - _ROUNDING) else 0.0
 
     @property
     def even(self) -> bool:
@@ -185,11 +191,21 @@ LAST = 2.0
 
 
 def corrected(trace: Trace, setting: Setting) -> Array:
-    """Return the pressures (m, n) in Pa of all cycles, without drift, and pegged; as the trace counts them."""
-    samples = trace.samples
-    if trace.level:
-        samples = without_drift(trace, samples)
-    return samples if trace.pegging is None else samples + _lift(trace, samples, trace.pegging, setting)
+    """Return the pressures (m, n) in Pa of all cycles, without drift, and pegged; as the trace counts them.
+
+    What is added to a cycle gives it the known pressure where that is known.
+    """
+    samples, pegging = without_drift(trace, trace.samples) if trace.level else trace.samples, trace.pegging
+    if pegging is None:
+        return samples
+    inner, outer = setting.mechanism.dead_centres()
+    angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
+    if pegging.angle is not None and pegging.pressure is not None:
+        angle, pressure = inner + pegging.angle, pegging.pressure
+    turned = trace.angles + setting.shift(trace) - angle
+    away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
+    near = away <= max(_AROUND, float(away.min()))
+    return np.asarray(samples + (pressure - samples[:, near].mean(axis=1, keepdims=True)))
 
 
 def without_drift(trace: Trace, samples: Array) -> Array:
@@ -199,32 +215,18 @@ def without_drift(trace: Trace, samples: Array) -> Array:
     return np.concatenate((levelled[:, :-1], levelled[:, :1]), axis=1) if trace.completed else levelled
 
 
-def drift_of(trace: Trace, samples: Array) -> Array:
-    """Return by how much Pa each cycle (m,) ends too low to go on as it has begun."""
-    return extrapolated(trace.angles, samples) if trace.completed else np.asarray(samples[:, 0] - samples[:, -1])
+def drift_of(trace: Trace, samples: Array, extrapolated: bool = False) -> Array:
+    """Return by how much Pa each cycle (m,) ends too low to go on as it has begun.
 
-
-def extrapolated(angles: Array, samples: Array) -> Array:
-    """Return the same in Pa where the closing sample is missing, or not trusted: by lines through both ends."""
-    to_end, from_begin = angles[:-1] - angles[-1], angles - angles[0]
+    extrapolated: by lines through both ends, as where the closing sample is missing, since it is not trusted.
+    """
+    if not extrapolated and not trace.completed:
+        return np.asarray(samples[:, 0] - samples[:, -1])
+    to_end, from_begin = trace.angles[:-1] - trace.angles[-1], trace.angles - trace.angles[0]
     last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
     before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
     after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]
     return np.asarray(after - before)
-
-
-def _lift(trace: Trace, samples: Array, pegging: KnownLevel, setting: Setting) -> Array:
-    """Return what is added (m, 1) in Pa to every cycle, so that it has the known pressure where that is known."""
-    inner, outer = setting.mechanism.dead_centres()
-    if pegging.angle is not None and pegging.pressure is not None:
-        angle, pressure = inner + pegging.angle, pegging.pressure
-    else:
-        angle = (outer if setting.head_end else inner) + (360.0 if setting.cycle == 720 else 0.0)
-        pressure = setting.ambient if setting.absolute else 0.0
-    turned = trace.angles + setting.shift(trace) - angle
-    away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
-    near = away <= max(_AROUND, float(away.min()))
-    return np.asarray(pressure - samples[:, near].mean(axis=1, keepdims=True))
 
 
 _OF_MEDIAN = 1.4826
@@ -261,15 +263,6 @@ class Exponent(NamedTuple):
     error: float
 
 
-def volumes_in(setting: Setting, clearance: float, after: Array, stretch: tuple[float, float]) -> tuple[Array, Flags]:
-    """Return the volumes (k,), over that of the stroke, at samples in a stretch of angle, and which they are (n,).
-
-    after (n,): degrees from the dead centre.
-    """
-    inside = (after >= stretch[0]) & (after <= stretch[1])
-    return setting.stroke_fraction(after[inside]) + clearance, inside
-
-
 def exponent(
     setting: Setting, clearance: float | None, after: Array, absolute: Array, stretch: tuple[float, float]
 ) -> Exponent | None:
@@ -278,10 +271,12 @@ def exponent(
     after (n,): degrees from the dead centre; absolute (n,): pressures in Pa. None without a clearance, with fewer than
     five samples there, or where the pressure is not above the vacuum.
     """
-    volumes, inside = volumes_in(setting, clearance or 0.0, after, stretch)
-    if clearance is None or len(volumes) < _FEWEST or not (absolute[inside] > 0).all():
+    inside = (after >= stretch[0]) & (after <= stretch[1])
+    pressures = absolute[inside]
+    if clearance is None or len(pressures) < _FEWEST or not (pressures > 0).all():
         return None
-    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, absolute[inside]))
+    volumes = setting.stroke_fraction(after[inside]) + clearance
+    x, y = (np.log(one) - np.log(one).mean() for one in (volumes, pressures))
     slope = float(x @ y / (x @ x))
     left = y - slope * x
     return Exponent(0.0 - slope, math.sqrt(float(left @ left / (x @ x)) / (len(x) - 2)))

@@ -14,7 +14,7 @@ from kurbel.arrays import Array, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError
-from kurbel.traces.correct import PERIODS
+from kurbel.traces.correct import PERIODS, period_of
 from kurbel.traces.read import LIMITS, Layout, read_table
 
 
@@ -53,9 +53,6 @@ class Recording(NamedTuple):
         raise RuleError(place._replace(message=f"{place.message}: {message}" if place.message else message))
 
 
-_BY_TIME = "; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
-
-
 def samples_of_file(
     file: str, layout: Layout, kind: str, base: Callable[[Array], Array], against: bool = False
 ) -> Samples:
@@ -70,11 +67,11 @@ def samples_of_file(
     try:
         found = whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
     except RuleError as error:
-        if layout.recorded_speed is None:
-            raise
         (fault,) = error.faults
-        asked = "" if "angle_unit" in fault.message else _BY_TIME
-        raise RuleError(fault._replace(message=fault.message + asked)) from None
+        if layout.recorded_speed is None or "angle_unit" in fault.message:
+            raise
+        asked = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
+        raise RuleError(fault._replace(message=asked)) from None
     return found._replace(headed=table.headed)
 
 
@@ -93,17 +90,11 @@ def whole_cycles(
         in_time = recording.taken(slice(None, None, -1)) if (steps > 0).sum() > (steps < 0).sum() else recording
         recording = in_time._replace(angles=-in_time.angles)
     _refuse_no_numbers(recording, kind)
-    recording, turned = _begun_at_its_start(recording)
-    _refuse_disorder(recording)
+    recording, turned = _in_order(recording)
     recording, left_out = _laid_over_one_lap(recording)
     recording, twice = _without_twins(recording)
-    span = float(np.ptp(recording.angles))
-    period = next((p for p in PERIODS if span <= p * (1 + 1e-9)), 0.0)
-    if not period:
-        recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
-    if len(recording.angles) > MOST_POINTS:
-        recording.refuse(MOST_POINTS, f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}")
-    return _closed(recording, period, (*turned, *left_out, *twice))
+    samples = _closed(recording)
+    return samples._replace(notes=(*turned, *left_out, *twice, *samples.notes))
 
 
 # one recording, as it was written
@@ -123,35 +114,34 @@ def _refuse_no_numbers(recording: Recording, kind: str) -> None:
             recording.refuse(top, f"the {what} {given[row, top]:g} {beyond}")
 
 
-def _begun_at_its_start(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
-    """Return a recording of one cycle that begins within it from its smallest angle on, others as they are."""
-    angles = recording.angles
-    back = np.flatnonzero(np.diff(angles) < 0)
-    falls = len(back) == 1 and 180 < angles[back[0]] - angles[back[0] + 1] <= PERIODS[-1]
-    if not falls or angles[-1] > angles[0]:
-        return recording, ()
-    first = int(back[0]) + 1
-    note = f"the angle begins anew at {angles[first]:.10g} deg; the samples from there on come first"
-    return recording.taken(np.roll(np.arange(len(angles)), -first)), (note,)
+def _in_order(recording: Recording) -> tuple[Recording, list[str]]:
+    """Return a recording of one cycle that begins within it from its smallest angle on, others as they are, and notes.
 
-
-def _refuse_disorder(recording: Recording) -> None:
-    """Raise RuleError where the angle goes back by less than half a turn: there no turn ends."""
+    Raises RuleError where the angle goes back by less than half a turn: there no turn ends.
+    """
+    notes: list[str] = []
     angles = recording.angles
     steps = np.diff(angles)
+    falls = np.flatnonzero(steps < 0)
+    if len(falls) == 1 and 180 < -steps[falls[0]] <= PERIODS[-1] and angles[-1] <= angles[0]:
+        first = int(falls[0]) + 1
+        notes = [f"the angle begins anew at {angles[first]:.10g} deg; the samples from there on come first"]
+        recording = recording.taken(np.roll(np.arange(len(angles)), -first))
+        angles = recording.angles
+        steps = np.diff(angles)
     back = np.flatnonzero((steps < 0) & (steps >= -180))
-    if len(back) > 1 and len(back) >= 0.9 * len(steps) and len(back) == np.count_nonzero(steps < 0):
-        message = (
-            f"the angle falls from {angles[0]:.10g} to {angles[-1]:.10g} deg: the rows run backward; put them in order "
-            "of the angle, or write 'angle_sense: against' if the encoder counts against the rotation"
-        )
-        recording.refuse(int(back[0]) + 1, message)
     if len(back):
         i = int(back[0]) + 1
-        order = "put the points in order of the angle"
-        recording.refuse(i, f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; {order}")
+        message = f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle"
+        if len(back) > 1 and len(back) >= 0.9 * len(steps) and len(back) == len(falls):
+            message = (
+                f"the angle falls from {angles[0]:.10g} to {angles[-1]:.10g} deg: the rows run backward; put them in "
+                "order of the angle, or write 'angle_sense: against' if the encoder counts against the rotation"
+            )
+        recording.refuse(i, message)
     if len(angles) < 2 or (angles[0] == angles[-1] and not (steps < 0).any()):
         recording.refuse(0, "a trace needs samples at two angles or more")
+    return recording, notes
 
 
 # many laps, one below the other
@@ -164,82 +154,64 @@ _REST = 0.05
 """Share of a lap from which on a note says that what follows the last whole one is left out."""
 
 
-def _laid_over_one_lap(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
+def _laid_over_one_lap(recording: Recording) -> tuple[Recording, list[str]]:
     """Return all laps over the angles of the first, or a recording of one lap as it is, and notes.
 
-    What follows the last whole lap is left out. Raises RuleError for laps with holes.
+    Between samples at other angles than those of the first lap they are straight. What follows the last whole lap is
+    left out. Raises RuleError for laps with holes, and for an angle that counts on over laps that are not alike, each
+    and the next but one: it may count samples.
     """
-    angles = recording.angles
-    begins_anew = bool((np.diff(angles) < 0).any())
-    lap = _lap_of(recording) if begins_anew else PERIODS[0] * (angles[-1] - angles[0] > PERIODS[-1] * (1 + 1e-9))
-    if not lap:
-        return recording, ()
-    counting_on = _counting_on(recording, lap)
-    angles = counting_on.angles
+    begins_anew = bool((np.diff(recording.angles) < 0).any())
+    if not begins_anew and period_of(float(np.ptp(recording.angles))):
+        return recording, []
+    recording, lap = _counting_on(recording) if begins_anew else (recording, PERIODS[0])
+    angles, values = recording.angles, recording.values
     step = usual_step(angles)
     laps = int((angles[-1] - angles[0] + 1.5 * min(step, lap / 20)) // lap)
     bounds = np.searchsorted(angles, angles[0] + lap * np.arange(laps + 1) - min(1e-6 * lap, step / 2))
     if laps < 2 or (np.diff(bounds) < 2).any():
-        return counting_on, ()
-    _refuse_large_holes(counting_on)
-    found = _over_the_first(counting_on, bounds, lap)
-    if not begins_anew:
-        _refuse_unlike(found, len(angles))
+        return recording, []
+    _refuse_large_holes(recording)
+
+    count = int(bounds[1])
+    first = recording.taken(slice(count))
+    wanted = first.angles + lap * np.arange(laps)[:, np.newaxis]
+    even = (np.diff(bounds) == count).all()
+    if even and np.abs(angles[: bounds[-1]].reshape(laps, count) - wanted).max() <= _SAME_ANGLE * lap / count:
+        each = values[:, : bounds[-1]].reshape(-1, count)
+    else:
+        each = np.concatenate([np.interp(wanted, angles, column) for column in values])
+    swing = each - each.mean()
+    whole = float((swing**2).mean())
+    if not begins_anew and len(each) > 2 and whole and float((swing[2:] * swing[:-2]).mean()) < _LEAST_ALIKE * whole:
+        cycle = PERIODS[-1]
+        message = (
+            f"the angle counts on over {len(each)} turns that are not alike; if it numbers samples, write how "
+            f"far apart they are, such as 'angle_step: {cycle / len(angles):.4g} deg' for one cycle of {cycle:g} deg"
+        )
+        first.refuse(0, message)
     left = len(angles) - int(bounds[-1])
-    notes = (f"the {left} samples after lap {laps} of {lap:g} deg are left out",) if left > _REST * bounds[1] else ()
-    return found, notes
+    notes = [f"the {left} samples after lap {laps} of {lap:g} deg are left out"] if left > _REST * count else []
+    return first._replace(values=each), notes
 
 
-def _lap_of(recording: Recording) -> float:
-    """Return after how many degrees the angle begins anew; raises RuleError for more than two turns."""
-    span = float(np.ptp(recording.angles))
-    for period in PERIODS:
-        if span <= period * (1 + 1e-9):
-            return period
-    back = int(np.flatnonzero(np.diff(recording.angles) < 0)[0])
-    message = (
-        f"the angle begins anew after {span:.10g} deg; a turn has 360, a four-stroke cycle 720 deg: other units?"
-        f"{' Or is the first row a heading? Then skip it' if back == 0 else ''}"
-    )
-    return recording.refuse(back + 1, message)
+def _counting_on(recording: Recording) -> tuple[Recording, float]:
+    """Return a recording whose angle begins anew with angles that count on, and after how many degrees it does.
 
-
-def _counting_on(recording: Recording, lap: float) -> Recording:
-    """Return the recording with angles that count on; a closing sample gives way to the first of the next lap."""
-    steps = np.diff(recording.angles)
+    A closing sample gives way to the first of the next lap. Raises RuleError for more than two turns.
+    """
+    span, steps = float(np.ptp(recording.angles)), np.diff(recording.angles)
+    lap = period_of(span)
+    if not lap:
+        back = int(np.flatnonzero(steps < 0)[0])
+        message = (
+            f"the angle begins anew after {span:.10g} deg; a turn has 360, a four-stroke cycle 720 deg: other units?"
+            f"{' Or is the first row a heading? Then skip it' if back == 0 else ''}"
+        )
+        recording.refuse(back + 1, message)
     counted = recording.angles + lap * np.concatenate(([0], np.cumsum(steps < 0)))
     closing = np.append((steps < 0) & (np.diff(counted) <= 1e-9 * lap), False)
-    return recording._replace(angles=counted).taken(~closing)
-
-
-def _over_the_first(recording: Recording, bounds: Indices, lap: float) -> Recording:
-    """Return all laps over the angles of the first, straight between samples where they have not the same."""
-    first, laps, count = recording.taken(slice(bounds[1])), len(bounds) - 1, int(bounds[1])
-    wanted = first.angles + lap * np.arange(laps)[:, np.newaxis]
-    if (np.diff(bounds) == count).all():
-        own = recording.angles[: bounds[-1]].reshape(laps, count)
-        if np.abs(own - wanted).max() <= _SAME_ANGLE * lap / count:
-            return first._replace(values=recording.values[:, : bounds[-1]].reshape(-1, count))
-    each = [np.interp(wanted, recording.angles, column) for column in recording.values]
-    return first._replace(values=np.concatenate(each))
-
-
-def _refuse_unlike(recording: Recording, samples: int) -> None:
-    """Raise RuleError for laps of an angle that counts on which are no turns of an engine: it may count samples.
-
-    Likeness of every lap and the next but one: 1 for the same again, about 0 for others.
-    """
-    laps = recording.values
-    swing = laps - laps.mean()
-    whole = float((swing**2).mean())
-    if len(laps) < 3 or not whole or float((swing[2:] * swing[:-2]).mean()) >= _LEAST_ALIKE * whole:
-        return
-    cycle = PERIODS[-1]
-    message = (
-        f"the angle counts on over {len(laps)} turns that are not alike; if it numbers samples, write how "
-        f"far apart they are, such as 'angle_step: {cycle / samples:.4g} deg' for one cycle of {cycle:g} deg"
-    )
-    recording.refuse(0, message)
+    return recording._replace(angles=counted).taken(~closing), lap
 
 
 # one lap: twins, holes, and the closing sample
@@ -250,10 +222,11 @@ _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
 """(degrees, times the median step) beyond both of which no straight line stands for what was not measured."""
 _WIDE = 3.0
 """Times the usual step beyond which samples are missing, and a note says so."""
+_HOLE = "no samples from {:.10g} to {:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
 
 
-def _without_twins(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
-    """Return it with samples that are given twice only once; raises RuleError for three at one angle."""
+def _without_twins(recording: Recording) -> tuple[Recording, list[str]]:
+    """Return it with samples that are given twice only once, and notes; raises RuleError for three at one angle."""
     angles = recording.angles
     thrice = np.flatnonzero(angles[2:] == angles[:-2])
     if len(thrice):
@@ -261,29 +234,36 @@ def _without_twins(recording: Recording) -> tuple[Recording, tuple[str, ...]]:
         finer = f"; write 'angle_step' if the angles are only rounded ({len(thrice) + 1} such samples)"
         recording.refuse(i, f"three points at {angles[i]:.10g} deg; a jump has two{finer if len(thrice) > 1 else ''}")
     twins = np.diff(angles) == 0
-    if np.count_nonzero(twins) >= _ROUNDED * len(angles) > 2:
-        return recording, ()
-    twins &= (np.diff(recording.values) == 0).all(axis=0)
-    if not twins.any():
-        return recording, ()
-    return recording.taken(np.append(True, ~twins)), (f"{int(twins.sum())} samples given twice count once",)
+    same = twins & (np.diff(recording.values) == 0).all(axis=0)
+    if np.count_nonzero(twins) >= _ROUNDED * len(angles) > 2 or not same.any():
+        return recording, []
+    return recording.taken(np.append(True, ~same)), [f"{int(same.sum())} samples given twice count once"]
 
 
-def _closed(recording: Recording, period: float, notes: tuple[str, ...]) -> Samples:
+def _closed(recording: Recording) -> Samples:
     """Close the cycle with the first sample where only the last one is missing; raises RuleError for large holes."""
     angles, values, *_ = recording
+    span = float(np.ptp(angles))
+    period = period_of(span)
+    if not period:
+        recording.refuse(-1, f"the samples run over {span:g} deg; cut whole cycles out")
+    if len(angles) > MOST_POINTS:
+        recording.refuse(MOST_POINTS, f"one cycle has more than {MOST_POINTS} samples; thin them out{LIMITS}")
     end = float(angles[0]) + period
     missing = end - float(angles[-1])
     if missing > 1.5 * usual_step(angles):
-        recording.refuse(-1, _hole(float(angles[-1]), end) + _counted_otherwise(float(angles[-1] - angles[0])))
+        other = "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say" if span < 10 else ""
+        if min(abs(span - 2 * math.pi), abs(span / 2 - 2 * math.pi)) < 0.2:
+            other = "; are these radians? Then write 'angle_unit: rad'"
+        recording.refuse(-1, _HOLE.format(angles[-1], end) + other)
     completed = missing > 1e-9 * period
     if completed:
         values = np.append(values, values[:, :1], axis=1)
     angles = np.append(angles if completed else angles[:-1], end)
     _refuse_large_holes(recording._replace(angles=angles))
     wide = np.flatnonzero(np.diff(angles) > _WIDE * usual_step(angles))[:5].tolist()
-    small = (f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them" for i in wide)
-    return Samples(angles, values, (*notes, *small), completed)
+    notes = (f"no samples from {angles[i]:.10g} to {angles[i + 1]:.10g} deg; a straight line joins them" for i in wide)
+    return Samples(angles, values, tuple(notes), completed)
 
 
 def _refuse_large_holes(recording: Recording) -> None:
@@ -295,7 +275,7 @@ def _refuse_large_holes(recording: Recording) -> None:
     wide = np.flatnonzero(steps > min(max(degrees, times * median) for degrees, times in _LARGE_HOLES))
     if len(wide):
         i = int(wide[0])
-        recording.refuse(i, _hole(float(angles[i]), float(angles[i + 1])))
+        recording.refuse(i, _HOLE.format(angles[i], angles[i + 1]))
 
 
 def usual_step(angles: Array) -> float:
@@ -303,18 +283,3 @@ def usual_step(angles: Array) -> float:
     steps = np.sort(np.diff(angles))
     passed = np.cumsum(steps)
     return float(steps[np.searchsorted(passed, passed[-1] / 2)])
-
-
-def _hole(begin: float, end: float) -> str:
-    return f"no samples from {begin:.10g} to {end:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
-
-
-def _counted_otherwise(span: float) -> str:
-    """Return what to write if angles that run over so few degrees are none; '' where they are too many for that.
-
-    >>> _counted_otherwise(12.56)
-    "; are these radians? Then write 'angle_unit: rad'"
-    """
-    if any(abs(span / turns - 2 * math.pi) < 0.2 for turns in (1, 2)):
-        return "; are these radians? Then write 'angle_unit: rad'"
-    return "; are these times? Then write 'angle_unit: s' and 'recorded_speed: 1500 rpm', say" if span < 10 else ""

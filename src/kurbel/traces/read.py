@@ -37,7 +37,9 @@ SECONDS = {"s": 1.0, "ms": 1e-3}
 """Unit of time in the column of angles -> seconds."""
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 """What could be the figures of a file: nothing else of it is shown, since any other file may hold secrets."""
+_NUMBER = re.compile(r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII)
 _THOUSANDS = re.compile(r"[-+]?[0-9]{1,3}([.,][0-9]{3})+([.,][0-9]+)?")
+_SPLIT_DECIMALS = re.compile(r"^[^#\n]*,[0-9]+,0[0-9][^#\n]*", re.MULTILINE)
 _UNIT = re.compile(r"[\[(]([^\])]+)[\])]")
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
@@ -68,30 +70,25 @@ class Layout(NamedTuple):
         """What splits a line; None for any run of blanks."""
         return None if self.delimiter == "space" else DELIMITERS[self.delimiter]
 
-    @property
-    def ambiguous(self) -> bool:
-        """Whether the same sign is between columns and in numbers, which only quotation marks can tell apart."""
-        return self.delimiter == self.decimal
-
     def tidied(self, text: str) -> str:
-        """Return a text with decimal points, and without quotation marks, between which a comma is a decimal one."""
+        """Return a text with decimal points, and without quotation marks, between which a comma is a decimal one.
+
+        Where the same sign is between columns and in numbers only the marks tell them apart.
+        """
+
+        def unquoted(found: re.Match[str]) -> str:
+            cell = found[1].strip().replace(DECIMALS[self.decimal], ".")
+            return found[0] if DELIMITERS[self.delimiter] in cell else cell  # without its marks it would be two
+
         if '"' in text:
-            text = _QUOTED.sub(self._unquoted, text)
-        return text if self.decimal == "point" or self.ambiguous else text.replace(",", ".")
+            text = _QUOTED.sub(unquoted, text)
+        return text if self.decimal in ("point", self.delimiter) else text.replace(",", ".")
 
-    def _unquoted(self, found: re.Match[str]) -> str:
-        """Return a cell without its quotation marks; with them, if without it would be two."""
-        cell = found[1].strip().replace(DECIMALS[self.decimal], ".")
-        return found[0] if DELIMITERS[self.delimiter] in cell else cell
-
-    def cells(self, line: str) -> list[str]:
-        """Return the cells of a line."""
-        return self.tidied(line).split(self.between)
-
-    def is_row(self, line: str) -> bool:
-        """Return whether a line has a number in every wanted column."""
-        cells = self.cells(line.partition("#")[0].strip())
-        return len(cells) >= max(self.wanted) and all(_is_number(cells[one - 1].strip()) for one in self.wanted)
+    def read(self, line: str) -> tuple[list[str], int]:
+        """Return the cells of a line, and the first wanted column that has no number; 0 for a row of figures."""
+        cells = [cell.strip() for cell in self.tidied(line.partition("#")[0].strip()).split(self.between)]
+        bad = (one for one in self.wanted if one > len(cells) or not _NUMBER.fullmatch(cells[one - 1]))
+        return cells, next(bad, 0)
 
 
 class Table(NamedTuple):
@@ -109,7 +106,7 @@ class Table(NamedTuple):
 def read_table(file: str, layout: Layout) -> Table:
     """Return angles and columns of a file; raises RuleError with the line of the first that cannot be read."""
     text = text_of(file)
-    if layout.ambiguous and '"' not in text:
+    if layout.delimiter == layout.decimal and '"' not in text:
         refused("a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
     numbers = _numbers(text, layout)
     if not numbers.size:
@@ -140,7 +137,8 @@ def read_table(file: str, layout: Layout) -> Table:
 def _numbers(text: str, layout: Layout) -> Array:
     """Return the wanted columns (n, k); look-alikes of a blank or a minus are sought only where one is in the way.
 
-    Kept, since designs that vary what is known of a trace have one text in common.
+    Kept, since designs that vary what is known of a trace have one text in common. Refuses columns between which
+    commas seem to be decimal ones, too: '0,37,05' without any point.
     """
     for one in (text, familiar(text)):
         with warnings.catch_warnings(), suppress(ValueError):
@@ -153,25 +151,19 @@ def _numbers(text: str, layout: Layout) -> Array:
                 ndmin=2,
                 max_rows=MOST_NUMBERS // len(layout.wanted) + 1,
             )
-            _refuse_split_decimals(text, layout)
+            body = text.split("\n", layout.skip_rows)[-1]
+            split = layout.delimiter == "comma" and "." not in body and _SPLIT_DECIMALS.search(body)
+            if split:
+                number = layout.skip_rows + body.count("\n", 0, split.start()) + 1
+                message = (
+                    f"line {number}: '{_shown(split[0])}' is whole numbers in columns, or has a decimal comma before "
+                    "its last digits, which begin with 0; export the file with decimal points, or with semicolons "
+                    "between columns and write 'delimiter: semicolon' and 'decimal: comma'"
+                )
+                refused(message, "file")
             found.flags.writeable = False
             return found
     raise RuleError(_first_fault(familiar(text), layout))
-
-
-def _refuse_split_decimals(text: str, layout: Layout) -> None:
-    """Raise RuleError where commas between columns seem to be decimal ones, too: '0,37,05' without any point."""
-    body = text.split("\n", layout.skip_rows)[-1]
-    if layout.delimiter != "comma" or "." in body or not re.search(",0[0-9]", body):
-        return
-    for number, line in _figure_lines(text, layout):
-        if re.search(",[0-9]+,0[0-9]", line):
-            message = (
-                f"line {number}: '{_shown(line)}' is whole numbers in columns, or has a decimal comma before its last "
-                "digits, which begin with 0; export the file with decimal points, or with semicolons between columns "
-                "and write 'delimiter: semicolon' and 'decimal: comma'"
-            )
-            refused(message, "file")
 
 
 def _figure_lines(text: str, layout: Layout) -> Iterator[tuple[int, str]]:
@@ -203,7 +195,8 @@ _FOREIGN = {
 def text_of(file: str) -> str:
     """Return the text of a file with line feeds alone; figures are ASCII, headings may be in any encoding.
 
-    Raises RuleError for what is too large, or no text.
+    UTF-16 is known by its mark, or by the zero in every other byte of its figures. Raises RuleError for what is too
+    large, or no text.
     """
     try:
         if os.path.getsize(file) > LARGEST_FILE:
@@ -215,7 +208,11 @@ def text_of(file: str) -> str:
     for begin, (what, advice) in _FOREIGN.items():
         if raw.startswith(begin):
             refused(f"{os.path.basename(file)} is {what}, no text; {advice}", "file")
-    text = raw.decode(_encoding(raw), errors="replace").replace("\r\n", "\n").replace("\r", "\n")
+
+    by_zeros = {"utf-16-le": raw[1:400:2], "utf-16-be": raw[:400:2]}
+    encodings = ["utf-16"] if raw.startswith((b"\xff\xfe", b"\xfe\xff")) else []
+    encodings += [name for name, half in by_zeros.items() if half.count(0) > len(raw[:400]) // 4]
+    text = raw.decode([*encodings, "utf-8-sig"][0], errors="replace").replace("\r\n", "\n").replace("\r", "\n")
     if "\0" in text:
         refused("is no text: it has zero bytes; export the samples as CSV", "file")
     start = 0
@@ -224,17 +221,6 @@ def text_of(file: str) -> str:
         if not start:
             refused(f"has a line of more than {_LONGEST_LINE} characters", "file")
     return text
-
-
-def _encoding(raw: bytes) -> str:
-    """Return the encoding; UTF-16 is known by its mark, or by the zero in every other byte of its figures."""
-    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return "utf-16"
-    head = raw[:400]
-    for first, name in ((1, "utf-16-le"), (0, "utf-16-be")):
-        if head and head[first::2].count(0) > len(head) // 4:
-            return name
-    return "utf-8-sig"
 
 
 # what to write instead
@@ -247,19 +233,19 @@ _TRIED = 200
 
 def _first_fault(text: str, layout: Layout) -> Fault:
     """Return the fault of the first line that is no row of figures, and what to write so that it could be read."""
-    last = max(layout.wanted)
     for number, line in _figure_lines(text, layout):
-        cells = layout.cells(line)
+        cells, column = layout.read(line)
+        last = max(layout.wanted)
         if len(cells) < last:
-            row = f": {_shown(line)}" if _shown(line) else ""
+            shown = _shown(line)
+            row = f": {shown}" if shown else ""
             return Fault(("file",), f"line {number} has no column {last}{row}{_advice(text, number, line, layout)}")
-        as_written = line.split(layout.between)
-        for column in layout.wanted:
-            cell = cells[column - 1].strip()
-            if not _is_number(cell):
-                shown = _shown(as_written[column - 1].strip() if len(as_written) == len(cells) else cell)
-                wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
-                return Fault(("file",), f"line {number}: {wrong}{_advice(text, number, line, layout, cell)}")
+        if column:
+            as_written = line.split(layout.between)
+            shown = _shown(as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1])
+            wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
+            advice = _advice(text, number, line, layout, cells[column - 1])
+            return Fault(("file",), f"line {number}: {wrong}{advice}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
 
@@ -270,15 +256,6 @@ def _shown(text: str) -> str:
     return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
 
 
-def _is_number(text: str) -> bool:
-    """Return whether numpy.loadtxt takes a text for a number."""
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return text.isascii() and "_" not in text
-
-
 def _advice(text: str, number: int, line: str, layout: Layout, cell: str = "") -> str:
     """Return what to write so that a file could be read: keys under which its first lines are rows, or a guess.
 
@@ -286,53 +263,45 @@ def _advice(text: str, number: int, line: str, layout: Layout, cell: str = "") -
     """
     lines = text.split("\n", _TRIED)[:_TRIED]
     quoted = any('"' in one for one in lines)
-    tried = [one for one in _alternatives(layout) if quoted or not one.ambiguous]
-    begun = {one: _begin_of_figures(lines, one) for one in tried}
-    readable = [one._replace(skip_rows=begin) for one, begin in begun.items() if begin is not None]
-    found = min(readable, key=lambda one: one.skip_rows, default=None)
-    written = _differing_keys(found, layout) if found else []
+    delimiters = dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space"))
+    signs = itertools.product(delimiters, dict.fromkeys((layout.decimal, *DECIMALS)))
+    tried = [layout._replace(delimiter=one, decimal=other) for one, other in signs if quoted or one != other]
+    counted = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
+    found = min(_readable(lines, counted if layout.angle_step else tried), key=lambda one: one.skip_rows, default=None)
+    written = _differing_keys(found or layout, layout)
     only_headings = len(written) == 1 and "skip_rows" in written[0]
     if written and not (only_headings and _FIGURES.fullmatch(cell)):  # of headings no cell is one of figures
         return f"; write {' and '.join(written)}{' if it is a heading' if only_headings else ''}"
 
     # no layout reads all lines: what the first bad one hints at, signs by which it is a row, or what is in the way
-    signs = next((one for one in tried if one.columns == layout.columns and one.is_row(line)), None)
-    if signs:
-        return f"; write {' and '.join(_differing_keys(signs, layout))}"
-    first_row = next((i for i, one in enumerate(lines, 1) if i > layout.skip_rows and layout.is_row(one)), 0)
+    by_signs = next((one for one in tried if not one.read(line)[1]), None)
+    if by_signs:
+        return f"; write {' and '.join(_differing_keys(by_signs, layout))}"
+    below = enumerate(lines[layout.skip_rows :], layout.skip_rows + 1)
+    first_row = next((index for index, one in below if not layout.read(one)[1]), 0)
     if number < first_row and not _FIGURES.fullmatch(cell):
         return f"; write 'skip_rows: {first_row - 1}' if it is a heading"
     if 0 < first_row < number:
         return "; leave such lines out, or mend them"
-    cells = layout.cells(line)
+    cells, _ = layout.read(line)
     if len(cells) >= max(layout.wanted):
         thousands = ", without signs between thousands" if _THOUSANDS.fullmatch(cell) else ""
         return f"{_PLAIN}{thousands}" if any(one.isdigit() for one in cell) else _NO_FIGURES
-    if not any(_is_number(one.strip()) for one in cells):
+    if not any(map(_NUMBER.fullmatch, cells)):
         return _NO_FIGURES
     if len(cells) > 1 or layout.angle_step:
         return f"; it has {len(cells)} only"
     return "; if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"
 
 
-def _alternatives(layout: Layout) -> Iterator[Layout]:
-    """Yield layouts with other signs, the given one first; rows that only count need no second column."""
-    for delimiter in dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space")):
-        for decimal in dict.fromkeys((layout.decimal, *DECIMALS)):
-            signs = layout._replace(delimiter=delimiter, decimal=decimal)
-            yield signs
-            if layout.angle_step:
-                yield signs._replace(columns=(1,))
-
-
-def _begin_of_figures(lines: Sequence[str], layout: Layout) -> int | None:
-    """Return how many lines are above the first of at least two rows of figures; None where rows are broken."""
-    rows = {i: layout.is_row(line) for i, line in enumerate(lines) if line.partition("#")[0].strip()}
-    begin = next((index for index, row in rows.items() if row), len(lines))
-    below = [row for index, row in rows.items() if index >= begin]
-    if len(below) < 2 or not all(below):
-        return None
-    return begin if any(index < begin for index in rows) else 0
+def _readable(lines: Sequence[str], layouts: Sequence[Layout]) -> Iterator[Layout]:
+    """Yield the layouts by which all lines from the first row on are rows, at least two, and the lines above it."""
+    for one in layouts:
+        rows = {i: not one.read(line)[1] for i, line in enumerate(lines) if line.partition("#")[0].strip()}
+        begin = next((index for index, row in rows.items() if row), len(lines))
+        below = [row for index, row in rows.items() if index >= begin]
+        if len(below) > 1 and all(below):
+            yield one._replace(skip_rows=begin if any(index < begin for index in rows) else 0)
 
 
 def _differing_keys(found: Layout, given: Layout) -> list[str]:

@@ -1,0 +1,14 @@
+"""The machines that come with kurbel."""
+
+import os
+
+_PACKAGE = os.path.dirname(os.path.abspath(__file__))
+# a wheel carries the machines inside the package; a checkout has them next to src
+_PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, os.pardir, "configs"))
+
+
+def shipped() -> dict[str, str]:
+    """Return the machines that come with kurbel: the path of each file by its name."""
+    folder = next(filter(os.path.isdir, _PLACES))
+    names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
+    return {name: os.path.join(folder, f"{name}.yaml") for name in names}

@@ -1,0 +1,23 @@
+"""Commands run in the process of the tests."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+
+
+def run(*words: object, text: str | None = None) -> Result:
+    """Return what a command prints and its exit status; text: its standard input."""
+    return CliRunner().invoke(kurbel, [str(word) for word in words], input=text)
+
+
+def answer(*words: object, text: str | None = None) -> dict[str, Any]:
+    """Return the JSON that a command prints."""
+    result = run(*words, "-f", "json", text=text)
+    assert result.exit_code == 0, result.output
+    parsed: dict[str, Any] = json.loads(result.stdout)
+    return parsed

@@ -1,0 +1,124 @@
+"""The book's constructions at chosen angles, and its pictures of what each crank and each piston does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from drawn import curve_of, drawn, ids_of
+
+from kurbel.declared.unit_systems import convert
+from kurbel.machine_file import loads
+from kurbel.report.picture import Panel, Picture
+from kurbel.report.picture_source import PictureOptions
+from kurbel.report.pictures import pictures
+from kurbel.solver.case import Case
+from representative import case_of
+
+ANGLES = (0.0, 37.0, 90.0, 145.0, 222.5, 300.0)
+
+
+def constructed(name: str, id: str) -> tuple[Picture, Case]:
+    case = case_of(name)
+    (picture,) = pictures(case, (id,), PictureOptions(system="si", angles=ANGLES))
+    return picture, case
+
+
+def places(panel: Panel) -> dict[str, complex]:
+    return {mark.figure.name.symbol: complex(mark.x, mark.y) for mark in panel.marks}
+
+
+@pytest.mark.parametrize("name", ["waterworks", "offset-engine", "yoke-frame-pump"])
+def test_ruler_and_compasses_give_what_the_solver_computes(name: str) -> None:
+    """R Abb. 1047: x = AG = CE; 1048: c = v_s/cos ψ; 1049: c = MF, the foot G at v sin(φ + ψ)."""
+    picture, case = constructed(name, "construction")
+    state, v = case.cylinders[0].at(ANGLES), case.cylinders[0].motion.v
+    psi = np.radians(np.asarray(state.psi))
+    for number in range(len(ANGLES)):
+        way, parts, polar = (places(panel) for panel in picture.panels[3 * number : 3 * number + 3])
+        x, c = float(state.x[number]), float(state.c[number])
+        assert (way["A"] - way["x"]).real == pytest.approx(x, abs=1e-12)
+        assert (way["E"] - way["C"]).real == pytest.approx(x, abs=1e-12)
+        figures = {mark.figure.name.symbol: mark.figure.value for mark in picture.panels[3 * number + 1].marks}
+        assert figures["v"] == pytest.approx(v)
+        assert figures["c"] == pytest.approx(c, abs=1e-12)
+        assert figures["v_s"] == pytest.approx(v * np.sin(np.radians(ANGLES[number]) + psi[number]), abs=1e-12)
+        assert polar["c"] == pytest.approx(1j * c, abs=1e-12)
+        assert abs(polar["G"]) == pytest.approx(abs(figures["v_s"]), abs=1e-12)
+        # the tips of both components and of v lie square to the rod
+        rod = np.exp(-1j * psi[number])
+        assert ((parts["v"] - parts["v_s"]) * rod.conjugate()).real == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_parallel_through_the_foot_gives_the_velocity_of_the_ram() -> None:
+    """R Abb. 1071: c = v GH/r, F on the circle over MD, FH parallel to CG."""
+    picture, case = constructed("shaper", "construction")
+    for panel, c in zip(picture.panels, case.cylinders[0].at(ANGLES).c):
+        at = places(panel)
+        assert (at["G"] - at["H"]).real == pytest.approx(float(c), abs=1e-12)
+        assert ((at["C"] - at["G"]) * (at["F"] - at["H"]).conjugate()).imag == pytest.approx(0.0, abs=1e-12)
+        assert abs(at["F"] - at["D"] / 2) == pytest.approx(abs(at["D"]) / 2)
+
+
+@pytest.mark.parametrize("name", ["waterworks", "offset-engine", "scotch-yoke-pump"])
+def test_the_tangential_force_is_found_on_the_vertical(name: str) -> None:
+    """R Abb. 1063."""
+    picture, case = constructed(name, "force-polar")
+    for panel, force in zip(picture.panels, case.cylinders[0].at(ANGLES).T):
+        size = float(np.nanmax(np.abs(panel.curves[0].x)))
+        assert places(panel)["T"] == pytest.approx(1j * float(force), abs=1e-12 * size)
+
+
+def test_the_infinite_rod_is_an_ellipse_and_a_straight_line() -> None:
+    """R 289, 295: c′ = v sin φ, b′ = v²/R cos φ over x′ = R(1 − cos φ)."""
+    velocity, acceleration = drawn("waterworks", "motion-way")[0].panels
+    v = 2 * np.pi * 50 / 60 * 0.4
+    ellipse, line = curve_of(velocity, "c, L/R = ∞"), curve_of(acceleration, "b, L/R = ∞")
+    from_middle = 1 - ellipse.x / 400
+    assert ellipse.y**2 + (v * from_middle) ** 2 == pytest.approx(np.full(len(ellipse.y), v * v))
+    assert line.y == pytest.approx(v * v / 0.4 * (1 - line.x / 400), abs=1e-12)
+    assert len(drawn("waterworks", "motion")[0].panels[1].curves) == 2
+    assert len(drawn("scotch-yoke-pump", "motion")[0].panels[1].curves) == 1
+
+
+def test_the_pump_is_laid_over_the_steam() -> None:
+    """R p. 613: 3490 kg on the outstroke, 3710 kg on the return stroke; with losses only the steam is less."""
+    for eta in (1.0, 0.9):
+        text = case_of("waterworks").machine.origin.text + f"\nefficiency: {eta}\n"
+        case = Case(loads(text))
+        (picture,) = pictures(case, ("piston-force-crank",), PictureOptions(system="technical"))
+        for panel, pump in zip(picture.panels, (3490.0, -3710.0)):
+            assert curve_of(panel, "−P_driven").y == pytest.approx(pump, rel=1e-3)
+        out = picture.panels[0]
+        x, steam = curve_of(out, "η P_driving").x, curve_of(out, "η P_driving").y
+        rest = np.interp(x, curve_of(out, "−P_driven − P_b").x, curve_of(out, "−P_driven − P_b").y)
+        P = convert(
+            np.asarray(case.cylinders[0].at(case.cylinders[0].drive.mechanism.crank_angles_at(x / 1e3, True)).P),
+            "force",
+            "kgf",
+        )
+        assert (steam / eta - rest)[1:-1] == pytest.approx(P[1:-1], abs=1e-3 * np.ptp(P))
+    assert "piston-force-crank" not in ids_of("gas-engine")
+
+
+@pytest.mark.parametrize("efficiency", ["", "efficiency: 0.9\n"])
+def test_cranks_and_sides_add_up_to_the_turning_effort(efficiency: str) -> None:
+    """R Abb. 1064 and 1067: the cranks give the sum, the driving side less the pumps gives the effort."""
+    case = Case(loads(case_of("waterworks-two-cranks").machine.origin.text + efficiency))
+    cranks, sides = (
+        next(pictures(case, (id,), PictureOptions(system="si"))).panels[0] for id in ("effort-cranks", "effort-sides")
+    )
+    phi = np.linspace(1.3, 358.7, 200)
+
+    def at(panel: Panel, symbol: str) -> np.ndarray:
+        curve = curve_of(panel, symbol)
+        return np.interp(phi, curve.x, curve.y)
+
+    size = 1e-3 * np.ptp(curve_of(cranks, "T").y)
+    whole = np.asarray(case.flywheel.at(phi).T)
+    each = at(cranks, "high pressure"), at(cranks, "low pressure")
+    assert sum(each) == pytest.approx(at(cranks, "T"), abs=3 * size)
+    assert each[1] == pytest.approx(np.asarray(case.cylinders[1].at(phi + 90.0).T), abs=2 * size)
+    assert at(cranks, "T with η" if efficiency else "T") == pytest.approx(whole, abs=2 * size)
+    assert at(sides, "T_driving") - at(sides, "−T_driven") == pytest.approx(whole, abs=3 * size)
+    assert (curve_of(sides, "−T_driven").y > 0).all()
+    assert [mark.figure.at_deg for mark in cranks.marks] == [case.flywheel.T_max.degrees, case.flywheel.T_min.degrees]

@@ -1,0 +1,81 @@
+"""Crankshafts worked out in textbooks, and the page of *Öl- und Gasmaschinen* (G) that the model follows."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kurbel.solver.shaft import FreeBody, Vector
+from machines import constant_pressure
+from shafts import place_at, shaft, strength
+
+KHURMI_SHAFT = shaft(a=0.4, b=0.4, pin_diameter=0.149)
+
+
+class TestKhurmi32_4:
+    """R. S. Khurmi & J. K. Gupta, A Textbook of Machine Design, example 32.4, pp. 1177-1180.
+
+    Single-acting engine, bore 400 mm, stroke 600 mm, L/R = 5, bearings 400 mm from the pin on both sides. The example
+    bends the pin by the radial force alone; here the tangential bending stands beside it.
+    """
+
+    def test_pin(self) -> None:
+        """M = 18 922.9 kN mm, T = 12 594.7, T_e = 22 731, d = 149 mm; the book rounds: 18 920, 12 600, 22 740, 149."""
+        at = strength(KHURMI_SHAFT, card=constant_pressure(1e6)).at([35.0])
+        body = FreeBody(KHURMI_SHAFT, 0.3, Vector(at.D, at.T), Vector(0.0, 0.0))
+        pin = place_at(body, "pin", "middle")
+        bending = pin.bending_in_plane[0] * math.pi * 0.149**3 / 32
+        torque = pin.torsion[0] * math.pi * 0.149**3 / 16
+        assert bending == pytest.approx(18_922.8631203, rel=1e-11)
+        assert torque == pytest.approx(12_594.7109349, rel=1e-11)
+        equivalent = math.hypot(bending, torque)
+        assert equivalent == pytest.approx(22_731.0688751, rel=1e-11)
+        assert (16 * equivalent / (math.pi * 35e6)) ** (1 / 3) == pytest.approx(0.1489957822, rel=1e-9)
+
+
+class TestOelUndGasmaschinen:
+    """*Öl- und Gasmaschinen*, Kurbelwangen: the formulas of the page, written out with figures of our own.
+
+    The throw lies in the dead centre, a = b = 400 mm, e = 170 mm, webs 120 × 220 mm, P = 300 kN; the reaction of the
+    flywheel in A, 20 kN, stands square to it.
+    """
+
+    P, A_S = 300e3, 20e3
+
+    def web(self) -> tuple[float, ...]:
+        sized = shaft(b=0.4, flywheel_mass=1.0, flywheel_position=0.2, allowable_bending=60e6, allowable_torsion=40e6)
+        weight = self.A_S * 0.8 / 0.2  # so that A_s = G f/(a + b) is 20 kN
+        body = FreeBody(sized, 0.3, Vector(np.array([self.P]), np.zeros(1)), Vector(np.zeros(1), np.array([-weight])))
+        face, side = place_at(body, "web_B", "wide face"), place_at(body, "web_B", "narrow face")
+        found = (
+            face.compression,
+            face.torsion,
+            side.bending_out_of_plane,
+            face.bending_in_plane,
+            face.combined,
+            side.torsion,
+        )
+        return tuple(float(value[0]) for value in found)
+
+    def test_every_line_of_the_page(self) -> None:
+        t, w, a, e, r = 0.12, 0.22, 0.4, 0.17, 0.3
+        compression, torsion, by_weight, in_plane, combined, narrow = self.web()
+        assert compression == pytest.approx(0.5 * self.P / (t * w), rel=1e-13)
+        assert torsion == pytest.approx(4.5 * self.A_S * (a + e) / (t * t * w), rel=1e-13)
+        assert by_weight == pytest.approx(self.A_S * r / (t * w * w / 6), rel=1e-13)  # lever to the axis of the pin
+        assert in_plane == pytest.approx(self.P / 2 * (a - e) / (t * t * w / 6), rel=1e-13)
+        sigma, alpha = compression + in_plane, 60 / (1.3 * 40)
+        bach = 0.35 * sigma + 0.65 * math.sqrt(sigma**2 + 4 * (alpha * torsion) ** 2)
+        assert combined == pytest.approx(bach, rel=1e-13)
+        assert narrow == pytest.approx(torsion * t / w, rel=1e-13)
+
+    def test_pin_at_largest_torque(self) -> None:
+        """M_b = √((A_T a)² + (A_R a)²), M_d = A_T r, combined with α₀ = 1."""
+        sized = shaft(b=0.4)
+        at = strength(sized).at([35.0])
+        bending = math.hypot(at.A_T[0] * 0.4, at.A_D[0] * 0.4) / (math.pi * 0.18**3 / 32)
+        torsion = at.A_T[0] * 0.3 / (math.pi * 0.18**3 / 16)
+        bach = 0.35 * bending + 0.65 * math.sqrt(bending**2 + 4 * torsion**2)
+        assert at.sigma_pin[0] == pytest.approx(bach, rel=1e-13)
