@@ -229,13 +229,15 @@ def test_a_row_for_each_load_case(command: str) -> None:
     file = CONFIGS / "compressor-two-stage.yaml"
     ids = {"forces": "rod_compression_max", "delivery": "capacity"}[command]
     found = json.loads(run(command, file, "--cases", "--columns", ids, "-f", "json").stdout)
-    rows = {part["name"]: part["place_tables"][0]["rows"] for part in found["cylinders"]}
-    assert len(rows) == 2
-    for case in ("both ends", "one end unloaded", "relief pressure"):
+    tables = {part["name"]: part["place_tables"][0] for part in found["cylinders"]}
+    assert len(tables) == 2
+    for place, case in enumerate(("both ends", "one end unloaded", "relief pressure")):
         alone = json.loads(run(command, file, "--case", case, "--key-values", "-f", "json").stdout)
         for part in alone["cylinders"]:
-            row = next(one for one in rows[part["name"]] if one["case"] == case)
-            assert row[ids] == next(one["value"] for one in part["key_values"] if one["id"] == ids)
+            table = tables[part["name"]]
+            assert table["rows"][place] == {"case": case}
+            value = next(one["value"] for one in part["key_values"] if one["id"] == ids)
+            assert table["columns"][0]["values"][place] == value
 
 
 def test_cases_need_cases() -> None:
