@@ -229,9 +229,7 @@ class MachineTurning(Results):
 
     def of_crossings(self, values: Array) -> Any:
         """Return numbers of the crossings as a tuple, of many machines one each."""
-        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
-        tuples = tuple(tuple(one.tolist()) for one in each)
-        return tuples[0] if self.effort.count is None else tuples
+        return self.excess.crossings._replace(degrees=values).listed(self.effort.count)
 
     @cached_property
     def summits(self) -> Extremes | None:
