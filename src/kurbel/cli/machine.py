@@ -11,6 +11,7 @@ from kurbel.cli.options import (
     Spreads,
     angle_options,
     columns_option,
+    frequency,
     machine_file,
     orders_option,
     output_options,
@@ -192,14 +193,28 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 @click.option(
     "--modes", type=click.IntRange(1, 100), default=3, help="Critical speeds of so many modes; 3 if not given."
 )
-@click.option("--mode", type=click.IntRange(1), default=1, help="The mode of Holzer's table; 1 if not given.")
+@click.option("--mode", type=click.IntRange(1), help="The mode of Holzer's table; 1 if not given.")
+@click.option(
+    "--at",
+    type=frequency,
+    metavar="'F Hz'",
+    help="Holzer's table at this frequency, with what it leaves, not of a mode.",
+)
 def torsion(
     request: "Request",
+<<<<<<< HEAD
     cases: bool,
     orders: tuple[float, ...] | None,
     speeds: tuple[float, ...] | None,
     modes: int,
     mode: int,
+=======
+    orders: tuple[float, ...] | None,
+    speeds: tuple[float, ...] | None,
+    modes: int,
+    mode: int | None,
+    at: float | None,
+>>>>>>> main
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
@@ -210,6 +225,7 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
+<<<<<<< HEAD
     if cases:
         return request.print_cases()
     request.print(torsion_report, Wanted(orders, modes, mode, speeds))
@@ -230,3 +246,10 @@ def delivery(request: "Request", cases: bool) -> None:
     if cases:
         return request.print_cases()
     request.print(delivery_report)
+=======
+    if mode is not None and at is not None:
+        raise click.UsageError(
+            "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
+        )
+    request.print(torsion_report, Wanted(orders, modes, mode or 1, speeds, at))
+>>>>>>> main

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from copy import copy
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -142,8 +143,8 @@ class DeliveryState(AtAngles):
         self._delivery, self.phi, self._within = delivery, phi, within
 
     def course(self, id: str) -> Array | None:
-        """Return the values (n,) of what `Delivery.samples` has; None for what is left out."""
-        values, pieces = self._delivery.samples.get(id), self._delivery.pieces
+        """Return the values (n,) of what `Delivery.sampled` has; None for what is left out."""
+        values, pieces = self._delivery.sampled(id), self._delivery.pieces
         if values is None:
             return None
         found = pieces.at(values, np.zeros(len(self.phi), dtype=np.intp), self.phi, self._within)
@@ -151,15 +152,24 @@ class DeliveryState(AtAngles):
 
 
 _PIPES = {"": ("", "delivery"), "suction_": ("s,", "suction")}
+_RATES: dict[str, dict[str, bool]] = {
+    "flow": {},
+    "flow_suction": {"draws": True},
+    "flow_head": {"crank": False},
+    "flow_crank": {"head": False},
+    "rise": {"rises": True},
+    "suction_rise": {"draws": True, "rises": True},
+}
+"""What is sampled of a flow -> the words of `_displaced`."""
 _WORKS = {"": ("R", "as they are"), "_bare": ("R,0", "without vessels"), "_steady": ("R,m", "with vessels at both")}
 
 
 class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
-    pieces: of the cycle in degrees; rates: dV/dφ in m³ at their nodes of what is delivered (`flow`, `flow_head`,
-    `flow_crank`) and drawn in (`flow_suction`), and d²V/dφ² of both (`rise`, `suction_rise`); pump: its pipes, None for
-    one piston of several. Raises UsageError for a vessel that would empty.
+    pieces: of the cycle in degrees; sampled: takes the words of `_displaced` and returns dV/dφ at their nodes; both:
+    whether both ends of one piston deliver; pump: its pipes, None for one piston of several. Raises UsageError for a
+    vessel that would empty.
     """
 
     command, state = "delivery", DeliveryState
@@ -179,9 +189,19 @@ class Delivery(Results):
     vessel_saving = value("A_W", "ratio", "Share of the work against pipe friction that a vessel saves")
 
     def __init__(
-        self, name: str, machine: Machine, pieces: Pieces, count: int | None, rates: dict[str, Array], pump: Pump | None
+        self,
+        name: str,
+        machine: Machine,
+        pieces: Pieces,
+        count: int | None,
+        sampled: Callable[..., Array],
+        both: bool,
+        pump: Pump | None = None,
     ) -> None:
-        self.name, self.machine, self.pieces, self.rates, self.pump = name, machine, pieces, rates, pump
+        self.name, self.machine, self.pieces, self.pump = name, machine, pieces, pump
+        self._sampled, self._both = sampled, both
+        self._rates: dict[str, Array] = {}
+        self._extremes: dict[str, Extremes | None] = {}
         self._told = partial(told, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.breaks = np.append(pieces.low, pieces.cycle)
@@ -191,21 +211,27 @@ class Delivery(Results):
     def _columns(self, phi: Array, within: Array) -> DeliveryState:
         return DeliveryState(self, phi, within)
 
-    @cached_property
-    def samples(self) -> dict[str, Array]:
-        """The columns that there are at the nodes of the pieces; none without a speed."""
-        if self.omega is None:
-            return {}
-        omega = self.pieces.of(self.omega)
-        found = {id: rate * omega for id, rate in self.rates.items() if id.startswith("flow")}
+    def rate(self, id: str) -> Array:
+        """Return one of `_RATES` in m³ per radian at the nodes of the pieces, sampled once."""
+        if id not in self._rates:
+            self._rates[id] = self._sampled(**_RATES[id])
+        return self._rates[id]
+
+    def sampled(self, column: str) -> Array | None:
+        """Return a column at the nodes of the pieces; None for one that is left out, and without a speed."""
+        omega = None if self.omega is None else self.pieces.of(self.omega)
+        if omega is None or (column in ("flow_head", "flow_crank") and not self._both):
+            return None
+        if column in _RATES:
+            return self.rate(column) * omega
         for pipe, flow, rise, prefix in self._pipes():
-            if pipe.vessel is None:
-                scale = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
-                found[f"{prefix}acceleration_head"] = self.rates[rise] * omega**2 * scale
-            passed = self.pieces.of(self.told_mean(flow)) if pipe.vessel else self.rates[flow]
-            heads = self.pieces.of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
-            found[f"{prefix}friction_head"] = np.broadcast_to(heads, self.rates["flow"].shape)
-        return found
+            if column == f"{prefix}acceleration_head" and pipe.vessel is None:
+                return self.rate(rise) * omega**2 * self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
+            if column == f"{prefix}friction_head":
+                passed = self.pieces.of(self.mean_of(flow)) if pipe.vessel else self.rate(flow)
+                heads = self.pieces.of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
+                return np.broadcast_to(heads, self.pieces.degrees.shape)
+        return None
 
     def _pipes(self) -> Iterator[tuple[Pipe, str, str, str]]:
         """Yield each pipe with the names of its flow, of that flow's rise, and what its columns begin with."""
@@ -214,18 +240,20 @@ class Delivery(Results):
         if self.pump and self.pump.delivery_pipe:
             yield self.pump.delivery_pipe, "flow", "rise", "delivery_"
 
-    def told_mean(self, flow: str, power: int = 1) -> Any:
+    def mean_of(self, flow: str, power: int = 1) -> Any:
         """Return the mean over the cycle of dV/dφ, or of a power of it."""
-        return self._told(self.pieces.mean(self.rates[flow] ** power))
+        return self._told(self.pieces.mean(self.rate(flow) ** power))
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
-        values = self.samples.get(column)
-        return None if values is None else self.pieces.extremes(values[None]).each(self._told)[0]
+        if column not in self._extremes:
+            values = self.sampled(column)
+            self._extremes[column] = None if values is None else self.pieces.extremes(values[None]).each(self._told)[0]
+        return self._extremes[column]
 
     def swing(self, flow: str) -> Any:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
-        rate = self.rates[flow]
+        rate = self.rate(flow)
         above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
         high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
         return self._told((high - low)[0])
@@ -233,11 +261,11 @@ class Delivery(Results):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values that are no extremes."""
-        found, mean = dict[str, Any](), self.told_mean("flow")
+        found, mean = dict[str, Any](), self.mean_of("flow")
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = self.swing("flow")
-        found["vessel_saving"] = 1 - mean**3 / self.told_mean("flow", 3)
+        found["vessel_saving"] = 1 - mean**3 / self.mean_of("flow", 3)
         for pipe, flow, _, _ in self._pipes():
             if pipe.vessel:
                 name = "" if flow == "flow" else "suction_"
@@ -251,8 +279,10 @@ class Delivery(Results):
         for id, terms in zip(("pipe_work", "pipe_work_bare", "pipe_work_steady"), zip(*works)):
             found[id] = total(*terms)
         if self.pump and self.pump.suction_pipe:
-            samples, liquid = self.samples, self.pump.liquid
-            heads = samples["friction_head"] + samples.get("acceleration_head", 0.0)
+            liquid, friction = self.pump.liquid, self.sampled("friction_head")
+            inertia = self.sampled("acceleration_head")
+            assert friction is not None
+            heads = friction if inertia is None else friction + inertia
             most = self._told(self.pieces.extremes(heads[None]).largest[0])
             weight = liquid.density * GRAVITY
             found["suction_lift_max"] = (self.machine.ambient - liquid.vapour_pressure) / weight - most
@@ -262,7 +292,7 @@ class Delivery(Results):
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
-        bare, steady = scale * self.told_mean(flow, 3), scale * self.told_mean(flow) ** 3
+        bare, steady = scale * self.mean_of(flow, 3), scale * self.mean_of(flow) ** 3
         return steady if pipe.vessel else bare, bare, steady
 
 
@@ -431,35 +461,30 @@ class MachineDelivery:
         def summed(**how: bool) -> Array:
             return self.effort.sampled([Term(1 - slip, group, _displacing(one, **how)) for group, one in groups])
 
-        rates = _rates(summed, pump, len(self._pumps) == 1)
-        return Delivery("whole machine", self.machine, pieces, self._count, rates, pump)
+        both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
+        return Delivery("whole machine", self.machine, pieces, self._count, summed, both, pump)
 
     @cached_property
     def pistons(self) -> tuple[Delivery, ...]:
-        """What each of several pumping pistons delivers, over the angle of its own crank."""
-        found, slip = [], self.machine.pump.slip if self.machine.pump else 0.0
+        """What each of several pumping pistons delivers, over the angle of its own crank; equal ones are computed once."""
+        found, slip = list[Delivery](), self.machine.pump.slip if self.machine.pump else 0.0
+        firsts = {id(forces): group[0] for group in self.effort.groups for forces in group}
+        known: dict[tuple[int, int], Delivery] = {}
         for forces, one in self._pumps if len(self._pumps) > 1 else ():
+            first = firsts[id(forces)]
+            if (id(first), one.number) not in known:
 
-            def own(forces: CylinderForces = forces, one: Driven = one, **how: bool) -> Array:
-                values = np.broadcast_to(_displaced(forces.samples, one, **how), forces.pieces.degrees.shape)
-                return np.asarray(values * forces.pieces.of(1 - slip))
+                def own(first: CylinderForces = first, one: Driven = one, **how: bool) -> Array:
+                    values = np.broadcast_to(_displaced(first.samples, one, **how), first.pieces.degrees.shape)
+                    return np.asarray(values * first.pieces.of(1 - slip))
 
-            name = forces.drive.name if one.number == 0 else f"{forces.drive.name}, {one.gas.piston.name}"
-            found.append(Delivery(name, self.machine, forces.pieces, self._count, _rates(own, None, True), None))
+                made = Delivery("", self.machine, first.pieces, self._count, own, one.head and one.crank)
+                _ = made.answers
+                known[id(first), one.number] = made
+            found.append(copy(known[id(first), one.number]))
+            name = forces.drive.name
+            found[-1].name = name if one.number == 0 else f"{name}, {one.gas.piston.name}"
         return tuple(found)
-
-
-def _rates(sampled: Callable[..., Array], pump: Pump | None, ends: bool) -> dict[str, Array]:
-    """Return the `rates` of a `Delivery`; sampled: takes the words of `_displaced`; ends: those of each end, too."""
-    rates = {"flow": sampled(), "flow_suction": sampled(draws=True)}
-    if ends:
-        both = {"flow_head": sampled(crank=False), "flow_crank": sampled(head=False)}
-        rates |= both if all(one.any() for one in both.values()) else {}
-    if pump and pump.delivery_pipe:
-        rates["rise"] = sampled(rises=True)
-    if pump and pump.suction_pipe:
-        rates["suction_rise"] = sampled(draws=True, rises=True)
-    return rates
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
