@@ -202,19 +202,12 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 )
 def torsion(
     request: "Request",
-<<<<<<< HEAD
     cases: bool,
-    orders: tuple[float, ...] | None,
-    speeds: tuple[float, ...] | None,
-    modes: int,
-    mode: int,
-=======
     orders: tuple[float, ...] | None,
     speeds: tuple[float, ...] | None,
     modes: int,
     mode: int | None,
     at: float | None,
->>>>>>> main
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
@@ -225,10 +218,13 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
-<<<<<<< HEAD
     if cases:
         return request.print_cases()
-    request.print(torsion_report, Wanted(orders, modes, mode, speeds))
+    if mode is not None and at is not None:
+        raise click.UsageError(
+            "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
+        )
+    request.print(torsion_report, Wanted(orders, modes, mode or 1, speeds, at))
 
 
 @click.command()
@@ -246,10 +242,3 @@ def delivery(request: "Request", cases: bool) -> None:
     if cases:
         return request.print_cases()
     request.print(delivery_report)
-=======
-    if mode is not None and at is not None:
-        raise click.UsageError(
-            "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
-        )
-    request.print(torsion_report, Wanted(orders, modes, mode or 1, speeds, at))
->>>>>>> main

@@ -466,7 +466,7 @@ class MachineDelivery:
 
     @cached_property
     def pistons(self) -> tuple[Delivery, ...]:
-        """What each of several pumping pistons delivers, over the angle of its own crank; equal ones are computed once."""
+        """What each of several pumping pistons delivers, over the angle of its own crank; equal ones once."""
         found, slip = list[Delivery](), self.machine.pump.slip if self.machine.pump else 0.0
         firsts = {id(forces): group[0] for group in self.effort.groups for forces in group}
         known: dict[tuple[int, int], Delivery] = {}
