@@ -223,10 +223,11 @@ class Delivery(Results):
         if omega is None or (column in ("flow_head", "flow_crank") and not self._both):
             return None
         if column in _RATES:
-            return self.rate(column) * omega
+            return np.asarray(self.rate(column) * omega)
         for pipe, flow, rise, prefix in self._pipes():
             if column == f"{prefix}acceleration_head" and pipe.vessel is None:
-                return self.rate(rise) * omega**2 * self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
+                scale = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
+                return np.asarray(self.rate(rise) * omega**2 * scale)
             if column == f"{prefix}friction_head":
                 passed = self.pieces.of(self.mean_of(flow)) if pipe.vessel else self.rate(flow)
                 heads = self.pieces.of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
