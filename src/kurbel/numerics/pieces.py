@@ -297,9 +297,11 @@ class Pieces:
         # a polynomial exceeds its samples by less than they differ
         which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
         samples = sign * np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
-        rows, places, turning = _turning_points(samples, self.rule)
+        # where all samples are equal but for rounding, it alone turns
+        bent = np.flatnonzero(np.ptp(samples, axis=0) > _STRAIGHT * size[which, self.machine[piece]])
+        rows, places, turning = _turning_points(samples[:, bent], self.rule)
         inside = np.abs(places) < _INSIDE
-        rows, places, turning = rows[inside], places[inside], turning[inside]
+        rows, places, turning = bent[rows[inside]], places[inside], turning[inside]
         top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
         turning = np.where(
             turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)
