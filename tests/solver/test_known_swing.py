@@ -98,6 +98,13 @@ def test_what_is_refused(keys: str, message: str) -> None:
     assert message in str(error.value)
 
 
+def test_check_lists_what_a_swing_leaves_out() -> None:
+    text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
+    told = CliRunner().invoke(command, ["check", "-"], input=text).output
+    assert "computed  ΔE, δ\n" in told
+    assert "power: no mean torque given" in told
+
+
 def test_every_command_knows_a_swing() -> None:
     text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
     for arguments, status in (

@@ -108,11 +108,13 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     wheel = speed or ("" if machine.flywheel else "no flywheel given")
     wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
     varies = machine.load is not None and machine.load.diagram is None
-    alone = "its swing of energy alone is given" if isinstance(machine.effort, Swing) else ""
+    effort = machine.effort
+    alone = "its swing of energy alone is given" if isinstance(effort, Swing) else ""
+    no_mean = "no mean torque given" if isinstance(effort, Swing) and effort.mean is None else ""
     return {
         **({"ΔE": "", "turning effort and speed over the angle": alone} if alone else {"turning effort, ΔE": ""}),
         "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
-        "power": speed,
+        "power": speed or no_mean,
         **({"J": speed} if wanted else {}),
         "δ" if alone else "speed line, δ": wheel,
         **({"load over the speed": wheel} if varies else {}),
