@@ -37,7 +37,7 @@ SIGNATURES = {
     "Case": "machine, count=None",
     "Cylinder": CYLINDER,
     "Machine": MACHINE,
-    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston', gas=None",
+    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston', gas=None, lever_ratio=1.0",
     "SliderCrank": "crank, rod, offset=0.0",
     "draw": "case, *names, units='metric', angles=None",
     "find": "machine, vary, wanted=(), least='', greatest='', where=()",

@@ -117,10 +117,10 @@ class TextbookCylinder:
             lift = mpf(0) if piston.indicator and piston.indicator.absolute else self._ambient
             for end, card in piston.chambers.items():
                 assert isinstance(card, Card)
-                head = end == "head_end"
+                head, ratio = end == "head_end", piston.lever_ratio
                 thickness = mpf(piston.head_end_rod if head else piston.crank_end_rod)
-                area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2)
-                self._chambers.append((card, 1 if head else -1, area, lift))
+                area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
+                self._chambers.append((card, 1 if head == (ratio > 0) else -1, area, lift))
 
         self._cut(self._corners())
         if self._crosshead:

@@ -94,12 +94,12 @@ def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
                 yield Answer(quantity, command, subject.name), value
 
 
-def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
-    """Return who answers a key value, each with what this machine has there: see `_answer`."""
+def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
+    """Return who answers a key value, each with what this machine has there: see `_answer`; pistons: among them."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
-    of_owner = _named(case, own) if not ids and called(own, declared) else ()
+    of_owner = _named(case, own, pistons=True) if not ids and called(own, declared) else ()
     if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
         return found
     if not ids or ambiguity(name, ids):
@@ -110,7 +110,7 @@ def _named(case: Case, name: str) -> list[tuple[Answer, Any]]:
     for word in dict.fromkeys(command):
         found = [
             (Answer(quantity, word, subject.name), value)
-            for subject in subjects_of(case, word)
+            for subject in subjects_of(case, word, pistons=pistons)
             if (quantity := subject.lists.key_values(word).get(ids[0]))
             and (value := _answer(subject, quantity)) is not None
         ]
@@ -140,7 +140,7 @@ def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
     known: dict[tuple[str, str], Any] = {}
     for command in dict.fromkeys(one.command for one in answers):
-        known |= {(command, subject.name): subject for subject in subjects_of(case, command)}
+        known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
     found = ((one, known.get((one.command, one.subject))) for one in answers)
     return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]
 

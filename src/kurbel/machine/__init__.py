@@ -298,7 +298,8 @@ class Machine(Record):
         for index, name in enumerate(cases):
             twice = Rule.of(Fault(("cases", index, "name"), f"two cases are called '{name}'"))
             yield twice._replace(broken=name in cases[:index])
-        scopes = tuple(dict.fromkeys((MACHINE, *names)))
+        pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
+        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
@@ -315,6 +316,16 @@ class Machine(Record):
         """Return the working cycle of a piston of a cylinder, counted from its own one as 0."""
         cycle = self.cycle_of(cylinder)
         return cylinder.pistons[number].cycle_beside(cycle) if number else cycle
+
+    def piston_names(self, cylinder: Cylinder) -> tuple[str, ...]:
+        """Return what the pistons with an indicator are called in figures, where a rod has several: `pump`.
+
+        Of several cylinders each has its own, `cylinder 1.pump`; of equal names all but the first are numbered.
+        """
+        names = [piston.name for piston in cylinder.pistons if piston.indicator]
+        own = [f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one for n, one in enumerate(names)]
+        scope = f"{cylinder.name}." if len(self.cylinders) > 1 else ""
+        return tuple(f"{scope}{one}" for one in own) if len(own) > 1 else ()
 
     @property
     def _common_cycle(self) -> str:

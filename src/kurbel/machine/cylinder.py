@@ -15,7 +15,7 @@ from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.parts import Friction, Masses, Moment, Piston, RamForce, RodPoint
+from kurbel.machine.parts import Friction, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 
@@ -71,8 +71,9 @@ class Cylinder(Record):
     )
     _piston = alternative(Inline(Piston), "The cylinder's own piston", key="piston")
     _tandem = alternative(
-        [RecordForm(Piston, inline_too=True)],
-        "Further pistons on the same rod, such as a pump; their two-stroke cards run twice in 720°",
+        [RecordForm(TandemPiston, inline_too=True)],
+        "Further pistons on the same rod, such as a pump, or driven by a rocker; their two-stroke cards run twice in "
+        "720°",
         absent="none",
         key="tandem",
     )

@@ -81,6 +81,7 @@ def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
         "parts": total(*sums.values()),
         "crosshead": sums.get("crosshead"),
         "undivided": "reciprocating" in sums,
+        "pistons": each["piston"] if isinstance(each.get("piston"), tuple) else (),
     }
 
 
@@ -99,7 +100,8 @@ class Masses(Record):
 
     parts: the sum of piston, piston rod, crosshead and others; rotating: at the radius of the crank pin, beside what of
     the connecting rod turns with it; crosshead: what of the sum is the crosshead's, None where that is not known;
-    undivided: the sum was given as one and includes the connecting rod's share.
+    undivided: the sum was given as one and includes the connecting rod's share; pistons: the mass of each, where
+    `piston` is a list.
     """
 
     _sum_given = alternative(
@@ -135,6 +137,7 @@ class Masses(Record):
     )
     crosshead: float | None = None
     undivided: bool = False
+    pistons: tuple[float, ...] = ()
 
     @classmethod
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
@@ -312,7 +315,10 @@ class RodPoint(Record):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Piston(Record):
-    """A piston: bore and rods, and what the indicator shows on its two sides."""
+    """A piston: bore and rods, and what the indicator shows on its two sides.
+
+    lever_ratio: its displacement over that of the crosshead, 1 where both are on one rod; see `TandemPiston`.
+    """
 
     bore: float = field("length", "Diameter of the cylinder", "d", above=0, required=True)
     head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0, absent="0")
@@ -329,6 +335,7 @@ class Piston(Record):
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
     gas: Gas | None = field(Gas, "The gas that it draws in", absent="that of the machine")
+    lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:
         for key, rod in (("head_end_rod", self.head_end_rod), ("crank_end_rod", self.crank_end_rod)):
@@ -364,3 +371,21 @@ class Piston(Record):
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
         for end, chamber in self.chambers.items():
             yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TandemPiston(Piston):
+    """A further piston on the same rod, or driven from the crosshead by a rocker."""
+
+    lever_ratio: float = field(
+        "ratio",
+        "Displacement of a pump or air pump by a rocker over that of the crosshead, negative where it moves against it",
+        default=1.0,
+        least=-100,
+        most=100,
+        absent="1: on the same rod",
+    )
+
+    def rules(self) -> Iterator[Rule]:
+        yield from super().rules()
+        yield Rule("lever_ratio", self.lever_ratio == 0, "a piston with a lever ratio of 0 does not move")

@@ -74,8 +74,7 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
                     place = heads.index(head)
                 else:
                     heads.insert(place, head)
-    elif any(part.place_tables for part in parts):
-        tables = [(part, table) for part in parts for table in part.place_tables]
+    elif tables := [(part, table) for part in parts for table in part.place_tables if table.id != "pistons"]:
         for part, table in tables:
             names = ((csv_cell(name, look) for name in column) for column in zip(*table.names))
             cells = {"table": repeat(table.id, len(table.names)), **dict(zip(table.heads, names))}
@@ -161,8 +160,14 @@ def _made_from(given: Provenance | None) -> dict[str, Any]:
 
 def _results(part: Part, look: Look) -> dict[str, Any]:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
-    tables, key_values = [], []
+    tables, key_values, pistons = [], [], list[dict[str, Any]]()
     for table in part.place_tables:
+        if table.id == "pistons":
+            for name, *values in zip((names[0] for names in table.names), *(one.values for one in table.columns)):
+                figures = ((one, rounded(value, look.digits)) for one, value in zip(table.columns, values))
+                own = [{"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value} for one, value in figures]
+                pistons.append({"name": name, "key_values": own})
+            continue
         rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
         tables.append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
     for one in part.key_values:
@@ -176,6 +181,7 @@ def _results(part: Part, look: Look) -> dict[str, Any]:
         "columns": list(part.columns),
         **({"place_tables": tables} if tables else {}),
         "key_values": key_values,
+        **({"pistons": pistons} if pistons else {}),
         "left_out": [{"what": one.what, "why": one.why} for one in part.left_out],
         "warnings": list(part.warnings),
     }

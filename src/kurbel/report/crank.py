@@ -73,6 +73,8 @@ def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
     else:
         for forces in case.cylinders:
             forces.refuse_locking()
+        tables = [_piston_table(forces, frame.system) for forces in case.cylinders]
+        cylinders = [replace(one, tables=of) for one, of in zip(cylinders, tables)]
     if frame.prose:
         warnings = by_cylinder(case)
         cylinders = [
@@ -81,6 +83,16 @@ def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
         ]
         notes = [] if each_cycle else [*notes, *_forces_notes(case)]
     return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
+
+
+def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
+    """Return work, power and mean pressure of each piston of a rod that has several."""
+    if not forces.pistons:
+        return []
+    declared, scope = forces.pistons[0].lists.key_values("forces"), f"{forces.drive.name}."
+    each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
+    rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
+    return [place_table("pistons", "Each piston", ("piston",), declared, rows, system, headed=True)]
 
 
 def _mechanism_notes(machine: Machine, command: str) -> list[str]:

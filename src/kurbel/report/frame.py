@@ -80,16 +80,21 @@ class Subject:
                 yield quantity, value
 
 
-def subjects_of(case: Case, command: str, compare: bool = False) -> list[Subject]:
+def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool = False) -> list[Subject]:
     """Return what a command has results of: each cylinder or bearing, and the whole machine last.
 
-    compare: the balance with what the acceleration of first order gives, next to the true figures. Raises UsageError
+    compare: the balance with what the acceleration of first order gives, next to the true figures; pistons: each of
+    the pistons of a rod, too, where it has several. Raises UsageError
     where the machine has nothing of that, NoSolutionError where it locks itself, stalls, or swings without limit.
     """
     if command in ("motion", "forces"):
+        each = [one for forces in case.cylinders for one in forces.pistons] if pistons and command == "forces" else []
         return [
-            Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
-            for one in case.cylinders
+            *(
+                Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
+                for one in case.cylinders
+            ),
+            *(Subject(one.name, one, lists=one.lists) for one in each),
         ]
     if command == "flywheel":
         turning = case.flywheel

@@ -167,12 +167,12 @@ def holders(case: Case, name: str) -> list[Holder]:
     of_machine: list[Holder] = []
     for command in (first, *whole):
         own = []
-        for subject in subjects_of(case, command):
+        for subject in subjects_of(case, command, pistons=bool(scope)):
             quantity = subject.lists.key_values(command).get(id)
             if quantity is None:
                 continue
             one, of_cylinder = Holder(subject, quantity, command), subject.name in cylinders
-            owner = subject.name if of_cylinder else subject.of or MACHINE
+            owner = subject.name if of_cylinder or subject.name == scope else subject.of or MACHINE
             if owner == scope or (not scope and of_cylinder and has_it(one)):
                 own.append(one)
             elif not scope and not of_cylinder:

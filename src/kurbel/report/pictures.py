@@ -157,10 +157,11 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
             place = x
             if over_volume:
                 piston, head = gas.piston, id == "p_head"
+                own = head != gas.turned
                 chamber = piston.indicator and (piston.indicator.head_end if head else piston.indicator.crank_end)
                 clearance = getattr(chamber, "clearance", None) or 0.0
-                swept = (x if head else gas.stroke - x) + clearance * gas.stroke
-                place = np.asarray(swept * (piston.head_area if head else piston.crank_area))
+                swept = (x if own else gas.stroke - x) + clearance * gas.stroke
+                place = np.asarray(swept * gas.areas[0 if head else 1])
             places.append(place)
             curves.append(samples.curve(source.words(id), place, pressure))
         marks: tuple[Mark, ...] = ()

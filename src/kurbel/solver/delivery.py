@@ -95,7 +95,8 @@ def _displaced(
     """
     own = state.drive.cylinder.pistons[piston.number]
     areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
-    outward, back = areas if draws else areas[::-1]
+    # a piston that a lever moves against the crosshead draws in where another one delivers
+    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
     return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
 
 
@@ -345,7 +346,7 @@ class CompressorEnd:
         card, head = own.chambers[end], end == "head_end"
         self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
         self.end = end.replace("_", " ")
-        self.volume = (own.head_area if head else own.crank_area) * piston.gas.stroke
+        self.volume = piston.gas.areas[0 if head else 1] * piston.gas.stroke
         self.loaded = not (isinstance(card, Compressor) and card.unloaded)
         if not isinstance(card, Compressor):
             return

@@ -123,7 +123,7 @@ class Drive:
         if self.count is None:
             return self
         other = Drive(taken(self.machine, index), taken(self.cylinder, index), self.count, index)
-        other.gas, other.driving, other.driven = self.gas, self.driving, self.driven
+        other.gas, other.driving, other.driven, other.pumping = self.gas, self.driving, self.driven, self.pumping
         return other
 
     @cached_property
@@ -175,6 +175,17 @@ class Drive:
         """Of the pistons that have an indicator, whether each drives: its indicated work is positive."""
         return tuple(gas.work > _IDLE * gas.swept_volume for gas in self.gas)
 
+    @cached_property
+    def pumping(self) -> tuple[Any, ...]:
+        """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
+        return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
+
+    @property
+    def beyond(self) -> tuple[Any, ...]:
+        """Of the pistons that have an indicator, whether each is a tandem one on the rod itself, without a lever."""
+        own = self.cylinder.pistons[0].indicator is not None if self.gas else False
+        return tuple(False if own and not n else gas.piston.lever_ratio == 1 for n, gas in enumerate(self.gas))
+
     @property
     def drives(self) -> Any:
         """Whether any piston drives."""
@@ -184,7 +195,7 @@ class Drive:
     def driven(self) -> Any:
         """Whether a piston is driven, its indicated work being negative, or the output works against a resistance."""
         resisted = self.resistance_work is not None and self.resistance_work != 0
-        return any_of((resisted, *(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)))
+        return any_of((resisted, *self.pumping))
 
     # friction
 

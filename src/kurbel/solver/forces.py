@@ -19,6 +19,7 @@ from kurbel.quantity import Quantity, value, values_for
 from kurbel.solver.cycle import SampledCylinder, reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
+from kurbel.solver.gas import PistonGas
 from kurbel.solver.indicated import Indicated
 from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
@@ -79,9 +80,19 @@ def share_of_driving(forces: CylinderForces, name: str) -> Any:
     return lost / where(driving == 0, math.nan, driving)
 
 
-def _works_one_way(forces: CylinderForces) -> bool:
-    """Return whether the pistons of the rod all drive or are all driven, so that `work` is the only work."""
-    return not (forces.work_driving and forces.work_driven)
+class PistonWork(Results):
+    """What one of several pistons of a rod gives or takes."""
+
+    command = "forces"
+    work = value("A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work)
+    power = value("N_i", "power", "Indicated power of the piston", lambda one: one.rate and one.gas.work * one.rate)
+    mean_pressure = value(
+        "p_i", "pressure", "Mean indicated pressure of the piston", lambda one: one.gas.work / one.gas.swept_volume
+    )
+
+    def __init__(self, name: str, gas: PistonGas, rate: Any) -> None:
+        """Take the name, the pressures, and cycles per second, None without a speed."""
+        self.name, self.gas, self.rate = name, gas, rate
 
 
 class CylinderForces(SampledCylinder, Results):
@@ -178,9 +189,14 @@ class CylinderForces(SampledCylinder, Results):
         listed=True,
     )
     work = value("A_i", "energy", "Indicated work of all pistons of the rod per cycle")
-    work_driving = value("A_i+", "energy", "Indicated work of the driving pistons per cycle", unless=_works_one_way)
+    work_driving = value(
+        "A_i+", "energy", "Indicated work of the driving pistons per cycle", unless=lambda one: one.works_one_way
+    )
     work_driven = value(
-        "A_i−", "energy", "Indicated work of the driven pistons per cycle, negative", unless=_works_one_way
+        "A_i−",
+        "energy",
+        "Indicated work of the driven pistons per cycle, negative",
+        unless=lambda one: one.works_one_way,
     )
     resistance_work = value("A_r", "energy", "Work per cycle of what the ram or rocker works against, negative")
     power = value("N_i", "power", "Indicated power")
@@ -283,6 +299,21 @@ class CylinderForces(SampledCylinder, Results):
         if own := math.fsum(work for work, _ in traced):
             found["work_sensitivity"] = math.radians(0.1) * math.fsum(by_angle for _, by_angle in traced) / own
         return found
+
+    @property
+    def works_one_way(self) -> bool:
+        """Whether the pistons of the rod all drive or are all driven, so that `work` is the only work."""
+        return not (self.work_driving and self.work_driven)
+
+    @cached_property
+    def pistons(self) -> tuple[PistonWork, ...]:
+        """Work, power and mean pressure of each piston, where the rod has several with an indicator."""
+        machine, gases = self.drive.machine, self.drive.gas
+        speed = machine.speed
+        rate = None if speed is None or every(speed == 0) else speed / self.drive.revolutions
+        names = machine.piston_names(self.drive.cylinder)
+        each = tuple(PistonWork(name, gas, rate) for name, gas in zip(names, gases))
+        return each if len(each) > 1 else ()
 
     @property
     def no_compressor(self) -> bool:

@@ -23,13 +23,14 @@ import numpy as np
 
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import within_cycle
+from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
 from kurbel.machine.indicator import STROKES, Card, Rectangle
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
-from kurbel.numerics.arithmetic import total
+from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.figures import told
@@ -306,7 +307,9 @@ class PistonGas:
     their areas in m². cycle: degrees of its own cycle, which is run through `repeats` times in that of the cylinder.
     count: of machines, None for one. base: what the figures of the file less this are gauge pressures, in Pa;
     swept_volume: in m³, in the chambers that have pressures; starts: where each pressure bends or jumps in the
-    cylinder's cycle; clearance_volumes: smallest volumes in m³ of head end and crank end, 0 where one is not known.
+    cylinder's cycle; areas: at head end and crank end in m², of a piston by a lever reduced to the crosshead, turned:
+    whether it moves against that; clearance_volumes: smallest volumes in m³ of head end and crank end, 0 where one is
+    not known.
     """
 
     def __init__(
@@ -314,20 +317,24 @@ class PistonGas:
     ) -> None:
         indicator = piston.indicator
         assert indicator is not None
-        at_head = Setting(mechanism, cycle, True, ambient, indicator.absolute)
-        at_crank = at_head._replace(head_end=False, mirrored=indicator.crank_end is indicator.head_end)
+        ratio, self.turned = piston.lever_ratio, some(piston.lever_ratio < 0)
+        if self.turned and some(ratio > 0):
+            raise UsageError("pistons that move with the crosshead and against it are computed apart")
+        at_head = Setting(mechanism, cycle, not self.turned, ambient, indicator.absolute)
+        at_crank = at_head._replace(head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end)
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
         self.absolute, self.base = indicator.absolute, at_head.base
         self.head = _pressure_in(indicator.head_end, at_head, count)
         self.crank = _pressure_in(indicator.crank_end, at_crank, count)
 
-        both = ((self.head, piston.head_area), (self.crank, piston.crank_area))
+        self.areas: tuple[Any, Any] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
+        both = zip((self.head, self.crank), self.areas)
         self.ends = [(end, area) for end, area in both if end is not None]
         self._traces = [(end, area) for end, area in self.ends if isinstance(end, TracePressure)]
         self.swept_volume: Any = sum(area for _, area in self.ends) * self.stroke
         turns = cycle * np.arange(repeats)
         self.starts = [Angles(one.starts.machine, one.starts.degrees + turn) for turn in turns for one, _ in self.ends]
-        chambers = ((indicator.head_end, piston.head_area), (indicator.crank_end, piston.crank_area))
+        chambers = zip((indicator.head_end, indicator.crank_end), self.areas)
         clearances = [(getattr(chamber, "clearance", None), area) for chamber, area in chambers]
         self.clearance_volumes = [0.0 if one is None else one * area * self.stroke for one, area in clearances]
 

@@ -24,11 +24,11 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.arithmetic import some
+from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import Row, column, value, values_for
-from kurbel.solver.drive import Drive
+from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
 from kurbel.solver.gas import Pressure
 from kurbel.solver.motion import MotionColumns
@@ -188,16 +188,43 @@ class State(MotionColumns):
             share = True if shares is None else spread(shares[number], self.drive.index)
             if share is False:
                 continue
-            areas = [spread(one, self.drive.index) * share for one in (gas.piston.head_area, gas.piston.crank_area)]
+            sense = -share if gas.turned else share * 1.0
+            areas = [spread(one, self.drive.index) * sense for one in gas.areas]
             head, crank = ((areas[0] + areas[1]) / 2,) * 2 if alike else areas
             for end, area in ((gas.head, head), (gas.crank, -crank)):
                 force = _sum(force, self.pressure(end) * area) if end else force
         return force
 
-    @cached_property
-    def P_driving(self) -> Any:
-        """Force of gas or steam on the pistons that drive in N; None where none does."""
-        return self.force_on(self.drive.driving)
+    P_driving = value(
+        "P_gas+",
+        "force",
+        "Force of gas or steam on the pistons that drive",
+        lambda state: state.force_on(state.drive.driving),
+        unless=lambda forces: forces.works_one_way,
+    )
+    P_driven = value(
+        "P_gas−",
+        "force",
+        "Force of gas or water on the pistons that are driven",
+        lambda state: state.force_on(state.drive.pumping),
+        unless=lambda forces: forces.works_one_way,
+    )
+
+    @column("P_zw", "force", extremes=("forces",), called="force in the rod between the pistons")
+    def P_between(self) -> Any:
+        """Force in the rod between the cylinder's piston and those in tandem, thrust toward the shaft positive.
+
+        Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
+        """
+        drive = self.drive
+        force = self.force_on(drive.beyond) if some(any_of(drive.beyond)) else None
+        masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
+        pistons = drive.cylinder.pistons
+        if force is None or len(masses) != len(pistons):
+            return force
+        carried = total(*(mass * (one.lever_ratio == 1) for mass, one in zip(masses[1:], pistons[1:])))
+        force = force - self.b * carried if drive.has_inertia else force
+        return force + drive.weight_of(carried)[0]
 
     # the piston force
 

@@ -1,0 +1,118 @@
+"""Several pistons on one rod: their forces, works and mean pressures, and pistons driven by a rocker."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import kurbel
+from kurbel.cli import kurbel as command_line
+from kurbel.errors import KurbelError
+
+STEAM = """
+stroke: 800 mm
+rod_ratio: 5
+speed: 60 rpm
+inclination: 30 deg
+bore: 450 mm
+crank_end_rod: 100 mm
+indicator: {head_end: {constant: {expansion: 6 bar, compression: 1 bar}}, crank_end: mirrored}
+"""
+PUMP = "{name: pump, bore: 285 mm, crank_end_rod: 75 mm, lever_ratio: %s, indicator: {%s}}"
+CHAMBER = "%s: {constant: {expansion: -0.4 bar, compression: %s bar}}"
+MASSES = "masses: {piston: [120 kg, 80 kg], crosshead: 190 kg}\n"
+
+
+def engine(ratio: str = "1", ends: str = "", more: str = "") -> str:
+    both = ends or f"{CHAMBER % ('head_end', 5)}, {CHAMBER % ('crank_end', 3)}"
+    return f"{STEAM}tandem: [{PUMP % (ratio, both)}]\n{more}"
+
+
+A_HEAD, A_CRANK = np.pi / 4 * 0.285**2, np.pi / 4 * (0.285**2 - 0.075**2)
+OUT = (-0.4e5 * A_HEAD - 3e5 * A_CRANK) * 0.8
+BACK = (5e5 * A_HEAD - -0.4e5 * A_CRANK) * 0.8
+"""Work in J of the pump's water on its outstroke and its return stroke; it takes in OUT − BACK."""
+
+
+def test_rod_between_the_pistons_carries_what_the_tandem_piston_does() -> None:
+    """Free body of the tandem piston: gas force, inertia of 80 kg, and its weight toward the shaft."""
+    cylinder = kurbel.solve(engine(more=MASSES)).cylinders[0]
+    state = cylinder.at([40.0, 100.0, 250.0])
+    water = np.array([OUT, OUT, -BACK]) / 0.8 * [1, 1, -1]
+    expected = water - 80 * state.b + 80 * 9.80665 * 0.5
+    assert state.P_between == pytest.approx(expected, rel=1e-13)
+    assert state.P_driven == pytest.approx(water, rel=1e-13)
+    assert state.P_driving + state.P_driven == pytest.approx(state.P_gas, rel=1e-13)
+    assert kurbel.solve(engine()).cylinders[0].at([40.0]).P_between == pytest.approx(water[:1], rel=1e-13)
+
+
+def test_work_power_and_mean_pressure_of_every_piston() -> None:
+    steam, pump = kurbel.solve(engine()).cylinders[0].pistons
+    assert pump.work == pytest.approx(OUT - BACK, rel=1e-13)
+    assert pump.power == pytest.approx(OUT - BACK, rel=1e-13)  # one turn a second
+    assert pump.mean_pressure == pytest.approx((OUT - BACK) / (0.8 * (A_HEAD + A_CRANK)), rel=1e-13)
+    assert steam.mean_pressure == pytest.approx(5e5, rel=1e-13)
+
+
+@pytest.mark.parametrize("ratio", [0.5, -0.5, -1.0, 2.0])
+def test_piston_by_a_rocker_takes_its_own_stroke(ratio: float) -> None:
+    """By virtual work the crosshead feels ratio times its force, and its work is that of its own stroke."""
+    cylinder = kurbel.solve(engine(str(ratio))).cylinders[0]
+    pump = cylinder.pistons[1]
+    assert pump.work == pytest.approx(abs(ratio) * (OUT - BACK), rel=1e-13)
+    assert pump.mean_pressure == pytest.approx((OUT - BACK) / (0.8 * (A_HEAD + A_CRANK)), rel=1e-13)
+    out, back = (OUT / 0.8, BACK / 0.8) if ratio > 0 else (BACK / 0.8, OUT / 0.8)
+    assert cylinder.at([60.0, 300.0]).P_driven == pytest.approx([ratio * out, ratio * back], rel=1e-13)
+    assert abs(cylinder.energy_residual) < 1e-13
+    assert cylinder.at([60.0]).P_between is None
+
+
+def test_against_the_crosshead_ends_change_places() -> None:
+    """A piston that moves against the crosshead at its own stroke is one with its ends exchanged, if both are equal."""
+    ends = f"{CHAMBER % ('head_end', 5)}"
+    text = engine("-1", ends).replace("crank_end_rod: 75 mm, ", "")
+    other = engine("1", ends.replace("head_end", "crank_end")).replace("crank_end_rod: 75 mm, ", "")
+    degrees = np.arange(0.0, 360.0, 15.0)
+    one, two = (kurbel.solve(each).cylinders[0].at(degrees).T for each in (text, other))
+    assert one == pytest.approx(two, rel=1e-12)
+
+
+def test_lever_ratio_of_zero_and_without_tandem_are_refused() -> None:
+    with pytest.raises(KurbelError, match="does not move"):
+        kurbel.loads(engine("0"))
+    with pytest.raises(KurbelError, match="lever_ratio"):
+        kurbel.loads(f"{STEAM}lever_ratio: 2\n")
+
+
+def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
+    ratios = [0.5, -0.5, 1.0, -1.0, 2.0, -2.0]
+    found = kurbel.sweep(engine(), {"tandem.0.lever_ratio": ratios}, ["pump.work", "piston.work", "T_max"])
+    alone = [kurbel.solve(engine(str(one))).cylinders[0] for one in ratios]
+    assert found["pump.work"] == pytest.approx([one.pistons[1].work for one in alone], rel=1e-12)
+    assert found["T_max"] == pytest.approx([one.T_max.value for one in alone], rel=1e-12)
+    many = kurbel.sweep(engine(more=MASSES), {"masses.piston.1": [50.0, 60.0, 80.0, 90.0]}, ["P_between_max"])
+    one = kurbel.solve(engine(more=MASSES)).cylinders[0].P_between_max.value
+    assert many["P_between_max"][2] == pytest.approx(one, rel=1e-12)
+
+
+def test_limits_of_one_piston() -> None:
+    text = engine(more="limits: {pump.mean_pressure: -3 bar, piston.power: 1 kW}\n")
+    found = CliRunner().invoke(command_line, ["check", "-"], input=text)
+    assert found.exit_code == 1
+    assert "pump.mean_pressure" in found.output
+    assert "piston.power" in found.output
+    assert found.output.count("BROKEN") == 1
+
+
+def test_json_and_table_show_every_piston() -> None:
+    run = CliRunner().invoke(command_line, ["forces", "-", "-f", "json"], input=engine())
+    steam, pump = json.loads(run.output)["cylinders"][0]["pistons"]
+    assert (steam["name"], pump["name"]) == ("piston", "pump")
+    assert {one["id"] for one in pump["key_values"]} == {"work", "power", "mean_pressure"}
+    table = CliRunner().invoke(command_line, ["forces", "-"], input=engine()).output
+    assert "Each piston" in table
+    listed = CliRunner().invoke(command_line, ["forces", "-", "--key-values", "-f", "csv"], input=engine()).output
+    assert listed.startswith("key_value,unit")
