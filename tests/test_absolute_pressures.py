@@ -58,7 +58,7 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 def test_limits_and_places_count_as_the_file_does() -> None:
     limited = f"{ABSOLUTE}limits: {{p_max: 6.5 bar}}\n"
-    assert "7 bar > 6.5 bar  BROKEN" in CliRunner().invoke(kurbel, ["check", "-"], input=limited).stdout
+    assert "7 bar > 6.5 bar  FAIL" in CliRunner().invoke(kurbel, ["check", "-"], input=limited).stdout
     found = run("forces", "--where", "p_head = 7 bar", "--columns", "p_head", "-f", "csv")
     assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 

@@ -104,7 +104,7 @@ def test_limits_of_one_piston() -> None:
     assert found.exit_code == 1
     assert "pump.mean_pressure" in found.output
     assert "piston.power" in found.output
-    assert found.output.count("BROKEN") == 1
+    assert found.output.count("FAIL") == 1
 
 
 def test_json_and_table_show_every_piston() -> None:

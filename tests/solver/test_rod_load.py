@@ -88,8 +88,8 @@ def test_limits_bound_it_from_below() -> None:
     limits = "limits: {reversal_angle: 15 deg, reversal_ratio: 0.03}\n"
     broken, kept = (run("check", "-", text=text + limits) for text in (RLO5, RLO1))
     assert broken.exit_code == 1
-    assert "5.88474652 deg < 15 deg  BROKEN" in broken.stdout
-    assert "0.0256515391 < 0.03  BROKEN" in broken.stdout
+    assert "5.88474652 deg < 15 deg  FAIL" in broken.stdout
+    assert "0.0256515391 < 0.03  FAIL" in broken.stdout
     assert kept.exit_code == 0
     assert kept.stdout.count("kept") == 2
 

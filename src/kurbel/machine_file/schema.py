@@ -58,7 +58,12 @@ def _of(form: Form, definitions: Schema) -> Schema:
     if isinstance(form, Keyed):
         one = {"type": "object", "additionalProperties": False}
         cases = form.cases.items()
-        each = [{**one, "required": [name], "properties": {name: _of(case, definitions)}} for name, case in cases]
+        each: list[Schema] = [
+            {**one, "required": [name], "properties": {name: _of(case, definitions)}} for name, case in cases
+        ]
+        for word, of in form.beside.items():
+            inner = next(one for name, one in form.cases[of].parts if name == word)
+            each[list(form.cases).index(of)]["properties"] |= {word: _of(inner, definitions)}
         return {"anyOf": [*each, _of(form.otherwise, definitions)]}
     if isinstance(form, FigureForm):
         name = f"figure_{form.size.kind}"

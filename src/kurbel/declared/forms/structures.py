@@ -360,15 +360,18 @@ class OneOf(Form):
 class Keyed(Form):
     """A mapping with one key that decides its form, `{constant: …}` or `{trace: …}`; without one, `otherwise` reads it.
 
-    texts: meanings of those deciding keys whose value is no mapping.
+    texts: meanings of those deciding keys whose value is no mapping. beside: words that may also stand next to one
+    deciding key, as keys of its mapping.
     """
 
     shape = dict
 
-    def __init__(self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str]) -> None:
+    def __init__(
+        self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str], beside: dict[str, str]
+    ) -> None:
         expected = f"{otherwise.expected}; or with one of {', '.join(cases)}"
         super().__init__(expected, parts=(*cases.items(), ("", otherwise)))
-        self.cases, self.otherwise = cases, otherwise
+        self.cases, self.otherwise, self.beside = cases, otherwise, beside
         self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
@@ -387,6 +390,10 @@ class Keyed(Form):
             for name, meant in misspelt.items():
                 reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
             return REFUSED if misspelt else self.otherwise.read(reading, value, path)
+        own = {name: value[name] for name, of in self.beside.items() if of == telling and name in value}
+        if own and isinstance(value[telling], dict):
+            value = {name: one for name, one in value.items() if name not in own}
+            value[telling] = {**value[telling], **own}
         for name in value:
             if name != telling:
                 home = reading.where_it_belongs(name, path) or "leave it out"
