@@ -96,9 +96,9 @@ def _others() -> Iterator[str]:
     yield f"## Natural vibrations\n\n{_quantities(MODES.values())}"
     yield f"## Holzer's table\n\n{_quantities(HOLZER.values())}"
     yield f"## Critical speeds\n\n{_quantities(CRITICAL_SPEEDS.values())}"
-    yield f"## A piece of shaft at the working speed\n\n{_quantities(PIECES.values())}"
+    yield f"## A shaft segment at the working speed\n\n{_quantities(PIECES.values())}"
     yield f"## An end of a compressor\n\n{_quantities(ENDS.values())}"
-    yield f"## A piece of shaft over the speed\n\n{_quantities(SPEEDS.values())}"
+    yield f"## A shaft segment over the speed\n\n{_quantities(SPEEDS.values())}"
     yield f"## Rows of Zusammenstellung 112 (kurbel table)\n\n{_quantities(FACTORS.values())}"
 
 

@@ -289,7 +289,7 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
-    texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
+    texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
     beside={"unloaded": "compressor"},
 )
 _ONE_PRESSURE = Number(
