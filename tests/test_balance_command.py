@@ -52,9 +52,9 @@ def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
 @pytest.mark.parametrize(
     ("text", "left"),
     [
-        (V90, "free moments no axial_position given of A, B"),
+        (V90, "unbalanced moments no axial_position given of A, B"),
         (V90.replace("{like: A,", "{crank: 50 mm, rod_ratio: 4,"), "inertia of B no masses given"),
-        (V90.replace("speed: 600 rpm", ""), "free forces and moments no speed given"),
+        (V90.replace("speed: 600 rpm", ""), "unbalanced forces and moments no speed given"),
         (V90.replace("like: A,", "like: A, offset: 5 mm,"), "figures of first order the book has no such formula"),
     ],
 )

@@ -77,4 +77,4 @@ def test_three_throws_cannot_be_overhung() -> None:
 def test_a_machine_without_loads_is_refused() -> None:
     result = run("bearings", "-", text="crank: 100 mm\nrod: 500 mm\n")
     assert result.exit_code == 2
-    assert "nothing loads a bearing" in result.stderr
+    assert "no load on any bearing" in result.stderr

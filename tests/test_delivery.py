@@ -279,7 +279,7 @@ def test_a_batch_is_its_machines_one_by_one() -> None:
         (ENDS.replace("inlet_temperature: 35 °C, ", ""), "'inlet_temperature' is missing"),
         (
             ENDS.replace("mirrored", "{constant: {expansion: 1 bar, compression: 2 bar}, unloaded: true}"),
-            "cannot stand",
+            "cannot be combined",
         ),
         (ENDS.replace("clearance: 10 %", "clearance: 20 %, expansion_exponent: 0.5"), "nothing is drawn in"),
     ],

@@ -198,3 +198,9 @@ def test_the_units_of_one_kind() -> None:
     wrong = told("pressur")
     assert (wrong.exit_code, wrong.stderr) == (2, "Error: no kind of quantity 'pressur'; did you mean 'pressure'?\n")
     assert "; there are length, area," in told("nothing of it").stderr
+
+
+def test_psi_and_horsepower_by_definition() -> None:
+    pound_force = 0.45359237 * 9.80665
+    assert parse_quantity("1 psi", "pressure") == pytest.approx(pound_force / 0.0254**2, rel=1e-15)
+    assert parse_quantity("1 hp", "power") == pytest.approx(550 * pound_force * 0.3048, rel=1e-15)

@@ -35,7 +35,7 @@ def test_the_sum_of_the_reciprocating_masses() -> None:
     b = 0.4 * OMEGA**2 * (1 + 0.2)  # at the inner dead centre, R 291
     assert forces.m == 250
     assert forces.at([0]).P_inertia[0] == pytest.approx(-250 * b, rel=1e-13)
-    assert "'reciprocating' and 'piston' say the same thing" in refused(
+    assert "'reciprocating' and 'piston' mean the same" in refused(
         ENGINE + "masses: {reciprocating: 250 kg, piston: 20 kg}\n"
     )
     assert "'reciprocating' and 'connecting_rod'" in refused(
@@ -66,7 +66,7 @@ def test_brake_torque() -> None:
     told = CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
     assert "is below the brake power" in " ".join(told.split())
     both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
-    assert "'brake_power' and 'brake_torque' say the same thing" in both
+    assert "'brake_power' and 'brake_torque' mean the same" in both
     assert "'brake_torque' needs 'speed' beside it" in refused("crank: 1 m\nrod: 4 m\nbrake_torque: 10 kN m\n")
 
 
@@ -80,8 +80,8 @@ def test_a_flywheel_by_mass_and_radius_of_gyration() -> None:
     assert machine.flywheel.inertia == pytest.approx(2000 * 1.44, rel=1e-15)
     for others, says in (
         ("mass: 2 t", "'mass' needs 'radius_of_gyration' beside it"),
-        ("mass: 2 t, radius_of_gyration: 1 m, inertia: 5 kg m2", "'inertia' and 'mass' say the same thing"),
-        ("mass: 2 t, radius_of_gyration: 1 m, gd2: 5 kg m2", "'gd2' and 'radius_of_gyration' say the same thing"),
+        ("mass: 2 t, radius_of_gyration: 1 m, inertia: 5 kg m2", "'inertia' and 'mass' mean the same"),
+        ("mass: 2 t, radius_of_gyration: 1 m, gd2: 5 kg m2", "'gd2' and 'radius_of_gyration' mean the same"),
     ):
         assert says in refused(DIAGRAM + f"flywheel: {{{others}}}\n")
 

@@ -207,7 +207,7 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
         (("--vary", "rod_ratio=3,4", "--resume"), "give --output FILE"),
         (("--vary", "rod_ratio=3,4", "--shard", "3/2"), "write K/N"),
         (("--vary", "rod_ratio=3,4", "-f", "parquet"), "Parquet is a file"),
-        (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "leave one of them out"),
+        (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "give only one of"),
         (("--vary", "rod_ratio=3,4", "--dask", ""), "--dask has no address"),
         (("--vary", "bore=Normal(450 mm, 1 mm)"), "no distribution 'Normal'; known are normal(mean, deviation)"),
         (("--vary", "rod_ratio=3,4", "-o", WATERWORKS), "name another file"),
@@ -284,7 +284,7 @@ def test_python_gets_arrays() -> None:
     [
         ({"rod_ratio": [1, 2], "speed": [3]}, "rod_ratio has 2, speed has 1"),
         ({"rod_ratio": []}, "one or more of them; rod_ratio has 0"),
-        ({"rod": [1.0]}, "no value stands under this key"),
+        ({"rod": [1.0]}, "no value for this key"),
         ({}, "there is none"),
     ],
 )

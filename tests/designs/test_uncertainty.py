@@ -96,8 +96,8 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        (("bor=1 mm",), "bor: no value stands under this key"),
-        (("bo..re=1 mm",), "bo..re: no value stands under this key"),
+        (("bor=1 mm",), "bor: the file has no value for this key"),
+        (("bo..re=1 mm",), "bo..re: the file has no value for this key"),
         (("bore=1 kg",), "kg is a unit of mass"),
         (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
         (("bore",), "write KEY=SPREAD"),

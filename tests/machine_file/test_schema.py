@@ -120,7 +120,7 @@ def rules_of(record: RecordForm) -> jsonschema.Draft7Validator:
 
 @law_of_each(declared("instead"))
 def test_two_keys_that_say_the_same_thing_are_a_contradiction(record: RecordForm, name: str, key: Key) -> None:
-    with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' say the same thing"):
+    with pytest.raises(RuleError, match=f"{name}: '{key.instead}' and '{name}' mean the same"):
         record.record.from_keys(**{name: 1.5, key.instead: 1.5})
     assert not allowed_by_schema(record, name, key.instead)
 
