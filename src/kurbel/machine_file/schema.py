@@ -57,8 +57,11 @@ def _of(form: Form, definitions: Schema) -> Schema:
         return {"anyOf": [_of(one, definitions) for one in form.forms]}
     if isinstance(form, Keyed):
         one = {"type": "object", "additionalProperties": False}
-        cases = form.cases.items()
-        each = [{**one, "required": [name], "properties": {name: _of(case, definitions)}} for name, case in cases]
+        each = []
+        for name, case in form.cases.items():
+            own = case.keys if isinstance(case, RecordForm) else {}
+            beside = {key: _of(own[key].form, definitions) for key in form.beside if key in own}
+            each.append({**one, "required": [name], "properties": {name: _of(case, definitions), **beside}})
         return {"anyOf": [*each, _of(form.otherwise, definitions)]}
     if isinstance(form, FigureForm):
         name = f"figure_{form.size.kind}"

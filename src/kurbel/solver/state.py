@@ -390,9 +390,23 @@ class State(MotionColumns):
     # the guide
 
     @cached_property
+    def across_piston(self) -> Any:
+        """Pressure in Pa at the head end of the cylinder's own piston over that at its crank end."""
+        gas = self.drive.own_gas
+        head, crank = (self.pressure(end) if end else 0.0 for end in ((gas.head, gas.crank) if gas else (None, None)))
+        return head - crank
+
+    @cached_property
+    def steady_friction(self) -> Any:
+        """Friction in N of rings, and what is given as a force."""
+        drive = self.drive
+        by_gas = np.abs(self.across_piston) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
+        return drive.steady_friction + by_gas
+
+    @cached_property
     def _after_steady_friction(self) -> Any:
-        """Force left for crosshead and rod after friction that is the same over the stroke, in N."""
-        steady = self.drive.steady_friction
+        """Force left for crosshead and rod after the friction of rings and what is given as a force, in N."""
+        steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
@@ -515,7 +529,7 @@ class State(MotionColumns):
         lambda state: (
             None
             if state.P is None or state.drive.cylinder.friction is None
-            else state.filled((state.crosshead_drag + state.drive.steady_friction) * -state.direction)
+            else state.filled((state.crosshead_drag + state.steady_friction) * -state.direction)
         ),
     )
 
