@@ -106,23 +106,3 @@ def test_units_that_say_another_zero_than_the_machine_are_refused(unit: str, for
         loads(written_in(unit, "gauge" if counted == "absolute" else "absolute", form))
     assert f"'pressures: {counted}'" in str(caught.value)
     assert unit in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("ambient: 1 bara\n", ""),
-        ("ambient: 1 barg\n", "ambient: 'barg' is gauge, but the ambient is absolute"),
-        ("indicator: {head_end: {mean_pressure: 3 barg}}\n", "'barg' is gauge, but this pressure has no zero"),
-        ("indicator: {head_end: {steam: {admission: 9 ata, exhaust: 1 ata, cut_off: 0.3, clearance: 0.1}}}\n", "'ata'"),
-        ("name: ata\n", ""),
-    ],
-)
-def test_what_a_zero_in_a_unit_belongs_to(text: str, said: str) -> None:
-    base = "crank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
-    if not said:
-        assert loads(base + text)
-        return
-    with pytest.raises(MachineFileError) as caught:
-        loads(base + text)
-    assert said in str(caught.value)

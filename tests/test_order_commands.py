@@ -36,21 +36,6 @@ def test_the_columns_that_scripts_rely_on() -> None:
     assert all(isinstance(one["unit"], str) for one in found["machine_place_tables"][0]["columns"])
 
 
-UNIFORM = "speed: 60 rpm\neffort: {unit: N m, points: [[0, 5], [360, 5]]}\n"
-
-
-@pytest.mark.parametrize("options", [(), ("--speeds", "30, 90 rpm")])
-def test_an_effort_without_orders_is_said_to_have_none(options: tuple[str, ...]) -> None:
-    """Two dozen rows of zeros were printed; scripts still have them."""
-    for look in ("table", "markdown", "html", "latex"):
-        told = " ".join(run("harmonics", "-", "-f", look, *options, text=UNIFORM).stdout.split())
-        assert "The turning effort has none of these orders: they are all zero." in told
-        assert "Orders of the turning effort" not in told
-    found = table(answer("harmonics", "-", *options, text=UNIFORM), "orders")
-    assert (found["order"], found["M_amplitude"]) == (list(range(1, 25)), [0] * 24)
-    assert len(run("harmonics", "-", "-f", "csv", *options, text=UNIFORM).stdout.splitlines()) > 24
-
-
 def test_half_orders_of_four_strokes() -> None:
     found = answer("harmonics", str(CONFIGS / "four-cylinder-generator.yaml"))
     assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]

@@ -83,18 +83,3 @@ def test_wheel_and_sdist_hold_every_file_once(tmp_path: Path) -> None:
     python = installed(tmp_path, wheel)
     check_examples(python, tmp_path)
     assert tmp_path in origin(python, tmp_path).parents
-
-
-@pytest.mark.slow
-def test_the_first_command_of_the_readme_needs_no_symbolic_links(tmp_path: Path) -> None:
-    if not (ROOT / ".git").exists():
-        pytest.skip("no checkout")
-    windows = ("-c", "core.symlinks=false", "-c", "core.autocrlf=true")
-    run("git", *windows, "clone", "--quiet", ROOT, "clone", folder=tmp_path)
-    clone = tmp_path / "clone"
-    assert b"\r" not in (clone / "configs" / "waterworks.yaml").read_bytes()
-    assert b"\r" not in (clone / "tests" / "golden" / "table.txt").read_bytes()
-    forces = (sys.executable, "-m", "kurbel", "forces", "configs/waterworks.yaml")
-    text = run(*forces, folder=clone, PYTHONPATH=str(clone / "src"))
-    assert text.startswith("Waterworks engine")
-    assert "P_max" in text

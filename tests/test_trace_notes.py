@@ -15,7 +15,7 @@ from kurbel.machine_file import loads
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.warnings import machine_notes
 from kurbel.solver.case import Case
-from kurbel.traces.checks import CHECKS, Reading
+from kurbel.traces.checks import CHECKS, TraceReading
 from kurbel.traces.correct import Setting, Trace, corrected
 from representative import few
 
@@ -317,7 +317,7 @@ def test_no_trace_stops_a_check() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for _ in range(400):
-            reading = Reading(*(drawn := drawn_trace(random)), corrected(*drawn))
+            reading = TraceReading(*(drawn := drawn_trace(random)), corrected(*drawn))
             assert all(isinstance(check(reading), str) for check in CHECKS)
 
 

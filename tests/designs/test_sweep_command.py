@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -295,21 +294,3 @@ def test_python_is_told_what_is_wrong(inputs: dict[str, list[float]], message: s
     machine = kurbel.Machine((kurbel.Cylinder(kurbel.SliderCrank(0.1, 0.5)),))
     with pytest.raises(kurbel.KurbelError, match=r"kurbel\.load"):
         kurbel.sweep(machine, {"crank": [1.0]})
-
-
-@pytest.mark.slow
-def test_memory_does_not_grow_with_the_rows() -> None:
-    """Machines leave circles of references behind: 6,000 rows once took 1.2 GB, and 150,000 ended at the last byte."""
-    # the peak of the process's own memory: that of `getrusage` begins with what the testing process held
-    status = Path("/proc/self/status")
-    if not status.exists():
-        pytest.skip("nothing here tells a process's peak of memory")
-    told = (
-        "import atexit, sys; from pathlib import Path; from kurbel.__main__ import main\n"
-        f"atexit.register(lambda: sys.stderr.write(Path({str(status)!r}).read_text())); main()"
-    )
-    asked = ["sweep", WATERWORKS, "--vary", "rod_ratio=3:6:0.0005", "--columns", "T_max", "-f", "csv"]
-    ran = subprocess.run([sys.executable, "-c", told, *asked], capture_output=True, text=True, check=True)
-    assert len(ran.stdout.splitlines()) == 6002
-    (peak,) = re.findall(r"VmHWM:\s+(\d+) kB", ran.stderr)
-    assert int(peak) < 250_000

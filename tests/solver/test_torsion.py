@@ -15,9 +15,12 @@ from kurbel.machine.shaft_line import ShaftPart, line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
-from kurbel.solver.chain import Chain, Modes, response
+from kurbel.solver.chain import Chain, Modes, holzer_at, response
 from kurbel.solver.torsion import ShaftVibration
 from representative import few
+
+ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
+"""Fixed ends."""
 
 
 def undamped(inertias: list[float], stiffnesses: list[float], ground: str = "") -> Chain:
@@ -29,7 +32,7 @@ def at_random(count: int, spread: float, ground: str, seed: int) -> Chain:
     """A chain whose masses and stiffnesses differ by up to 10^(2 spread)."""
     draw = np.random.default_rng(seed)
     inertias = 10 ** draw.uniform(-spread, spread, count) * draw.uniform(0.5, 2, count)
-    stiffnesses = 10 ** draw.uniform(3 - spread, 3 + spread, count if ground else count - 1)
+    stiffnesses = 10 ** draw.uniform(3 - spread, 3 + spread, count - 1 + ENDS[ground])
     return undamped(inertias.tolist(), stiffnesses.tolist(), ground)
 
 
@@ -52,13 +55,8 @@ def eigenvalues(chain: Chain) -> list[mpmath.mpf]:
 
 
 CHAINS = [
-    *((count, spread, ground) for count in (2, 8) for spread in (0, 5) for ground in ("", "before", "after")),
-    *(
-        pytest.param(n, s, g, marks=pytest.mark.slow)
-        for n in (3, 20)
-        for s in (0, 2, 5)
-        for g in ("", "before", "after")
-    ),
+    *((count, spread, ground) for count in (2, 8) for spread in (0, 5) for ground in ENDS),
+    *(pytest.param(n, s, g, marks=pytest.mark.slow) for n in (3, 20) for s in (0, 2, 5) for g in ENDS),
     pytest.param(30, 5, "", marks=pytest.mark.slow),
 ]
 
@@ -75,7 +73,7 @@ def test_frequencies_with_all_their_digits(count: int, spread: float, ground: st
         assert (found[0] == 0) == (not ground)
 
 
-HELD = [(*size, ground) for size in ((2, 0), (9, 1), (30, 0), (30, 3)) for ground in ("", "before", "after")]
+HELD = [(*size, ground) for size in ((2, 0), (9, 1), (30, 0), (30, 3)) for ground in ENDS]
 
 
 @pytest.mark.parametrize(("count", "spread", "ground"), few(HELD, [one for one in HELD if one[:2] != (30, 0)]))
@@ -113,6 +111,33 @@ def test_equal_chains_in_closed_form() -> None:
     assert Modes(undamped([3.0] * count, [300.0] * (count - 1))).omegas == pytest.approx(exact, rel=1e-14)
 
 
+def test_equal_chains_between_two_fixed_ends_in_closed_form() -> None:
+    """2 √(k/J) sin(i π/(2n + 2)), i = 1 … n."""
+    count = 25
+    exact = [2 * math.sqrt(300.0 / 3) * math.sin(i * math.pi / (2 * count + 2)) for i in range(1, count + 1)]
+    assert Modes(undamped([3.0] * count, [300.0] * (count + 1), "both")).omegas == pytest.approx(exact, rel=1e-14)
+
+
+@pytest.mark.parametrize("ground", ENDS)
+def test_holzer_at_a_frequency(ground: str) -> None:
+    """At a natural frequency the table of the mode, else what a torque on the last mass, or a moved end, would make."""
+    chain = at_random(5, 0, ground, 11)
+    modes = Modes(chain)
+    natural, mode = holzer_at(chain, modes.omegas[2]), modes.holzer(2)
+    assert natural.angles == pytest.approx(mode.angles, rel=1e-9)
+    assert natural.torques == pytest.approx(mode.torques, rel=1e-9, abs=1e-9 * np.abs(mode.torques).max())
+
+    omega = 0.7 * modes.omegas[1] + 3
+    table = holzer_at(chain, omega)
+    held = chain.held[1]
+    matrix = chain.twists.T @ np.diag(chain.stiffnesses) @ chain.twists - np.diag(omega**2 * chain.inertias)
+    sides = matrix @ table.angles
+    assert sides[:-1] == pytest.approx(np.zeros(4), abs=1e-9 * np.abs(table.torques).max())
+    acting = chain.stiffnesses[-1] * table.residual if held else -table.residual
+    assert sides[-1] == pytest.approx(acting, rel=1e-9)
+    assert table.angles[0] == 1
+
+
 # forced torsional vibration: order by order, over the angle, by its energy, and with the coupling of the flywheel
 
 CONFIGS = Path(__file__).parent.parent.parent / "configs"
@@ -121,7 +146,7 @@ POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
 
 def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
     draw = np.random.default_rng(seed)
-    pieces = count if ground else count - 1
+    pieces = count - 1 + ENDS[ground]
     return Chain(
         10 ** draw.uniform(-1, 1, count),
         10 ** draw.uniform(3, 5, pieces),
@@ -132,7 +157,7 @@ def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
     )
 
 
-@pytest.mark.parametrize("ground", ["", "before", "after"])
+@pytest.mark.parametrize("ground", ["", "before", "after", "both"])
 @pytest.mark.parametrize("count", [1, 2, 5, 12])
 def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     """(K (1 + iη) + iνω C − (νω)² J) θ = M, with 40 digits by mpmath."""
@@ -260,3 +285,22 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     mean = mpmath.quad(lambda phi: slope(phi) ** 2, [0, mpmath.pi / 2, mpmath.pi, 2 * mpmath.pi]) / (2 * mpmath.pi)
     each = (90 + 30 + 60 + 60) * crank**2 * mean + 60 * crank**2
     assert found.chain.inertias[0] == pytest.approx(float(900 + 2 * each), rel=1e-13)
+
+
+def test_a_shaft_held_at_both_ends() -> None:
+    """A mean torque goes to both ends as their stiffness, k₁/(k₁ + k₂); one mass swings by M/(k₁ + k₂ − J Ω²)."""
+    parts = [
+        "ground",
+        ShaftPart(stiffness=3e4),
+        ShaftPart(inertia=2.0, damping=1e-9),
+        ShaftPart(stiffness=1e4),
+        "ground",
+    ]
+    effort, omega = Harmonics(80.0, ((2.0, 0.0, 12.0),)), 2 * 2 * math.pi * 5
+    found = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
+    swing = 12 / (4e4 - 2 * omega**2)
+    before, after = found.pieces
+    assert (before.name, after.name) == ("ground – mass 1", "mass 1 – ground")
+    assert (before.M_shaft_mean, after.M_shaft_mean) == pytest.approx((-60, 20))
+    assert (before.M_vibratory, after.M_vibratory) == pytest.approx((3e4 * swing, 1e4 * swing), rel=1e-9)
+    assert found.natural_frequency == pytest.approx(math.sqrt(4e4 / 2) / (2 * math.pi), rel=1e-14)

@@ -43,6 +43,6 @@ def find(**options: Any) -> None:
     none. Places where the key value jumps over the wanted one, and parts of the range in which designs fail, are
     reported. With --write, FILE is printed with what was found; comments stay.
     """
-    from kurbel.cli.finding import Options, run
+    from kurbel.cli.finding import FindOptions, run
 
-    run(Options(**options))
+    run(FindOptions(**options))

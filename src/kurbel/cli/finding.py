@@ -23,7 +23,7 @@ _DIGITS = 7
 """Significant digits of a table: values are found to be written into a file."""
 
 
-class Options(NamedTuple):
+class FindOptions(NamedTuple):
     """The options of the command, by their names."""
 
     file: str
@@ -44,7 +44,7 @@ class Options(NamedTuple):
     digits: int | None
 
 
-def run(options: Options) -> None:
+def run(options: FindOptions) -> None:
     """Search for what is wanted, and print, draw or write it. Raises UsageError, NoSolutionError."""
     if options.write and (options.case_name or options.format):
         raise click.UsageError(f"--write prints FILE; leave {'--case' if options.case_name else '--format'} out.")

@@ -11,6 +11,7 @@ from kurbel.cli.options import (
     Spreads,
     angle_options,
     columns_option,
+    frequency,
     machine_file,
     orders_option,
     output_options,
@@ -180,9 +181,20 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 @click.option(
     "--modes", type=click.IntRange(1, 100), default=3, help="Critical speeds of so many modes; 3 if not given."
 )
-@click.option("--mode", type=click.IntRange(1), default=1, help="The mode of Holzer's table; 1 if not given.")
+@click.option("--mode", type=click.IntRange(1), help="The mode of Holzer's table; 1 if not given.")
+@click.option(
+    "--at",
+    type=frequency,
+    metavar="'F Hz'",
+    help="Holzer's table at this frequency, with what it leaves, not of a mode.",
+)
 def torsion(
-    request: "Request", orders: tuple[float, ...] | None, speeds: tuple[float, ...] | None, modes: int, mode: int
+    request: "Request",
+    orders: tuple[float, ...] | None,
+    speeds: tuple[float, ...] | None,
+    modes: int,
+    mode: int | None,
+    at: float | None,
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
@@ -193,4 +205,8 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
-    request.print(torsion_report, Wanted(orders, modes, mode, speeds))
+    if mode is not None and at is not None:
+        raise click.UsageError(
+            "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
+        )
+    request.print(torsion_report, Wanted(orders, modes, mode or 1, speeds, at))

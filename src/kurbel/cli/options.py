@@ -77,6 +77,17 @@ def speeds(text: str) -> tuple[float, ...]:
     return found
 
 
+def frequency(text: str) -> float:
+    """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
+    try:
+        found = parse_quantity(text, "speed")
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
+    if not found > 0:
+        raise click.BadParameter(f"'{text}': a frequency is more than 0")
+    return found
+
+
 def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, ...]:
     if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
         raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")

@@ -86,6 +86,6 @@ def sweep(**options: Any) -> None:
     Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
     gives 'limits', each row says whether it keeps them, and which is the first that it breaks.
     """
-    from kurbel.cli.sweeping import Options, run
+    from kurbel.cli.sweeping import SweepOptions, run
 
-    run(Options(**options))
+    run(SweepOptions(**options))

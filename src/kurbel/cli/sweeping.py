@@ -25,7 +25,7 @@ _LINES = ("csv", "json")
 """Formats that can go on where they end."""
 
 
-class Options(NamedTuple):
+class SweepOptions(NamedTuple):
     """The options of the command, by their names."""
 
     file: str
@@ -55,7 +55,7 @@ class Options(NamedTuple):
     yes: bool
 
 
-def run(wanted: Options) -> None:
+def run(wanted: SweepOptions) -> None:
     """Compute and write the rows. Raises UsageError for options that do not go together."""
     written = format_of(wanted.format, wanted.file_name, _SUFFIXES)
     named = wanted.file_name not in (None, "-")
@@ -109,7 +109,7 @@ def run(wanted: Options) -> None:
         write_rows(chosen, titles, look, wanted.file_name, early, headed, kept)
 
 
-def _refuse_contradictions(wanted: Options, written: str, named: bool, in_order: bool) -> None:
+def _refuse_contradictions(wanted: SweepOptions, written: str, named: bool, in_order: bool) -> None:
     """Raise click.UsageError for options that do not go together."""
     for wrong, message in (
         (not (wanted.vary or wanted.cases), "Missing option '--vary', which says what varies; or give --cases."),

@@ -66,7 +66,7 @@ class Binder:
             owner, name, inner = _owner(path_of(key), every)
             form = owner.form.keys[name].form
             bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
-            self.kinds.append(form.kind or ("ratio" if bare else ""))
+            self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Batches:

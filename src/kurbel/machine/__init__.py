@@ -23,12 +23,12 @@ from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
-from kurbel.machine.known_effort import Known
+from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
 from kurbel.machine.parts import Piston
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
+from kurbel.machine.turning import MOST_TURNS, Coupling, Flywheel, Known, Load, Swing
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace
 
@@ -138,8 +138,8 @@ class Machine(Record):
         absent="constant",
         gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
     )
-    effort: Effort | Harmonics | None = field(
-        RecordForm(Known),
+    effort: Known | None = field(
+        RecordForm(KnownEffort),
         "A turning-moment diagram known from elsewhere, instead of cylinders",
         absent="from the cylinders",
     )
@@ -203,6 +203,14 @@ class Machine(Record):
         default=(),
         absent="one case, the file as it is",
     )
+    cycle_turns: int = field(
+        int,
+        "Turns of the shaft after which everything repeats, as of a press that works once in several",
+        default=1,
+        least=1,
+        most=MOST_TURNS,
+        absent="those of the working cycle",
+    )
 
     @classmethod
     def of_keys(
@@ -260,8 +268,12 @@ class Machine(Record):
             yield from (Rule.of(fault.below(("cylinders", index, "friction"))) for fault in rubbing)
         yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
-            if diagram is not None and (message := diagram.cycle_fault(self._common_cycle)):
+            if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
                 yield Rule.of(Fault((key, getattr(diagram, "key", "points")), message))
+        if isinstance(self.effort, Swing):
+            message = "needs the effort over the angle; of this one the swing of energy alone is given"
+            yield Rule("load", self.load is not None and self.load.varies, message)
+            yield Rule("coupling", self.coupling is not None, message)
         if self.shaft is not None:
             message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
             yield Rule("coupling", self.coupling is not None, message)
@@ -317,8 +329,8 @@ class Machine(Record):
 
     @property
     def revolutions(self) -> int:
-        """Revolutions of the shaft until everything repeats: 1, or 2 where any cylinder works in four strokes."""
-        return CYCLES[self._common_cycle]
+        """Revolutions of the shaft until everything repeats: those of the longest cycle, and of `cycle_turns`."""
+        return math.lcm(CYCLES[self._common_cycle], self.cycle_turns)
 
     @property
     def trace_files(self) -> tuple[str, ...]:

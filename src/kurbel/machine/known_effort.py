@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms.values import FILE_PATH, Points, size_faults, unit_name
+from kurbel.declared.forms.values import FILE_PATH, Points, unit_name
 from kurbel.declared.keys import Key
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative
 from kurbel.declared.units import Factor, Point
-from kurbel.errors import refuse, refused
+from kurbel.errors import refused
 from kurbel.machine.measured import (
     ANGLE_COLUMN,
     ANGLE_STEP,
@@ -23,28 +23,28 @@ from kurbel.machine.measured import (
     layout_of,
     layout_rules,
 )
-from kurbel.machine.turning import Effort, Harmonics
+from kurbel.machine.turning import HARMONICS, MEAN_TORQUE, Effort, Harmonics, InUnit, Known, Swing
 from kurbel.traces.cycles import Samples, samples_of_file
-
-_HIGHEST = 1000
-"""Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
 def _of_file(key: Key) -> Key:
     return key._replace(needs="file")
 
 
-class Known(Record):
-    """What becomes an `Effort`, or `Harmonics`."""
+class KnownEffort(Record):
+    """What becomes an `Effort`, `Harmonics` or a `Swing`."""
 
-    unit = alternative(unit_name("torque"), "Unit of the torques", required=True)
+    unit = alternative(unit_name("torque"), "Unit of the torques")
     points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
         "M",
         instead="file",
+        needs="unit",
     )
-    file = alternative(FILE_PATH, "File with a column of angles in degrees and one of torques", example="effort.csv")
+    file = alternative(
+        FILE_PATH, "File with a column of angles in degrees and one of torques", needs="unit", example="effort.csv"
+    )
     angle_column, angle_unit = _of_file(ANGLE_COLUMN), _of_file(ANGLE_UNIT)
     recorded_speed, angle_step = _of_file(RECORDED_SPEED), _of_file(ANGLE_STEP)
     torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")
@@ -52,10 +52,20 @@ class Known(Record):
     angle_zero = alternative(
         "angle", "Angle of the firing or inner dead centre as the file counts", absent="0 deg", needs="file"
     )
-    mean = alternative("ratio", "Mean torque beside the harmonics, in the unit", "M_m", needs="harmonics")
+    mean = alternative(MEAN_TORQUE, "Mean torque with its unit, or bare in that of the harmonics", "M_m")
     harmonics = alternative(
-        Points("order", "cos", "sin", least=1),
+        HARMONICS,
         "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+        needs="mean",
+    )
+
+    swing = alternative("energy", "Swing of energy, where nothing else of the effort is known", "ΔE", least=0)
+    coefficient = alternative(
+        "ratio",
+        "Coefficient of fluctuation of energy: the swing over the work of a cycle, which the mean torque gives",
+        "ΔE/A",
+        least=0,
+        instead="swing",
         needs="mean",
     )
 
@@ -63,36 +73,39 @@ class Known(Record):
     def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
         if has_refused(given.values()):
             return
-        one = sum(name in given for name in ("points", "file", "harmonics")) == 1
-        yield Rule((), not one, "give one of 'points', 'file' or 'harmonics'")
+        forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
+        message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
+        yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
+        level = "mean" in given and forms in (["points"], ["file"])
+        yield Rule(
+            "mean", level, f"belongs to harmonics, a swing or a coefficient; '{forms[0] if forms else ''}' has its own"
+        )
+        bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
+        yield Rule("mean", bare, f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'")
+        if "harmonics" in given:
+            lacking = next((name for name in ("unit", "mean") if name not in given), "")
+            yield Rule("harmonics", bool(lacking), f"'harmonics' needs '{lacking}' beside it")
         if "file" in given:
             yield from layout_rules("torque", given)
 
     @classmethod
     def of_keys(
         cls,
-        unit: Factor,
+        unit: Factor = (1.0, 1.0),
         points: list[Point] | None = None,
         file: str | None = None,
         harmonics: list[tuple[float, float, float]] | None = None,
-        mean: float = 0.0,
+        mean: float | None = None,
+        swing: float | None = None,
+        coefficient: float | None = None,
         **layout: Any,
-    ) -> Effort | Harmonics:
+    ) -> Known:
         """Return the effort that these keys describe, its file read; raises RuleError."""
         if harmonics is not None:
-            return _by_harmonics(unit, mean, harmonics)
+            return Harmonics.of_keys(unit, mean or 0.0, harmonics)
+        if swing is not None or coefficient is not None:
+            return Swing(swing, coefficient, mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean)
         return Effort.of_points(unit, points or []) if file is None else _from_file(unit, file, **layout)
-
-
-def _by_harmonics(unit: Factor, mean: float, harmonics: list[tuple[float, float, float]]) -> Harmonics:
-    up, down = unit
-    for index, (order, _, _) in enumerate(harmonics):
-        if not 0 < order <= _HIGHEST:
-            message = f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
-            refused(message, "harmonics", index, 0)
-    sizes = [(0.0, mean), *((order, abs(c) + abs(s)) for order, c, s in harmonics)]
-    refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
-    return Harmonics(mean * up / down, tuple((n, c * up / down, s * up / down) for n, c, s in harmonics))
 
 
 def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:

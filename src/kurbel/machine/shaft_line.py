@@ -155,7 +155,7 @@ class ShaftPiece:
 class ShaftLine:
     """Masses along a shaft and the pieces between them; the piece to a fixed end comes first or last.
 
-    ground: `before` or `after` the masses, or empty; load: which mass takes the load.
+    ground: `before` or `after` the masses, `both`, or empty; load: which mass takes the load.
     """
 
     masses: tuple[ShaftMass, ...]
@@ -219,15 +219,15 @@ def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
     grounds = [index for index, kind in enumerate(kinds) if kind == GROUND]
     if len(gears) > 1:
         yield Fault((gears[1], "gear"), "one reduction is all that a shaft line may have; refer the others to it by u²")
-    if len(grounds) > 1:
-        yield Fault((grounds[1],), "a shaft that is held at both ends does not turn; leave one 'ground' out")
-    if kinds.count("mass") + len(grounds) < 2:
+    cranks = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.cylinder]
+    if len(grounds) > 1 and cranks:
+        yield Fault((cranks[0],), "a shaft that is held at both ends does not turn a crank; leave one 'ground' out")
+    if kinds.count("mass") + min(len(grounds), 1) < 2:
         second = "give a second one and the piece of shaft between them"
         yield Fault((), f"one mass has nothing to vibrate against; {second}")
     loads = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.load]
     if len(loads) > 1:
         yield Fault((loads[1], "load"), "one mass takes the load; leave one of them out")
-    cranks = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.cylinder]
     if gears and cranks and cranks[0] < gears[0] < cranks[-1]:
         yield Fault((gears[0], "gear"), "cranks stand before and behind the gear; they turn at one speed")
 
@@ -259,7 +259,9 @@ def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
             piece = _piece(part, ratio)
             pieces.append(_in_series(pieces.pop(), piece) if before == "piece" else piece)
         before = kind
-    ground = "before" if parts[0] == GROUND else "after" if parts[-1] == GROUND else ""
+    ground = {(True, True): "both", (True, False): "before", (False, True): "after"}.get(
+        (parts[0] == GROUND, parts[-1] == GROUND), ""
+    )
     # what drives or is driven stands at an end, and is no crank
     usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
     return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])

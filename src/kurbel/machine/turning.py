@@ -5,15 +5,22 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from kurbel.declared.forms.values import Points, size_faults, unit_name
-from kurbel.declared.reading import has_refused
+from kurbel.declared.forms.structures import OneOf
+from kurbel.declared.forms.values import Number, Points, size_faults, unit_name
+from kurbel.declared.numerals import NUMBER, plain
+from kurbel.declared.reading import Reading, has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.units import Factor, Point
-from kurbel.errors import Fault, Path, refuse
+from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
+from kurbel.numerics.arithmetic import is_whole, some
 
 CAST_IRON = 7250.0
 """Density in kg/m³ of what rims are cast of."""
+MOST_TURNS = 100
+"""Turns of the shaft after which everything repeats, at most."""
+_HIGHEST = 1000
+"""Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -200,9 +207,16 @@ class Effort:
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        return _beyond_cycle(self.angles[-1], cycle)
+    def cycle_fault(self, cycle: str, turns: int) -> str:
+        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
+        last, whole = self.angles[-1], 360.0 * turns
+        if whole % last == 0:  # one of a single turn repeats in the second one of a four-stroke cycle
+            return ""
+        name, four = f"a {cycle} cycle", turns < 2 and last == 720
+        if turns != CYCLES[cycle]:
+            name = "the cycle"
+        write = "cycle: four-stroke" if four else f"cycle_turns: {last / 360:g}"
+        return f"the diagram runs to {last:g} deg, {name} has {whole:g} deg; write '{write}' at the top"
 
     @property
     def key(self) -> str:
@@ -212,7 +226,7 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
-    """A turning effort by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
+    """A torque by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
 
     terms: (ν, c, s) each.
     """
@@ -222,27 +236,98 @@ class Harmonics:
 
     key: ClassVar[str] = "harmonics"
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
+    @classmethod
+    def of_keys(cls, unit: Factor, mean: float, terms: list[tuple[float, float, float]]) -> "Harmonics":
+        """Return those that stand under `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
+        up, down = unit
+        for index, (order, _, _) in enumerate(terms):
+            if not 0 < order <= _HIGHEST:
+                message = (
+                    f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
+                )
+                refused(message, "harmonics", index, 0)
+        bare = isinstance(mean, InUnit)
+        sizes = [(0.0, mean if bare else 0.0), *((order, abs(c) + abs(s)) for order, c, s in terms)]
+        refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
+        level = mean * up / down if bare else mean
+        return cls(level, tuple((n, c * up / down, s * up / down) for n, c, s in terms))
+
+    def cycle_fault(self, cycle: str, turns: int) -> str:
+        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
         for order, _, _ in self.terms:
-            if (order * CYCLES[cycle]) % 1:
-                return f"order {order:g} does not repeat after a {cycle} cycle; orders count periods per turn"
+            if not is_whole(order * turns):
+                name = f"a {cycle} cycle" if turns == CYCLES[cycle] else f"{turns} turns"
+                return f"order {order:g} does not repeat after {name}; orders count periods per turn"
         return ""
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """A turning effort of which the swing of energy alone is known, ΔE in J, or its coefficient ΔE/A.
+
+    mean: mean torque in N m, None where it is not known.
+    """
+
+    swing: float | None = None
+    coefficient: float | None = None
+    mean: float | None = None
+
+    key: ClassVar[str] = "swing"
+
+    def cycle_fault(self, cycle: str, turns: int) -> str:
+        """Return an empty text: it fits every cycle."""
+        return ""
+
+    def energy(self, turns: int) -> Any:
+        """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
+        return (
+            self.swing if self.coefficient is None else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)
+        )
+
+
+Known = Effort | Harmonics | Swing
+"""A turning effort that is known from elsewhere."""
+
+
+class InUnit(float):
+    """A bare number in the unit that is given beside it."""
+
+
+class _MeanTorque(OneOf):
+    """A mean torque with its unit, or as a bare number in the unit of the diagram, which becomes `InUnit`."""
+
+    def __init__(self) -> None:
+        super().__init__(Number("torque"), Number("ratio"))
+        self.number = None
+
+    def kind_as_written(self, text: Any) -> str:
+        """Return `ratio` of a bare number, else `torque`."""
+        return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
+
+    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+        """Read it as what it looks like."""
+        bare = self.kind_as_written(value) == "ratio"
+        found = self.forms[bare].read(reading, value, path)
+        return InUnit(found) if bare and isinstance(found, float) else found
+
+
+MEAN_TORQUE = _MeanTorque()
+HARMONICS = Points("order", "cos", "sin", least=1)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Load(Record):
-    """The resistance at the shaft, in exactly one of three forms.
+    """The resistance at the shaft, in exactly one of four forms.
 
     power: k of a torque ∝ ω^k that equals the mean effort at the nominal speed; slip: s of a torque
-    mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn.
+    mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn, by points or harmonics.
     """
 
     power: float | None = field("ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law")
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(unit_name("torque"), "Unit of the torques", needs="points", key="unit")
+    _unit = alternative(unit_name("torque"), "Unit of the torques", key="unit")
     _points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump",
@@ -251,18 +336,50 @@ class Load(Record):
         gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
         key="points",
     )
-    diagram: Effort | None = None
+    _mean = alternative(
+        MEAN_TORQUE,
+        "Mean torque beside the harmonics, in the unit",
+        "M_m",
+        needs="harmonics",
+        key="mean",
+    )
+    _harmonics = alternative(
+        HARMONICS,
+        "Harmonics of the torque: periods per turn, and the factors of cos νφ and sin νφ",
+        needs="unit",
+        instead="points",
+        gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
+        key="harmonics",
+    )
+    diagram: Effort | Harmonics | None = None
+
+    @classmethod
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        lone = "unit" in given and not {"points", "harmonics"} & given.keys()
+        yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
+        yield Rule("harmonics", "harmonics" in given and "mean" not in given, "'harmonics' needs 'mean' beside it")
 
     def rules(self) -> Iterator[Rule]:
-        forms = {"power_law": self.power, "slip": self.slip, "points": self.diagram}
+        forms = {"power_law": self.power, "slip": self.slip, self.key: self.diagram}
         given = [name for name, value in forms.items() if value is not None]
-        yield Rule((), not given, "give one of 'power_law', 'slip' or 'points'; or write 'load: constant'")
+        message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
+        yield Rule((), not given, message)
         names = " and ".join(f"'{name}'" for name in given)
         yield Rule((given[1:] or ("",))[0], len(given) > 1, f"{names} are different loads; keep one of them")
 
-    def cycle_fault(self, cycle: str) -> str:
-        """Return what does not fit the cycle of the machine, or an empty text."""
-        return self.diagram.cycle_fault(cycle) if self.diagram else ""
+    @property
+    def varies(self) -> bool:
+        """Whether it varies over the turn or with the speed."""
+        return self.diagram is not None or self.slip is not None or some(self.power != 0)
+
+    @property
+    def key(self) -> str:
+        """The key that the torques stand under."""
+        return self.diagram.key if self.diagram else "points"
+
+    def cycle_fault(self, cycle: str, turns: int) -> str:
+        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
+        return self.diagram.cycle_fault(cycle, turns) if self.diagram else ""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -277,10 +394,10 @@ class Coupling(Record):
 def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
     """Return what is wrong with the angles of a diagram over one cycle.
 
-    They run from 0 to 360 or 720 deg and do not turn back; two points at one angle are a jump, three are one too many.
+    They run from 0 to the end of a turn and do not turn back; two points at one angle are a jump, three one too many.
     """
     for i, (angle, _) in enumerate(points):
-        if not 0 <= angle <= 720:
+        if not 0 <= angle <= 360 * MOST_TURNS:
             return [Fault((*path, i), f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg")]
         if i and angle < points[i - 1][0]:
             return [
@@ -288,16 +405,8 @@ def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
             ]
         if i >= 2 and angle == points[i - 2][0]:
             return [Fault((*path, i), f"three points at {angle:g} deg; a jump has two")]
-    if not points or points[0][0] != 0 or points[-1][0] not in (360, 720):
+    if not points or points[0][0] != 0 or points[-1][0] == 0 or points[-1][0] % 360:
         runs = f"this one runs from {points[0][0]:g} to {points[-1][0]:g} deg" if points else "this one has no points"
         whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
         return [Fault(path, f"{whole}, {runs}; give the values at both ends of the cycle, with angles in degrees")]
     return []
-
-
-def _beyond_cycle(last: float, cycle: str) -> str:
-    """Return what to write when a diagram ends at an angle (in degrees) that the cycle does not have; else ''."""
-    whole = 360.0 * CYCLES[cycle]
-    if last <= whole:  # one of a single turn repeats in the second one of a four-stroke cycle
-        return ""
-    return f"the diagram runs to {last:g} deg, a {cycle} cycle has {whole:g} deg; write 'cycle: four-stroke' at the top"

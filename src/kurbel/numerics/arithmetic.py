@@ -55,6 +55,11 @@ def some(condition: Any) -> bool:
     return condition if isinstance(condition, bool) else bool(condition.any())
 
 
+def is_whole(value: Any) -> Any:
+    """Return whether a float, or each of an array, is a whole number but for rounding."""
+    return abs((value + 0.5) % 1 - 0.5) < 1e-9
+
+
 def total(*terms: Any) -> Any:
     """Return the sum of floats, rounded once; with arrays among them, as good as that (Ogita, Rump, Oishi 2005).
 

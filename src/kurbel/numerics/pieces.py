@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, NamedTuple, Union
 
 import numpy as np
@@ -62,15 +63,12 @@ class Angles(NamedTuple):
     machine: Indices
     degrees: Array
 
-    def of_each(self, count: int) -> list[Array]:
-        """Return those of every machine."""
-        return np.split(self.degrees, np.searchsorted(self.machine, np.arange(1, count)))
-
     def listed(self, count: int | None) -> tuple[Any, ...]:
         """Return them as a tuple; of many machines one tuple each."""
         if count is None:
             return tuple(self.degrees.tolist())
-        return tuple(tuple(one.tolist()) for one in self.of_each(count))
+        known, ends = self.degrees.tolist(), np.searchsorted(self.machine, np.arange(count + 1)).tolist()
+        return tuple(tuple(known[low:high]) for low, high in pairwise(ends))
 
 
 class SampledExtremes(NamedTuple):
@@ -299,9 +297,11 @@ class Pieces:
         # a polynomial exceeds its samples by less than they differ
         which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
         samples = sign * np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
-        rows, places, turning = _turning_points(samples, self.rule)
+        # where all samples are equal but for rounding, it alone turns
+        bent = np.flatnonzero(np.ptp(samples, axis=0) > _STRAIGHT * size[which, self.machine[piece]])
+        rows, places, turning = _turning_points(samples[:, bent], self.rule)
         inside = np.abs(places) < _INSIDE
-        rows, places, turning = rows[inside], places[inside], turning[inside]
+        rows, places, turning = bent[rows[inside]], places[inside], turning[inside]
         top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
         turning = np.where(
             turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)

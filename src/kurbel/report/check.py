@@ -8,6 +8,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Cylinder, Machine, firings
 from kurbel.machine.several import intervals
+from kurbel.machine.turning import Harmonics
 from kurbel.report.alike import grouped, together
 from kurbel.report.frame import provenance
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
@@ -150,7 +151,11 @@ def _turning_entries(machine: Machine) -> Iterator[Entry]:
     if load is None:
         text = "constant"
     elif load.diagram:
-        text = f"a diagram of {len(load.diagram.angles)} points"
+        text = (
+            f"{len(load.diagram.terms)} harmonics"
+            if isinstance(load.diagram, Harmonics)
+            else f"a diagram of {len(load.diagram.angles)} points"
+        )
     else:
         text = f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
     yield Entry("load", text)

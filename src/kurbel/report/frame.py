@@ -333,7 +333,9 @@ def place_table(
             column = shown_column(quantity, each, system, beside=largest.get(quantity.kind, 0.0))
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
-                decimals = int(any(value and value % 1 for value in each))
+                decimals = max(
+                    (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value), default=0
+                )
             columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else alone))
     names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
     return PlaceTable(id, title, heads, names, tuple(columns), headed)

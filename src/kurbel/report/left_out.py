@@ -1,6 +1,7 @@
 """What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.turning import Swing
 from kurbel.report.tables import LeftOut
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -107,12 +108,15 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     wheel = speed or ("" if machine.flywheel else "no flywheel given")
     wanted = machine.flywheel is not None and machine.flywheel.fluctuation is not None
     varies = machine.load is not None and machine.load.diagram is None
+    effort = machine.effort
+    alone = "its swing of energy alone is given" if isinstance(effort, Swing) else ""
+    no_mean = "no mean torque given" if isinstance(effort, Swing) and effort.mean is None else ""
     return {
-        "turning effort, ΔE": "",
+        **({"ΔE": "", "turning effort and speed over the angle": alone} if alone else {"turning effort, ΔE": ""}),
         "T, W": "" if machine.cylinders else "no crank: the effort is given as a torque",
-        "power": speed,
+        "power": speed or no_mean,
         **({"J": speed} if wanted else {}),
-        "speed line, δ": wheel,
+        "δ" if alone else "speed line, δ": wheel,
         **({"load over the speed": wheel} if varies else {}),
         **({"coupling": wheel} if machine.coupling else {}),
     }

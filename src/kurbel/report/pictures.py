@@ -254,6 +254,8 @@ def effort(source: Source) -> Iterator[Panel]:
     """Turning effort of the whole machine and the resistance, its lobes numbered with their work; below them the excess
     work and the speed (R Abb. 1064 to 1067)."""
     results = source.results
+    if not source.having("M"):
+        return
     id, radius = ("T", results.crank) if source.having("T") else ("M", 1.0)
     samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
     x, line, load = samples.values

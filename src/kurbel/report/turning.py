@@ -11,12 +11,14 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
+from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.frame import ENDLESS, Frame, Row, Subject, place_table, report_on, subjects_of
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
+from kurbel.solver.chain import holzer_at
 from kurbel.solver.harmonics import MachineOrders, Orders
 from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 
@@ -101,7 +103,12 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
         notes.append(
             f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
         )
-    if turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
+    if effort.swing is not None:
+        whole = replace(whole, at=None)
+        notes.append(
+            "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
+        )
+    elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
         notes.append("Such a load determines no speed: the mean of ω over time is taken as the nominal speed.")
     if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
         notes.append(
@@ -173,8 +180,9 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
             raise UsageError(
                 f"--orders {order:g}: an order is more than 0 and at most {_HIGHEST_ORDER} periods per turn"
             )
-        if (order * machine.revolutions) % 1:
-            known = "½, 1, 1½, …" if machine.revolutions == 2 else "1, 2, 3, …"
+        if not is_whole(order * machine.revolutions):
+            turns = machine.revolutions
+            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
             degrees = 360 * machine.revolutions
             raise UsageError(
                 f"--orders {order:g}: the cycle repeats after {degrees} degrees and has the orders {known}"
@@ -233,12 +241,16 @@ _MODES = 3
 
 
 class Wanted(NamedTuple):
-    """What is requested of torsion: orders, how many modes, whose Holzer table, speeds in revolutions per second."""
+    """What is requested of torsion: orders, how many modes, whose Holzer table, speeds in revolutions per second.
+
+    at: frequency in Hz of Holzer's table, in place of a mode.
+    """
 
     orders: Sequence[float] | None = None
     modes: int = _MODES
     mode: int = 1
     speeds: Sequence[float] | None = None
+    at: float | None = None
 
 
 @np.errstate(all="ignore")
@@ -251,7 +263,7 @@ def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Repor
     critical = found.critical_speeds(wanted.modes, _HIGHEST_CRITICAL if wanted.orders is None else math.inf)
     if found.vibration is not None and found.vibration.endless.any():
         raise NoSolutionError(ENDLESS)
-    tables = [_modes_table(found, system), _holzer_table(found, wanted.mode, system)]
+    tables = [_modes_table(found, system), _holzer_table(found, wanted, system)]
 
     # what is not reached, or hardly damped, has no amplitude
     reached = [one for one in critical if found.met(one)]
@@ -293,7 +305,7 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     rows: list[Row] = []
     names = [mass.name for mass in found.line.masses]
     for index, omega in enumerate(found.modes.omegas.tolist()):
-        mode, where = found.first + index, ["at the ground"] if found.chain.ground else []
+        mode, where = found.first + index, ["at the ground"] * sum(found.chain.held)
         for mass, share in found.modes.nodes(index) if mode else ():
             where.append(f"{names[mass]} + {share:.2f}" if share else names[mass])
         nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}" if mode else "rotation"
@@ -303,23 +315,30 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
 
 
-def _holzer_table(found: ShaftVibration, mode: int, system: str) -> PlaceTable:
-    """Return Holzer's table of a mode, from the first mass to the last, each with the piece behind it."""
-    table, chain = found.holzer(mode), found.chain
-    omega = float(found.modes.omegas[mode - found.first])
+def _holzer_table(found: ShaftVibration, wanted: Wanted, system: str) -> PlaceTable:
+    """Return Holzer's table of a mode or at a frequency, from the first mass to the last, each with its segment behind.
+
+    At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
+    """
+    chain, left, last = found.chain, 0.0, dict[str, float]()
+    if wanted.at is None:
+        table, omega = found.holzer(wanted.mode), float(found.modes.omegas[wanted.mode - found.first])
+        of = f"of mode {wanted.mode}, f = {omega / (2 * math.pi):.6g} Hz"
+    else:
+        omega = 2 * math.pi * wanted.at
+        table, of = holzer_at(chain, omega), f"at f = {wanted.at:.6g} Hz"
+        left, last = (table.residual, {}) if chain.held[1] else (0.0, {"torque_sum": table.residual})
     masses: list[Row] = [
         ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
         for mass, inertia, theta in zip(found.line.masses, chain.inertias.tolist(), table.angles.tolist())
     ]
-    if chain.ground:
-        masses.insert(0 if chain.ground == "before" else len(masses), (("ground",), {"theta": 0.0}))
+    masses = [(("ground",), {"theta": 0.0})] * chain.held[0] + masses + [(("ground",), {"theta": left})] * chain.held[1]
     pieces: list[dict[str, float]] = [
         {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
         for torque, stiffness in zip(table.torques.tolist(), chain.stiffnesses.tolist())
     ]
-    rows = [(names, {**mass, **piece}) for (names, mass), piece in zip(masses, [*pieces, {}])]
-    title = f"Holzer's table of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz, ω² = {omega**2:.6g} 1/s²"
-    return place_table("holzer", title, ("mass",), HOLZER, rows, system)
+    rows = [(names, {**mass, **piece}) for (names, mass), piece in zip(masses, [*pieces, last])]
+    return place_table("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows, system)
 
 
 def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:

@@ -327,7 +327,7 @@ def with_magnitude(pieces: Pieces, parts: Array) -> tuple[Pieces, Array, Array]:
     def both(some: Pieces, found: Array) -> Array:
         size, most = np.hypot(*found[:2]), some.of(largest)
         towards = _directed(found[0] + 1j * found[1], most)
-        weakest = np.min(size, axis=0, where=size > _NO_LOAD * most, initial=math.inf)
+        weakest = np.where(size > _NO_LOAD * most, size, math.inf).min(axis=0)
         share = np.where(np.isfinite(weakest), weakest / np.maximum(most, _TINIEST), 0.0)
         weight = np.minimum(1.0, _SURE * share)
         return np.stack((size, towards.real * weight, towards.imag * weight))

@@ -32,7 +32,7 @@ _STILL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """n masses and the segments between them, one more where an end is fixed: `ground` is `before`, `after` or empty.
+    """n masses and the segments between them, one more for each fixed end: `ground` is `before`, `after`, `both` or ''.
 
     inertias in kg m² (n,), stiffnesses in N m/rad; segment_damping, mass_damping in N m s/rad, of a twist and against
     uniform rotation; loss: loss factors η of the segments, with k (1 + iη).
@@ -55,13 +55,18 @@ class Chain:
     @cached_property
     def twists(self) -> Array:
         """The matrix (segments, n) that turns angles of the masses into twists, that before less that behind."""
-        first, last = self.ground == "before", self.ground == "after"
+        first, last = self.held
         held = np.eye(len(self.inertias) + first + last)
         return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
 
+    @property
+    def held(self) -> tuple[bool, bool]:
+        """Whether the end before the first mass is fixed, and that behind the last one."""
+        return self.ground in ("before", "both"), self.ground in ("after", "both")
+
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
-        ground = {"before": "after", "after": "before"}.get(self.ground, "")
+        ground = {"before": "after", "after": "before"}.get(self.ground, self.ground)
         inertias, against = self.inertias[::-1], self.mass_damping[::-1]
         return Chain(inertias, self.stiffnesses[::-1], self.segment_damping[::-1], against, self.loss[::-1], ground)
 
@@ -149,6 +154,22 @@ class Holzer(NamedTuple):
     residual: float
 
 
+def holzer_at(chain: Chain, omega: float) -> Holzer:
+    """Return Holzer's table at any angular frequency in rad/s, from the first mass on.
+
+    residual: the torque left behind the last mass in N m, or at a fixed end behind it the angle left in rad, both per
+    radian of the first mass: at a natural frequency it is zero.
+    """
+    first, last = chain.held
+    angles, torque, torques = [1.0], -chain.stiffnesses[0] if first else 0.0, []
+    for inertia, stiffness in zip(chain.inertias, [*chain.stiffnesses[int(first) :], np.inf]):
+        torque = torque + omega**2 * inertia * angles[-1]
+        torques.append(torque)
+        angles.append(angles[-1] - torque / stiffness)
+    held, far = [-chain.stiffnesses[0]] if first else [], angles.pop()
+    return Holzer(np.array(angles), np.array([*held, *torques][: len(chain.stiffnesses)]), far if last else torque)
+
+
 class Modes:
     """The natural vibrations of a chain, the lowest first; of a free one the first is the rotation of the whole.
 
@@ -168,7 +189,8 @@ class Modes:
 
         Those of the elastic modes by bisection of the number of modes below, to the last digit.
         """
-        wanted, springs = np.arange(len(self.chain.stiffnesses)), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
+        elastic = len(self.chain.inertias) - (not self.chain.ground)
+        wanted, springs = np.arange(elastic), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
         high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self.chain.inertias).max()))  # Gershgorin, J⁻¹ K
         low = high * 1e-3
         while self._below(low[:1])[0]:
@@ -184,7 +206,7 @@ class Modes:
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes are below each ω (m,)."""
-        stiffnesses, behind = self._line.stiffnesses, _behind(self._line, omegas)
+        stiffnesses, behind = self._line.stiffnesses[int(self._line.held[0]) :], _behind(self._line, omegas)
         negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
         return np.asarray(negative if self.chain.ground else negative + (behind[-1] > 0) - 1)
 
@@ -195,7 +217,8 @@ class Modes:
         grows.
         """
         omega = self.omegas[mode : mode + 1]
-        inertias, stiffnesses = self._line.inertias, self._line.stiffnesses
+        inertias, first = self._line.inertias, int(self._line.held[0])
+        stiffnesses = self._line.stiffnesses[first:]  # behind the masses
         behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
         own = omega[0] ** 2 * inertias
         gap = behind + before - own
@@ -208,6 +231,8 @@ class Modes:
         torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
         if self.chain.ground:
             torques = np.append(torques, stiffnesses[-1] * angles[-1])
+        if first:
+            torques = np.append(-self._line.stiffnesses[0] * angles[0], torques)
         if self.chain.ground == "before":
             angles, torques = angles[::-1], -torques[::-1]
         left = abs(float(gap[meet])) / max(float(np.abs(torques).max(initial=0.0)), float(own[meet]), 1e-300)
@@ -222,7 +247,7 @@ class Modes:
 
 def _behind(chain: Chain, omegas: Array) -> Array:
     """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along the chain at ω (m,)."""
-    first, found = int(chain.ground == "before"), np.empty((len(chain.inertias), len(omegas)))
+    first, found = int(chain.held[0]), np.empty((len(chain.inertias), len(omegas)))
     carried = np.full(len(omegas), -chain.stiffnesses[0] if first else 0.0)
     for i, inertia in enumerate(chain.inertias):
         found[i] = carried + omegas * omegas * inertia

@@ -23,7 +23,7 @@ from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import gathered, work_alike
-from kurbel.machine.turning import Effort, Harmonics
+from kurbel.machine.turning import Harmonics, Known, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
 from kurbel.solver.drive import Drive, any_of
@@ -78,6 +78,7 @@ class TurningEffort:
     """The turning effort of a machine, or of `count` machines of one kind, over their common cycle in degrees.
 
     Samples are (nodes, pieces) at the nodes of `pieces`, numbers are (machines,), of one machine (1,).
+    swing: ΔE in J without losses where nothing but that is known of the effort, else None.
     refused: which of many machines (machines,) have no result, complete once `pieces` and `excess` have been asked for.
     With one machine they raise an error instead: `pieces` where nothing turns it and where its speed is beyond floats,
     `excess` where it cannot run.
@@ -89,6 +90,7 @@ class TurningEffort:
         self.cycle = 360.0 * machine.revolutions
         self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
         # the cylinders in which a force acts, those together that work alike
         acting = [forces for forces in cylinders if forces.drive.has_force]
         self.groups = gathered(acting, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
@@ -274,7 +276,7 @@ class ExcessWork:
 
     def __init__(self, effort: TurningEffort, torque: Array) -> None:
         pieces = self.pieces = effort.pieces
-        self._size = pieces.largest(effort.M)
+        self._effort, self._size = effort, pieces.largest(effort.M)
         self.torque = np.where(pieces.of(pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
         whole = pieces.running(self.torque)
         gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
@@ -305,25 +307,33 @@ class ExcessWork:
     @cached_property
     def dE(self) -> Array:
         """ΔE in J, the largest swing of the excess work, (machines,)."""
+        if self._effort.swing is not None:
+            return np.asarray(np.ones(self.pieces.count) * self._effort.swing * self._effort.share(None))
         return np.asarray(np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0))
 
 
 # torques that are known from elsewhere
 
 
-def corners(given: Effort | Harmonics, cycle: float) -> Array:
+def corners(given: Known, cycle: float) -> Array:
     """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
+    if isinstance(given, Swing):
+        return np.zeros(0)
     if isinstance(given, Harmonics):
         highest = max(1.0, *(order for order, _, _ in given.terms))
         return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
     return np.asarray(np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel())
 
 
-def torque_on(given: Effort | Harmonics, pieces: Pieces) -> Array:
+def torque_on(given: Known, pieces: Pieces) -> Array:
     """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
 
-    Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece.
+    Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece. Of a swing the
+    mean alone is known, 0 where it is not.
     """
+    if isinstance(given, Swing):
+        mean = np.zeros(pieces.count) if given.mean is None else given.mean
+        return np.array(np.broadcast_to(pieces.of(mean), pieces.degrees.shape))
     if isinstance(given, Harmonics):
         orders, cos, sin = np.array(given.terms).T
         waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)

@@ -1,8 +1,8 @@
 """Results by name: the rows of a class of results, its key values by id or printed symbol, and all columns at once.
 
 A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
-They are printed in the order of their definition; a `Part` brings the rows of another class to its place, `Searched`
-the extremes of the columns.
+They are printed in the order of their definition; a `PartResults` brings the rows of another class to its place,
+`Searched` the extremes of the columns.
 """
 
 from __future__ import annotations
@@ -134,21 +134,21 @@ class Rows(NamedTuple):
         return Rows(*found)
 
 
-class Part(Computed[V]):
+class PartResults(Computed[V]):
     """Results that are a part of others; their rows stand in the place of the attribute."""
 
     kind: type[Results]
     unless: Condition | None
 
 
-def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], Part[V]]:
+def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], PartResults[V]]:
     """Return what makes a method a part of results, of this class; it may return None where there is no such part.
 
     unless: takes the results; where it is true, all of the part says nothing new.
     """
 
-    def made(function: Callable[[Any], V]) -> Part[V]:
-        found = Part(function, Quantity("", "", "", function.__doc__ or ""))
+    def made(function: Callable[[Any], V]) -> PartResults[V]:
+        found = PartResults(function, Quantity("", "", "", function.__doc__ or ""))
         found.kind, found.unless = kind, unless
         return found
 
@@ -245,7 +245,7 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
     for item in definitions.values():
-        if isinstance(item, Part):
+        if isinstance(item, PartResults):
             inner = rows_of(item.kind, offers, key_offers).key_values.values()
             seen = (row.through(item.value_of) for row in inner)
             found += [row._replace(unless=item.unless) if item.unless else row for row in seen]

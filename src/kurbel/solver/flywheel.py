@@ -17,6 +17,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine.turning import Swing
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
@@ -28,7 +29,7 @@ from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results, Searched, part
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.motion import every_dead_centre
-from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine
+from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 
 RIGID_ABOVE = 100.0
@@ -119,6 +120,8 @@ class MachineTurning(Results):
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column at the nodes of pieces; None for one that is left out."""
         effort, found = self.effort, None
+        if effort.swing is not None:
+            return None
         if column in ("omega", "alpha"):
             return None if self.speed is None else self.speed.omega if column == "omega" else self.speed.alpha
         if column == "M_coupling":
@@ -168,19 +171,27 @@ class MachineTurning(Results):
         "M_m",
         "torque",
         "Mean torque of the turning effort: the resistance",
-        lambda one: one.effort.result(one.effort.mean),
+        lambda one: one.effort.result(one.effort.mean) if one.knows_mean else None,
     )
     work_shaft = value(
-        "A", "energy", "Work of the turning effort per cycle", lambda one: one.M_mean * math.radians(one.effort.cycle)
+        "A",
+        "energy",
+        "Work of the turning effort per cycle",
+        lambda one: one.M_mean * math.radians(one.effort.cycle) if one.knows_mean else None,
     )
     power_shaft = value(
         "N_e",
         "power",
         "Power at the shaft, mean torque times nominal angular velocity",
-        lambda one: one.M_mean * one.omega if one.turns else None,
+        lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
     )
 
     _searched = Searched()
+
+    @property
+    def knows_mean(self) -> bool:
+        """Whether the mean of the effort is known, which a swing of energy may not have beside it."""
+        return not isinstance(self.machine.effort, Swing) or self.machine.effort.mean is not None
 
     @property
     def deficit(self) -> Any:
@@ -224,14 +235,14 @@ class MachineTurning(Results):
 
         None where no work is done, nan for such a machine of many.
         """
-        work = self.work_shaft
+        work = self.work_shaft if self.knows_mean else 0.0
         return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
 
     def of_crossings(self, values: Array) -> Any:
-        """Return numbers of the crossings as a tuple, of many machines one each."""
-        each = self.excess.crossings._replace(degrees=values).of_each(self.excess.pieces.count)
-        tuples = tuple(tuple(one.tolist()) for one in each)
-        return tuples[0] if self.effort.count is None else tuples
+        """Return numbers of the crossings as a tuple, of many machines one each; None where they are not known."""
+        if self.effort.swing is not None:
+            return None
+        return self.excess.crossings._replace(degrees=values).listed(self.effort.count)
 
     @cached_property
     def summits(self) -> Extremes | None:
@@ -350,6 +361,8 @@ class MachineTurning(Results):
     def _line(self, flywheel: Any) -> SpeedLine:
         """Return the speed line with a flywheel in kg m²; raises Unsettled, NoSolutionError, UsageError."""
         coupling, effort = self.machine.coupling, self.effort
+        if effort.swing is not None:
+            return SwingLine(effort, self.excess.dE, flywheel)
         if coupling and not self._needs_no_inertia:
             own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
             if effort.count is None and not own[0]:

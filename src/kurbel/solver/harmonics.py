@@ -16,7 +16,8 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.crank_angle import unit_vector
-from kurbel.numerics.arithmetic import some, unless_cancelled, where
+from kurbel.errors import UsageError
+from kurbel.numerics.arithmetic import is_whole, some, unless_cancelled, where
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import key_value, value
@@ -138,6 +139,8 @@ class MachineOrders(Results):
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort = effort
+        if effort.swing is not None:
+            raise UsageError(f"{effort.machine.name}: of the effort its swing of energy alone is known, and no orders")
         self.orders = every_order(effort.cycle) if orders is None else orders
 
     def _orders_of(self, pieces: Pieces, torque: Array, inertia: Array | None, size: Any = 0.0) -> Orders:
@@ -148,7 +151,7 @@ class MachineOrders(Results):
         """
         moved = np.zeros(()) if inertia is None else inertia
         values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (torque - moved, moved)])
-        present = np.flatnonzero((self.orders * round(pieces.cycle / 360.0)) % 1 == 0)
+        present = np.flatnonzero(is_whole(self.orders * round(pieces.cycle / 360.0)))
         found = np.zeros((2, 1 + len(self.orders), pieces.count), dtype=complex)
         found[:, 0], found[:, 1 + present] = pieces.mean(values), amplitudes(pieces, values, self.orders[present])
         found = unless_cancelled(found, np.maximum(size, np.abs(found).max(axis=(0, 1))), _ROUNDING)

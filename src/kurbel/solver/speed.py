@@ -113,15 +113,49 @@ class SpeedLine(Results):
         """δ, from the extremes of u: of a heavy flywheel those of ω have no digit of it left."""
         return self.result((self._ends[0] - self._ends[2]) / self.mean)
 
-    def extreme(self, end: int) -> Extreme:
-        """Return the largest (end 0) or smallest (end 2) angular velocity in rad/s, with its angle."""
+    def extreme(self, end: int) -> Any:
+        """Return the largest (end 0) or smallest (end 2) angular velocity in rad/s, with its angle if that is known."""
         u, degrees = self._ends[end : end + 2]
         return Extreme(self.result(self.effort.omega * (1 + u)), self.result(degrees))
 
     @property
-    def omega(self) -> tuple[Pieces, Array]:
+    def omega(self) -> tuple[Pieces, Array] | None:
         """Samples of the angular velocity in rad/s with their pieces."""
         return self.pieces, self.pieces.of(self.effort.omega) * (1 + self.u)
+
+
+class SwingLine(SpeedLine):
+    """What is known of the speed where the swing ΔE in J, (n,), alone is known of the effort: no line over the turn.
+
+    With ω_m = (ω_max + ω_min)/2 it is exact that ΔE = ½ J (ω_max² − ω_min²) = δ J ω_m². flywheel in kg m².
+    """
+
+    alpha = None
+
+    def __init__(self, effort: TurningEffort, swing: Array, flywheel: Any) -> None:
+        self.effort, self.pieces, self.mean = effort, effort.pieces, np.ones(effort.pieces.count)
+        energy = np.ones(effort.pieces.count) * (flywheel * effort.omega**2)
+        if effort.count is None and not energy[0]:
+            raise UsageError("nothing that turns has any inertia: give 'flywheel' an inertia")
+        self._delta = swing / np.where(energy == 0, np.nan, energy)
+        self.failed = ~(self._delta < 2)
+        self.growth = self.result(np.zeros(effort.pieces.count))
+        if effort.count is None and self.failed[0]:
+            raise Unsettled()
+
+    @property
+    def fluctuation(self) -> Any:
+        """δ."""
+        return self.result(self._delta)
+
+    def extreme(self, end: int) -> Any:
+        """Return the largest (end 0) or smallest (end 2) angular velocity in rad/s."""
+        return self.result(self.effort.omega * (1 + (0.5 - 0.5 * end) * self._delta))
+
+    @property
+    def omega(self) -> None:
+        """Not known over the angle."""
+        return None
 
 
 class SpeedEquation:

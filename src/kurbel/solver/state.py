@@ -520,7 +520,7 @@ class State(MotionColumns):
         if self._output is None:
             return None
         push = self._output * (self.slope / self.mechanism.crank) + self._rod_tangential
-        return push - self.angle.cos * self._friction_side
+        return push if self.rubbing is None else push - self.angle.cos * self._friction_side
 
     F_friction = value(
         "F_f",

@@ -25,7 +25,8 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.numerics.arithmetic import unless_cancelled
+from kurbel.machine.turning import MOST_TURNS
+from kurbel.numerics.arithmetic import is_whole, unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
@@ -160,15 +161,19 @@ class Vibration:
     def means(self) -> Array:
         """Mean torques in the segments in N m."""
         reached = np.cumsum(self.acting.means)
-        if self.chain.ground == "before":
-            reached = np.append(0.0, reached) - reached[-1]
+        if self.chain.held[0]:
+            reached = np.append(0.0, reached)
+            # of two fixed ends the twists add up to nothing, of one the torque behind the last mass is nothing
+            soft = 1 / self.chain.stiffnesses
+            reached -= (reached @ soft) / soft.sum() if self.chain.held[1] else reached[-1]
         return np.asarray(reached[: len(self.ratios)] / self.ratios)
 
     @cached_property
     def crests(self) -> tuple[Array, Array]:
         """Largest and smallest torque in the segments less their mean in N m, (segments, s) each."""
         orders = self.acting.orders
-        cycle = 2 if (orders % 1).any() else 1  # turns in which all of them are whole waves
+        # turns in which all of them are whole waves
+        cycle = next(turns for turns in range(1, 2 * MOST_TURNS + 1) if is_whole(turns * orders).all())
         high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
         return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
 
@@ -324,7 +329,7 @@ class ShaftVibration(Results):
         if not self.machine.speed:
             self._unexcited = "no speed given" if self.machine.speed is None else "not defined at rest"
         else:
-            known = effort.groups or self.machine.effort
+            known = effort.groups or (self.machine.effort and effort.swing is None)
             self._unexcited = "" if known else "no torque acts: no effort and no cylinder with a force is given"
         damped = self.chain.segment_damping.any() or self.chain.mass_damping.any() or self.chain.loss.any()
         undamped = "" if damped else "no damping given; at resonance nothing but damping bounds a vibration"
@@ -336,7 +341,7 @@ class ShaftVibration(Results):
     def piece_name(self, segment: int) -> str:
         """Return what a segment is between."""
         names = [mass.name for mass in self.line.masses]
-        ends = [*(["ground"] if self.chain.ground == "before" else []), *names, "ground"]
+        ends = [*(["ground"] if self.chain.held[0] else []), *names, "ground"]
         return f"{ends[segment]} – {ends[segment + 1]}"
 
     def holzer(self, mode: int) -> Holzer:
@@ -398,7 +403,8 @@ class ShaftVibration(Results):
         (segments, nodes, pieces), as chains of one shaft have them. None where certain orders are requested, where a
         loss factor is given, and where no motion is found, or none that is worth its time.
         """
-        if self.vibration is None or not self._every or self.chain.loss.any():
+        # the springs of a chain between two fixed ends are more unknowns than equations
+        if self.vibration is None or not self._every or self.chain.loss.any() or self.chain.ground == "both":
             return None
         effort, loaded = self.effort, self.line.load % len(self.line.masses)
         order, (driven, _) = self.modes.omegas[-1] / effort.omega, torques_on(effort, self.line)

@@ -44,7 +44,7 @@ _CANCELLED = 1e-13
 """Share of the terms of a sum below which nothing but rounding is left of it."""
 
 
-class Reading:
+class TraceReading:
     """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees after the dead centre.
 
     each: pressures (m, n) of every cycle, corrected; after (n,): rising angles from the chamber's own (firing) dead
@@ -120,7 +120,7 @@ def in_bar(pressure: float) -> str:
 
 def doubt(trace: Trace, setting: Setting, each: Array) -> str:
     """Return what is implausible in a trace with the pressures `each` (m, n) of its cycles, or ''."""
-    reading = Reading(trace, setting, each)
+    reading = TraceReading(trace, setting, each)
     return next(filter(None, (check(reading) for check in CHECKS)), "")
 
 
@@ -147,7 +147,7 @@ _SURE_OF_NOISE = 6.0
 """Standard deviations of the noise that a drift must exceed."""
 
 
-def _column_of_pulses(reading: Reading) -> str:
+def _column_of_pulses(reading: TraceReading) -> str:
     """A signal that is flat but for pulses with upright sides is that of an injector or a mark, no pressure."""
     p, trace = reading.p, reading.trace
     swing = float(np.ptp(p))
@@ -161,7 +161,7 @@ def _column_of_pulses(reading: Reading) -> str:
     )
 
 
-def _turns_in_pairs(reading: Reading) -> str:
+def _turns_in_pairs(reading: TraceReading) -> str:
     """Laps that differ in pairs are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
     each, trace = reading.each, reading.trace
     if len(each) < 2 or len(each) % 2:
@@ -183,7 +183,7 @@ def _turns_in_pairs(reading: Reading) -> str:
     )
 
 
-def _wandering_cycles(reading: Reading) -> str:
+def _wandering_cycles(reading: TraceReading) -> str:
     """Cycles of one engine do not wander against each other; those by time and a wrong speed do."""
     each, trace = reading.each, reading.trace
     if len(each) < 3:
@@ -204,7 +204,7 @@ def _wandering_cycles(reading: Reading) -> str:
     )
 
 
-def _rounded_angles(reading: Reading) -> str:
+def _rounded_angles(reading: TraceReading) -> str:
     trace = reading.trace
     twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
     if twins < _TWICE * len(trace.angles):
@@ -216,7 +216,7 @@ def _rounded_angles(reading: Reading) -> str:
     return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(even)}"
 
 
-def _drift(reading: Reading) -> str:
+def _drift(reading: TraceReading) -> str:
     """Judge the jump where the cycle closes: of the closing sample alone, or of a drift over the cycle."""
     p, trace = reading.p, reading.trace
     jump = float(drift_of(trace, p[np.newaxis])[0])
@@ -268,7 +268,7 @@ _NO_UNIT = 0.5
 _ROUNDED = 1e-6
 
 
-def _inverted(reading: Reading) -> str:
+def _inverted(reading: TraceReading) -> str:
     """An inverted trace, as of a charge amplifier with the wrong polarity."""
     p = reading.p
     middle = float(np.median(p))
@@ -280,7 +280,7 @@ def _inverted(reading: Reading) -> str:
     )
 
 
-def _unit(reading: Reading) -> str:
+def _unit(reading: TraceReading) -> str:
     """Judge the peak by what this clearance can compress to, or else by what cylinders withstand."""
     trace, setting, ambient = reading.trace, reading.setting, reading.setting.ambient
     peak, low = reading.peak + setting.lift, reading.low + setting.lift
@@ -313,7 +313,7 @@ def _unit(reading: Reading) -> str:
     )
 
 
-def _likely_unit(reading: Reading, least: float, aimed: float, most: float, ratio: float) -> tuple[float, str]:
+def _likely_unit(reading: TraceReading, least: float, aimed: float, most: float, ratio: float) -> tuple[float, str]:
     """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''; 1 if none does.
 
     Judged by how far, in logarithms, the absolute peak is from the one aimed at, and an absolute low level from the
@@ -353,7 +353,7 @@ _MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what he
 _MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
 
 
-def _backward(reading: Reading) -> str:
+def _backward(reading: TraceReading) -> str:
     peak_at = reading.peak_at
     judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
     early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step and reading.usual[0] <= -peak_at <= reading.usual[1]
@@ -368,7 +368,7 @@ def _backward(reading: Reading) -> str:
     )
 
 
-def _peak_elsewhere(reading: Reading) -> str:
+def _peak_elsewhere(reading: TraceReading) -> str:
     peak_at, cycle, zero = reading.peak_at, reading.setting.cycle, reading.trace.angle_zero
     if not reading.engine or reading.usual[0] <= peak_at <= reading.usual[1]:
         return ""
@@ -388,7 +388,7 @@ def _peak_elsewhere(reading: Reading) -> str:
     )
 
 
-def _motored_peak(reading: Reading) -> str:
+def _motored_peak(reading: TraceReading) -> str:
     peak, after = reading.vertex, reading.peak_at
     if peak is None or not reading.motored or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
         return ""
@@ -417,7 +417,7 @@ _LATEST = 10.0
 """Degrees by which a dead centre is found wrong; beyond, other notes speak."""
 
 
-def _level(reading: Reading) -> str:
+def _level(reading: TraceReading) -> str:
     """Judge by the level below which the cycle lies for a while whether gauge and absolute are mixed up."""
     setting, low = reading.setting, reading.low
     seen = f"for 15 % of the cycle the pressure lies below {in_bar(low)}"
@@ -441,7 +441,7 @@ def _is_sensible(found: Exponent | None) -> bool:
     return found is not None and _SENSIBLE[0] - slack <= found.value <= _SENSIBLE[1] + slack
 
 
-def _exponents(reading: Reading) -> str:
+def _exponents(reading: TraceReading) -> str:
     """Judge compression and expansion together: a dead centre that is off moves their exponents apart.
 
     A wrong level moves that of the compression most, and both the same way.
@@ -475,7 +475,7 @@ def _exponents(reading: Reading) -> str:
     return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
 
 
-def _common_exponent(reading: Reading) -> float:
+def _common_exponent(reading: TraceReading) -> float:
     """Return by how many degrees later compression and expansion have one exponent, by secants; nan where not."""
     now, later = math.nan, 0.0
     for step in range(4):
@@ -485,7 +485,7 @@ def _common_exponent(reading: Reading) -> float:
     return later
 
 
-CHECKS: tuple[Callable[[Reading], str], ...] = (
+CHECKS: tuple[Callable[[TraceReading], str], ...] = (
     *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
     *(_inverted, _unit),
     *(_backward, _peak_elsewhere, _motored_peak),

@@ -61,6 +61,10 @@ class Form(ABC):
         self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
         self.written = written or (expected if self.shape is str else "a mapping")
 
+    def kind_as_written(self, text: Any) -> str:
+        """Return the kind of the number that is written so, '' where it is none."""
+        return self.kind
+
     @abstractmethod
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
         """Return what a value of the tree becomes; faults are noted, or raised as RuleError."""
