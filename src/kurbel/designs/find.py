@@ -1,4 +1,4 @@
-"""Asking backwards: the values of one key or two that give wanted key values, or the least or the greatest one."""
+"""The values of one or two keys that give wanted key values, or make a key value least or greatest."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from kurbel.report.limits import breaks
 _EQUAL = 1e-12
 """Relative: extremes that differ by less are equally good."""
 _BESIDE = 1e-6
-"""Of the range: a design so far from an extreme shows which bound it is at."""
+"""Of the range: step from an extreme to a design that shows which bound limits it."""
 _NAME = re.compile(r"\s*(.+?)\s*(?:[<>=!≤≥≠].*)?")
 
 
@@ -54,7 +54,7 @@ class Target(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """Values of the keys and the key values there, in SI, and notes: a limit that is broken, or that ends the range."""
+    """Values of the keys, the key values that they give, in SI, and notes on limits that are broken or are binding."""
 
     values: tuple[float, ...]
     key_values: tuple[float, ...]
@@ -70,7 +70,7 @@ class Failed(NamedTuple):
 
 
 class Solutions(NamedTuple):
-    """What was found: solutions in the order of the first key, and places where the wanted value is passed by a jump.
+    """Solutions in the order of the first key, and jumps: places where a key value jumps across the wanted value.
 
     machine: its name. names, answers: of the key values of a solution, those that are wanted first. met: least and
     greatest value of each wanted key value. places (n, keys), values (n, answers): all designs that were computed, in
@@ -148,9 +148,9 @@ class _Designs:
         return np.asarray(low * (1 - places) + high * places)
 
     def at(self, places: Array) -> tuple[Array, list[str], list[str]]:
-        """Return key values (n, answers), nan of designs that fail, and which limits and which conditions each breaks.
+        """Return key values (n, answers), nan for designs that fail, and the limits and conditions that each breaks.
 
-        A design that fails breaks both by the reason of its failure.
+        For a design that fails both texts are the reason of the failure.
         """
         rows = self.numbers(places).tolist()
         texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
@@ -201,7 +201,7 @@ class _Designs:
 
 
 def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
-    """Return where all equations hold, and where the value of the only one is passed by a jump."""
+    """Return where all equations hold, and, for a single equation, where the key value jumps across its value."""
     values = np.array([one.value for one in designs.wanted], dtype=float)
 
     def left(places: Array) -> Array:
@@ -269,7 +269,7 @@ def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
 
 
 def _nothing(findings: Solutions) -> str:
-    """Return that nothing was found, with what was met."""
+    """Return the message that nothing was found, with the values that were met."""
     ranges = " and ".join(
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.in_unit(one.high):.6g} {one.unit}".rstrip()
         for one in findings.varied
@@ -291,7 +291,7 @@ def _shown(value: float, answer: Answer) -> str:
     return show(value, answer.kind) if np.isfinite(value) else "nothing"
 
 
-# --- reading what is asked for
+# --- reading the options
 
 _Span = tuple[str, str, str, str]
 """A key, the texts of both ends of its range, and their unit."""
@@ -314,7 +314,9 @@ def _span(text: str) -> _Span:
 
 
 def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tuple[Binder, list[Answer]]:
-    """Return what binds values of the keys, from the first ends that make a machine, and whose key values are meant."""
+    """Return the binder of the varied keys, made from the first ends of the ranges that give a valid machine, and the
+    key values by these names. Raises UsageError for a name that is a list or that several parts have.
+    """
     errors: list[MachineFileError | NoSolutionError] = []
     for texts in product(*((low, high) for _, low, high, _ in spans)):
         try:

@@ -115,7 +115,7 @@ def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
 
 def _forces_notes(case: Case) -> Iterator[str]:
     yield from guide_notes(case)
-    yield from rod_ratio_notes(case.machine)
+    yield from rod_ratio_notes(case)
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
             "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "

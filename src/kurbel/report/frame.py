@@ -44,9 +44,9 @@ class Subject:
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
     results: the object that has its key values, if any; at: takes crank angles (n,) in degrees and returns a state with
-    its columns, None without columns; lists: the quantities that there may be; source: has `angles_where`, None for
-    what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: what a report shows besides,
-    empty where only figures are wanted.
+    its columns, None without columns; lists: the quantities that it can have; source: has `angles_where`, None for
+    what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: further parts of a report,
+    empty where only key values are needed.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Subject:
     of: str = ""
 
     def says(self, quantity: Quantity) -> bool:
-        """Whether a quantity adds something here: a time ratio does not if both strokes take equally long."""
+        """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
         if self.results is None:
             return True
         rows = self.results.rows
@@ -83,9 +83,9 @@ class Subject:
 def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool = False) -> list[Subject]:
     """Return what a command has results of: each cylinder or bearing, and the whole machine last.
 
-    compare: the balance with what the acceleration of first order gives, next to the true figures; pistons: each of
-    the pistons of a rod, too, where it has several. Raises UsageError
-    where the machine has nothing of that, NoSolutionError where it locks itself, stalls, or swings without limit.
+    compare: the balance also by the acceleration of first order, next to the exact one; pistons: also each piston of a
+    rod that has several. Raises UsageError where the machine has no such results, NoSolutionError where it locks
+    itself, stalls, or vibrates without limit.
     """
     if command in ("motion", "forces"):
         each = [one for forces in case.cylinders for one in forces.pistons] if pistons and command == "forces" else []
@@ -181,7 +181,7 @@ def report_on(
         values = shown_key_values(one.key_values(frame.command), frame.system) if with_values else ()
         sentences = tuple(one.left_out), tuple(one.warnings)
         parts.append(Part(one.name, columns, tuple(values), *sentences, tuple(one.tables), why, one.of))
-    # the balance reports by itself what it cannot compare
+    # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
     return Report(
         f"{machine.name}. {title}",
@@ -212,7 +212,7 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
-    """Return why there is no such column, and which there are."""
+    """Return the message for a column that does not exist, with those that do."""
     known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
     there: dict[str, Quantity] = {}
     for subject in subjects:
@@ -318,7 +318,7 @@ def place_table(
     """Return a table of places; declared: its quantities by id, of which one is left out if no row has it.
 
     Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths. alone: the digits of
-    values of which each has a scale of its own, with one unit for each kind of quantity.
+    values of which each is rounded by itself; all of one kind have one unit.
     """
     largest: dict[str, float] = {}
     for of_row in (values for _, values in rows if alone):

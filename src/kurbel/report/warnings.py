@@ -300,12 +300,13 @@ def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts"
 _USUAL_RATIO = 4.0, 5.0
 
 
-def rod_ratio_notes(machine: Machine) -> Iterator[str]:
+def rod_ratio_notes(case: Case) -> Iterator[str]:
     """Yield L/R of steam engines and pumps beyond those that the book has (R Zusammenstellung 112)."""
-    for cylinder in machine.cylinders:
+    for forces in case.cylinders:
+        cylinder = forces.drive.cylinder
         chambers = [one for piston in cylinder.pistons for one in piston.chambers.values()]
         steam = any(isinstance(one, Steam) for one in chambers)
-        pump = bool(chambers) and all(isinstance(one, Card) and one.flat for one in chambers)
+        pump = (forces.work or 0.0) < 0 and all(isinstance(one, Card) and one.flat for one in chambers)
         least, most = _USUAL_RATIO
         if (steam or pump) and cylinder.mechanism.has_rod and 0 < cylinder.mechanism.lam < math.inf:
             ratio = 1 / cylinder.mechanism.lam

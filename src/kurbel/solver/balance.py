@@ -1,4 +1,4 @@
-"""Balancing of the whole machine: what of its moving masses is unbalanced, and the weights against it.
+"""Balancing of the whole machine: its unbalanced forces and moments, and the counterweights against them.
 
 The unbalanced (shaking) force is minus the sum of mass times acceleration of all moving parts (d'Alembert), at uniform
 rotation. It is a complex number in the plane square to the shaft, everywhere over ω², so that it is in kg m:
@@ -48,9 +48,9 @@ from kurbel.solver.weights import (
 )
 
 _SAMPLES = 256
-"""Equal angles of a turn from which the orders of a mechanism are found, four times as many where a rod is short, …"""
+"""Samples of a turn from which the orders of a mechanism are found; four times as many where a rod is short, …"""
 _MOST_SAMPLES = 1 << 20
-"""… up to these of all machines together: a batch of more raises an error, and its machines are computed alone."""
+"""… up to this many for a batch together: a batch of more raises an error, and its machines are computed singly."""
 _SHOWN = 1e-9
 """Of the largest order: smaller ones are not listed."""
 _FEWEST = 8
@@ -61,16 +61,16 @@ _AT_ONCE = 1 << 20
 """Waves that are summed together."""
 _EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
-"""By what a direction, or a lever in m, may miss another by rounding."""
+"""Rounding of a direction (relative), or of a lever in m."""
 
 # forces and moments, order by order
 
 
 def orders_of(throw: OwnThrow, curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
-    """Return the orders c_n in m, n from 1 on, (k, count), with x″ = 2 Re Σ c_n e^{inφ}; what is rounding is exactly 0.
+    """Return the orders c_n in m, n from 1 on, (k, count), with x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
 
-    The shorter the rod, the more orders: those above half of the last are to be zero. Raises UsageError for a rod with
-    more of them than can be computed, L/R < 1.00000001.
+    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. Raises
+    UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
     """
     samples = _SAMPLES
     while samples * count <= _MOST_SAMPLES:
@@ -126,15 +126,15 @@ class Free(NamedTuple):
     next_order: int | None
 
     def at_most(self, vector: ClosedCurve) -> float:
-        """Return what the force or the moment of the higher orders is at most."""
+        """Return an upper bound of the force, or moment, of the orders that are not listed."""
         higher = np.abs(vector.numbers)[:, None] > self.orders[-1]
         return float(ClosedCurve(vector.waves * higher).farthest()[0][0])
 
 
 def free_of(throws: Sequence[OwnThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: Any) -> Free:
-    """Return what is unbalanced of throws, with the waves of what goes to and fro, and of weights that turn.
+    """Return the unbalanced force and moment of throws, by the waves of their reciprocating masses, and of weights.
 
-    z_0: from where moments are taken in m, None: not known. What cancels is exactly 0.
+    z_0: reference plane of the moments in m, None where it is not known. Orders that cancel are exactly 0.
     """
     turning = [one for one in weights if some(one.product != 0)]
     pulls = np.zeros((len(turning), *waves.shape[1:]), complex)
@@ -214,7 +214,7 @@ class BalanceColumns(AtAngles):
         self._vectors: dict[str, ComplexArray | None] = {}
 
     def vector(self, name: str) -> ComplexArray | None:
-        """Return the `force`, the `moment`, or those of the `book` (n,); None for what there is not."""
+        """Return the `force`, the `moment`, or those of the `book` (n,); None where it does not exist."""
         balance = self._balance
         if name not in self._vectors:
             free = balance.book if name.startswith("book") else balance.free
@@ -239,7 +239,7 @@ class MachineBalance(Results):
     Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
     UsageError where nothing moves that could be balanced, and where a place of a weight is missing. count: of how many
     machines the numbers are, (machines,); then so are the key values, nan where a machine has none. compare: with the
-    key values by the book's acceleration of first order, too.
+    key values by the book's acceleration of first order as well.
 
     z_0: place in m from where moments are taken; wheels: of the counterweights in the wheels of a locomotive, none of
     another machine; counterweights: those of the machine file.
@@ -498,8 +498,8 @@ class MachineBalance(Results):
     def best_shafts(self) -> tuple[Weight, ...]:
         """The weights on shafts that take away what no counterweight can: order 1 against, order 2 either way.
 
-        Two of order 2 are those of Lanchester. Weights of nothing are left out; where a place makes one take the moment
-        away as well, it has that place.
+        Two of order 2 are those of Lanchester. Weights of zero are left out. One that can cancel the
+        moment as well is placed so that it does.
         """
         force, moment = self.bare.force, self.bare.moment
         found = []
@@ -514,9 +514,10 @@ class MachineBalance(Results):
     # the wheels of a locomotive
 
     def in_wheels(self, of: str = "all") -> tuple[Any, Any]:
-        """Return what turns in each wheel in kg m, as by a lever: counterweights and rotating masses together.
+        """Return the rotating unbalance in each wheel in kg m, shared by the lever law.
 
-        of: `counterweights`, those alone; `reciprocating`, what these masses would give, if they turned with the crank.
+        of: `all`, counterweights and rotating masses; `counterweights`, these alone; `reciprocating`, the reciprocating
+        masses as if they turned with the crank.
         """
         weights = [(one.name, one.weight(one.mass if of == "reciprocating" else one.rotating)) for one in self.throws]
         added = [] if of == "reciprocating" else [("counterweights", one) for one in self.counterweights]
@@ -528,8 +529,8 @@ class MachineBalance(Results):
     def answers(self) -> dict[str, Any]:
         """The key values of a locomotive by id, those that there are; {} of another machine.
 
-        The counterweights balance all that turns; what they have more than that, so as to balance a share of what goes
-        to and fro, loads and lifts the wheel that has it: its hammer blow.
+        The counterweights balance all rotating masses. Their excess, which balances a share of the reciprocating ones,
+        alternately loads and lifts its wheel: the hammer blow.
         """
         given, omega = self.machine.locomotive, self.omega
         if given is None:

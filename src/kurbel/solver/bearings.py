@@ -1,13 +1,14 @@
-"""What every pin and main bearing carries over the cycle, and what of their surfaces is never loaded.
+"""Loads of every pin and main bearing over the cycle, and the arcs of their surfaces that are never loaded.
 
-A load is complex, outward along the axis of a frame and 90° on in the sense of rotation:
+A load is a complex number: its real part is along the axis of a frame, outward, its imaginary part 90° further in
+the sense of rotation. The frames:
 
     throw    turns with the crank:   F = −D + iT, of a main bearing as crank 1 turns
     engine   the stroke line of cylinder 1 outward:   F e^{iφ} e^{iγ}, γ from there to the stroke line
     rod      the line of the rod, crank pin to crosshead:   F e^{iφ} e^{iψ}
 
-Crank pin and journal stand still in the frame of the throw, crosshead pin and main shell in that of the engine, the
-shells in the rod in that of the rod. Pin and shell count as touching 60° to either side of the load.
+Crank pin and journal are at rest in the frame of the throw, crosshead pin and main shell in that of the engine, the
+shells of the rod in that of the rod. Pin and shell are taken to touch over 60° to either side of the load.
 """
 
 from __future__ import annotations
@@ -39,16 +40,16 @@ from kurbel.solver.state import State, on_crosshead_pin, on_pin
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
 _NO_LOAD = 1e-12
-"""Of the largest load: what is smaller is rounding and has no direction."""
+"""Of the largest load: a smaller one is rounding and has no direction."""
 _TINIEST = 1e-300
 _SURE = 100.0
-"""By so much of its share of the largest load a smaller one counts where its direction is to be a polynomial."""
+"""The direction of a load is resolved fully down to 1/100 of the largest; below, its weight falls with the load."""
 _ALONG = 1e-13
-"""Of the largest load: what rounding leaves across the axis of a frame."""
+"""Of the largest load: a component of a load that is smaller is rounding."""
 _ON_AXIS = 1e-12
-"""Degrees by which rounding turns a load aside that is along the axis of a frame, as that of a rod without mass."""
+"""Degrees by which rounding may turn a load off the axis of its frame; a rod without mass is loaded along its axis."""
 _EQUAL = 1e-6
-"""Degrees by which rounding may move the ends of an arc, where next to no load decides them."""
+"""Degrees by which rounding may move the ends of an arc that nearly vanishing loads determine."""
 
 
 class Follower(NamedTuple):
@@ -152,9 +153,9 @@ class Bearing(Results):
 
     @abstractmethod
     def _rubbing(self) -> tuple[Extreme, Any, Any]:
-        """By how much its surfaces turn on one another over the crank, the largest and the mean; its friction's work.
+        """Return the relative rotation of its surfaces over that of the crank, largest and mean, and the friction work.
 
-        The work is in J per cycle of the machine, None without a coefficient.
+        The work is in J per cycle of the machine, None without a coefficient of friction.
         """
 
     def _columns(self, phi: Array, within: Array) -> BearingColumns:
@@ -174,7 +175,7 @@ class Bearing(Results):
 
     @cached_property
     def answers(self) -> dict[str, Any]:
-        """The key values by id in SI, those for which sizes, speed and coefficient are given."""
+        """The key values by id in SI; those that need sizes, speed or a coefficient only if these are given."""
         pieces, load, (x, y, shell_x, shell_y) = self._cycle
         loads, mean = pieces.extremes(load[None]).each(self._told)[0], self._told(pieces.mean(load))
         # the time in which it exceeds half the largest, by the mean of each piece; the weights sum to 2
@@ -288,7 +289,7 @@ class MainBearing(Bearing):
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
     def _sampled(self, rubbed: bool) -> ComplexArray:
-        """Return the force on the common pieces; rubbed: with what the friction of the pins does to it."""
+        """Return the force in N on the common pieces; rubbed: with the friction of the pins."""
         pieces, pins = self._common, {}
         for number, own in self._members.items():
             state = own.forces.samples if rubbed else own.forces.samples.unrubbed
@@ -317,10 +318,10 @@ def _pin_load(state: State) -> Vector:
 
 
 def with_magnitude(pieces: Pieces, parts: Array) -> tuple[Pieces, Array, Array]:
-    """Return pieces on which magnitude and direction of a load are polynomials, the magnitude in N, and the parts.
+    """Return pieces on which magnitude and direction of a load are polynomials, with its magnitude in N and its parts.
 
-    parts: two of the load, and others, (p, nodes, pieces). On each piece the load lies within a quarter of a turn. The
-    smaller a load, the less of its direction is left by rounding.
+    parts: both components of the load, then others to be carried along, (p, nodes, pieces). On each piece the direction
+    of the load stays within a quarter of a turn. The direction of a small load is uncertain and counts less.
     """
     largest = pieces.largest(np.hypot(*parts[:2]))
 
@@ -351,12 +352,12 @@ def _directed(load: ComplexArray, largest: Any) -> ComplexArray:
 
 @lru_cache
 def _outward(count: int) -> Array:
-    """Return what extrapolates values at the inner nodes of so many to both ends, (2, count − 2)."""
+    """Return the matrix (2, count − 2) that extrapolates from the inner ones of `count` nodes to both ends."""
     inner = rule(count).nodes[1:-1]
     return chebyshev(np.array([-1.0, 1.0]), count - 2) @ np.linalg.inv(chebyshev(inner, count - 2))
 
 
-# what of a surface no load reaches
+# the arc of a surface that no load reaches
 
 
 def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array, Array]:
@@ -380,10 +381,10 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> tuple[Array,
 
 
 def unreached(starts: Array, widths: Array, machine: Indices, count: int) -> tuple[Array, Array]:
-    """Return in degrees what of a circle arcs leave free, and the middle of its widest stretch, each (machines,).
+    """Return how many degrees of a circle no arc covers, and the middle of the widest gap, each (machines,).
 
-    starts, widths: of the arcs (n,) in degrees; machine: of each, ascending. Of stretches equally wide it is the first
-    from 0° on; nan where there is none, and for both where there is no arc.
+    starts, widths: of the arcs (n,) in degrees; machine: of each, ascending. Of gaps equally wide it is the first from
+    0° on; the middle is nan where there is no gap, both are nan where there is no arc.
     """
     starts = 360.0 - np.mod(-starts, 360.0)
     order, many = np.lexsort((widths, starts, machine)), np.bincount(machine, minlength=count)
@@ -404,7 +405,7 @@ def unreached(starts: Array, widths: Array, machine: Indices, count: int) -> tup
 
 
 def _axial(directions: Array, rounding: float) -> Array:
-    """Return directions in degrees, those along their axis but for this rounding as 0 or 180."""
+    """Return directions in degrees; those within `rounding` of the axis are exactly 0 or 180."""
     along = np.rint(directions / 180.0) * 180.0
     return np.where(np.abs(directions - along) <= rounding, np.abs(along), directions)
 

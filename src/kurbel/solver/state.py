@@ -39,10 +39,10 @@ from kurbel.solver.trace import TracePressure, spread
 class Rubbing(NamedTuple):
     """Moments of friction in N m: of both pins on the rod, in the sense of rotation, and of the journals.
 
-    Each takes f r |F| on its radius r, and in a turn by dα the work f r |F| dα: the journals turn by dφ, the rod on the
-    crank pin by dφ + dψ, on the crosshead pin by dψ. In each pin the moment also acts on the rod, as a couple that
-    guide and crank pin carry. The forces F are those without this friction: what it changes in them is of second order
-    in f, as with the friction circles of the books.
+    Each moment is f r |F|, with the radius r and the load F; over a rotation dα it does the work f r |F| dα. The
+    journals turn by dφ, the rod on the crank pin by dφ + dψ, on the crosshead pin by dψ. The moment in a pin also acts
+    on the rod, as a couple that guide and crank pin carry. F is computed without this friction, which neglects terms
+    of second order in f, as the friction circles of the books do.
     """
 
     at_crank: Any
@@ -51,7 +51,7 @@ class Rubbing(NamedTuple):
 
 
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
-"""End of the cylinder's own piston -> index of its symbols, and what it is called."""
+"""End of the cylinder's own piston -> index of its symbols, and its name."""
 
 
 def _own_end(state: State, end: str) -> Pressure | None:
@@ -93,7 +93,11 @@ class State(MotionColumns):
 
     @classmethod
     def at(cls, drive: Drive, degrees: Array, within: Array | None = None, machine: Indices | None = None) -> State:
-        """Return the state at crank angles (n,) in degrees, on the sides of jumps that hold `within`, or just after."""
+        """Return the state at crank angles (n,) in degrees.
+
+        within: angles (n,) on that side of a jump from which values are taken; without it they are those just after a
+        jump. machine: of many machines, the number of the one to which each angle belongs.
+        """
         drive = drive if machine is None else drive.taken(machine)
         return cls(drive, CrankAngle.of(degrees), degrees if within is None else within)
 
@@ -104,7 +108,7 @@ class State(MotionColumns):
 
     @property
     def unrubbed(self) -> State:
-        """The state without friction in pins and journals: its loads are those that this friction is computed from."""
+        """The same state without friction in pins and journals; this friction is computed from its loads."""
         friction = self.rubs and self.drive.pin_friction
         return State(self.drive, self.angle, self.within, rubs=False) if friction else self
 
@@ -181,7 +185,7 @@ class State(MotionColumns):
     def force_on(self, shares: Any = None, alike: bool = False) -> Any:
         """Return Σ p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297; None without a piston.
 
-        shares: of each piston, what counts of it; True or all of it, False or nothing.
+        shares: for each piston, the share of its force that is counted; None counts all of them.
         """
         force: Any = None
         for number, gas in enumerate(self.drive.gas):
@@ -281,7 +285,7 @@ class State(MotionColumns):
 
     @cached_property
     def resistance(self) -> Any:
-        """What the output works against, in N or N m, against the motion."""
+        """Load on the output against its motion, in N, or in N m where the output swings or turns."""
         resistance = self.drive.resistance
         if resistance is None:
             return None
@@ -405,7 +409,7 @@ class State(MotionColumns):
 
     @cached_property
     def _after_steady_friction(self) -> Any:
-        """Force left for crosshead and rod after the friction of rings and what is given as a force, in N."""
+        """Piston force in N less the friction of rings and what is given as a force; acts on crosshead and rod."""
         steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
@@ -417,7 +421,7 @@ class State(MotionColumns):
 
     @cached_property
     def guide_side(self) -> Array:
-        """+1 where N ≥ 0, else −1; (n,), each piece having one."""
+        """+1 where N ≥ 0, else −1, of the shape of the angles; at the nodes of pieces, one sign for each piece."""
         sense = self.guide_sense
         if np.ndim(self.angle.sin) > 1:
             sense = rule(len(self.phi)).weights @ sense
@@ -500,12 +504,12 @@ class State(MotionColumns):
 
     @property
     def _output(self) -> Any:
-        """What reaches the crank of the force, or of the moment, at the output."""
+        """Force in N, or moment in N m, at the output, less friction, from which T and M are computed by work."""
         return self.along_rod if self.mechanism.slides else self.M_out
 
     @cached_property
     def _rod_tangential(self) -> Any:
-        """What couple and weight of an exact rod give to T in N; 0 without one."""
+        """Part of T in N from the couple and the weight of an exact rod; 0 without one."""
         if self.drive.rod is None:
             return 0.0
         along, across = self.drive.weight_of(self.drive.rod.pin_mass)
@@ -545,12 +549,12 @@ class State(MotionColumns):
 
     @property
     def torque(self) -> Any:
-        """Torque T R in N m of the force on the pin, before friction in crank pin and journals; from the work, as M."""
+        """Torque T R in N m at the crank pin, from work as M is, but before friction in crank pin and journals."""
         return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 
     @cached_property
     def pin_losses(self) -> tuple[Any, Any, Any] | None:
-        """What friction in crank pin, crosshead pin and journals takes of the torque, in N m; None without it."""
+        """Torque in N m lost by friction in crank pin, crosshead pin and journals; None without it."""
         found = self.rubbing
         if found is None:
             return None
@@ -570,9 +574,9 @@ def on_pin(state: State) -> Vector:
 
 
 def on_crosshead_pin(state: State) -> Vector:
-    """Return the force of the crosshead on its pin in N, along as P and across as N, without inertia of the rod.
+    """Return the force of the crosshead on its pin in N, its parts with the signs of P and N.
 
-    Along it is the rod load less friction.
+    Inertia and weight of the rod are left out: along the stroke line it is the rod load less friction.
     """
     drive, masses = state.drive, state.drive.cylinder.masses
     of_rod = drive.mass - masses.parts if masses else 0.0

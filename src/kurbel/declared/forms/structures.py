@@ -35,7 +35,7 @@ from kurbel.numerics.arithmetic import is_number
 
 
 class RecordForm(Form):
-    """A mapping that becomes a record. inline_too: its keys also stand inline elsewhere, and are looked for there."""
+    """A mapping that becomes a record. inline_too: another record also has its keys inline, so `places` skips it."""
 
     shape = dict
 
@@ -67,7 +67,7 @@ class RecordForm(Form):
         """Read the values of the keys of a mapping."""
         if not isinstance(value, dict):
             no_mapping(self, value)
-        # a misspelt key counts as given but unreadable, so that nobody is told that it is missing as well
+        # a misspelt key counts as given but unreadable, so that it is not also reported as missing
         meant = dict.fromkeys(self._unknown(reading, value, path), REFUSED)
         return self.build(reading, value | meant, path)
 
@@ -88,7 +88,7 @@ class RecordForm(Form):
             elif name in mapping:
                 values[name] = form.read(reading, mapping[name], (*path, name))
             elif name in missing:
-                # of an inline record, point at what is there of it
+                # a fault of an inline record points at one of its keys that is given
                 beside = next((given for given in own if given in mapping), "") if inline else ""
                 meaning = key.text[:1].lower() + key.text[1:]
                 message = f"'{name}' is missing{' beside it' if beside else ''}: {meaning}; {key.write(name)}"
@@ -133,7 +133,7 @@ class RecordForm(Form):
                 yield meant
 
     def _moved(self, mapping: Tree) -> dict[str, str]:
-        """Return the keys that do not stand in this mapping but below one of its keys, each with where to move it."""
+        """Return the keys that belong below another key of this mapping, each with the words where to move it."""
         moved = {
             inner: f"move it below '{name}'"
             for name, form in self.parts
@@ -147,7 +147,7 @@ class RecordForm(Form):
         return moved
 
     def _as_here(self, words: str, mapping: Tree) -> str:
-        """Return words for places as they are called from this mapping: those of a cylinder in an item of the list."""
+        """Return words for a place as seen from this mapping: that of a cylinder's key is in an item of 'cylinders'."""
         if self.listed and self.listed.unless in mapping:
             own, listed = self.listed.names(mapping), mapping[self.listed.unless]
             item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
@@ -156,7 +156,7 @@ class RecordForm(Form):
         return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
-        """Return the faults of the record as those of its mapping, whatever list the record has made of it."""
+        """Return the faults of a record with the paths of its mapping, where keys of a list's items may be inline."""
         faults = list(error.faults)
         for place, fault in enumerate(faults):
             if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
@@ -265,7 +265,7 @@ class Maker:
 
 
 class Variant(Choice):
-    """One of these words, on which hang further keys of the same mapping: those of the mechanism, say."""
+    """A word that decides which further keys the same mapping has, such as those of the mechanism."""
 
     def __init__(self, default: str, cases: dict[str, RecordForm], also: dict[str, str]) -> None:
         super().__init__(tuple(cases), also)
@@ -280,9 +280,9 @@ class Variant(Choice):
 class Listing(Form):
     """A list of items of one form, at least one; becomes a tuple.
 
-    called: what an item without a name is called, before its number, if `like: NAME` in one takes over what stands in
-    that one above it. What stands in the item itself comes first, also before what says the same thing there by
-    another key.
+    called: given if an item may have `like: NAME`, which copies the keys of an item above; it is the word before the
+    number of an item without a name, as in `cylinder 2`. Keys of the item itself override copied ones, also copied
+    ones that give the same thing under another name (`stroke` overrides `crank`).
     """
 
     shape = list
@@ -306,7 +306,7 @@ class Listing(Form):
         return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
 
     def _completed(self, reading: Reading, items: Sequence[Any], path: Path) -> list[Any]:
-        """Return items with what they take over; their faults are those of the other one where they are the same."""
+        """Return items with the keys that `like` copies; a fault in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
         pairs = [{name, key.instead} for name, key in self.item.every_key() if key.instead]
         above: dict[str, tuple[int, Tree]] = {}
@@ -333,7 +333,7 @@ class Listing(Form):
 
 
 class OneOf(Form):
-    """Several forms that differ in shape (text, list, mapping), or word and number; the first that suits reads it."""
+    """Several forms, which differ in shape (text, list, mapping) or are word and number; the first that fits reads."""
 
     def __init__(self, *forms: Form) -> None:
         expected = ", or ".join(form.expected for form in forms)
@@ -359,10 +359,10 @@ class OneOf(Form):
 
 
 class Keyed(Form):
-    """A mapping whose single telling key decides what it becomes: `{constant: …}`, `{trace: …}`; else `otherwise`.
+    """A mapping with one key that decides its form, `{constant: …}` or `{trace: …}`; without one, `otherwise` reads it.
 
-    texts: what those of the telling keys mean under which no mapping stands; beside: keys of their mappings that may
-    also stand beside the telling one.
+    texts: meanings of those deciding keys whose value is no mapping; beside: keys of their mappings that may also stand
+    beside the deciding one.
     """
 
     shape = dict
@@ -376,7 +376,7 @@ class Keyed(Form):
         self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
 
     def take(self, reading: Reading, value: Any, path: Path) -> Any:
-        """Read a mapping by its telling key."""
+        """Read a mapping by the key that decides its form."""
         if not isinstance(value, dict):
             no_mapping(self, value)
         known, cases = self.otherwise.keys, self.cases
@@ -407,7 +407,7 @@ class Keyed(Form):
 
 
 def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
-    """Return what may stand under a key: a kind of quantity with its bounds, a type, words, a record, a list of one.
+    """Return the form of a key's value: a kind of quantity with its bounds, a type, words, a record, a list of one.
 
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that stand for numbers.
     """
