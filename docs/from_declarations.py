@@ -21,6 +21,7 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.report.crank import STRESSES
+from kurbel.report.delivery import ENDS
 from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.report.zusammenstellung import FACTORS
 
@@ -96,6 +97,7 @@ def _others() -> Iterator[str]:
     yield f"## Holzer's table\n\n{_quantities(HOLZER.values())}"
     yield f"## Critical speeds\n\n{_quantities(CRITICAL_SPEEDS.values())}"
     yield f"## A piece of shaft at the working speed\n\n{_quantities(PIECES.values())}"
+    yield f"## An end of a compressor\n\n{_quantities(ENDS.values())}"
     yield f"## A piece of shaft over the speed\n\n{_quantities(SPEEDS.values())}"
     yield f"## Rows of Zusammenstellung 112 (kurbel table)\n\n{_quantities(FACTORS.values())}"
 

@@ -90,3 +90,11 @@ def test_a_case_that_there_is_not(pump: Path) -> None:
     with pytest.raises(UsageError, match="the file has no 'cases'"):
         api.load("configs/waterworks.yaml", case="full speed")
     assert "--cases: the file has no 'cases'" in run("sweep", "configs/waterworks.yaml", "--cases").stderr
+
+
+def test_cases_that_are_no_list_are_not_called_missing(tmp_path: Path) -> None:
+    file = tmp_path / "mapping.yaml"
+    text = Path("configs/waterworks.yaml").read_text(encoding="utf-8")
+    file.write_text(f"{text}\ncases:\n  slow: {{speed: 20 rpm}}\n", encoding="utf-8")
+    for options in (("sweep", str(file), "--cases"), ("forces", str(file), "--case", "slow")):
+        assert "is no list of cases" in run(*options).stderr

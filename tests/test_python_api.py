@@ -30,13 +30,14 @@ MACHINE = (
     "cylinders, name='machine', speed=None, cycle='two-stroke', efficiency=1.0, ambient=101325.0, brake_power=None, "
     "flywheel=None, load=None, effort=None, coupling=None, crankshaft=None, counterweights=(), balance_shafts=(), "
     "moment_reference=None, locomotive=None, shaft=None, limits=(), expect=(), uncertainty=(), rotation=None, "
+    "gas=None, pump=None, "
     "origin=None, cases=(), cycle_turns=1"
 )
 SIGNATURES = {
     "Case": "machine, count=None",
     "Cylinder": CYLINDER,
     "Machine": MACHINE,
-    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston', lever_ratio=1.0",
+    "Piston": "bore, head_end_rod=0.0, crank_end_rod=0.0, indicator=None, name='piston', gas=None, lever_ratio=1.0",
     "SliderCrank": "crank, rod, offset=0.0",
     "draw": "case, *names, units='metric', angles=None",
     "find": "machine, vary, wanted=(), least='', greatest='', where=()",

@@ -6,6 +6,7 @@ from kurbel.mechanisms.kinds import KINDS
 from kurbel.quantity import Lists
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.bearings import Bearing
+from kurbel.solver.delivery import CompressorStage, Delivery
 from kurbel.solver.figures import Results, rows_of
 from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.forces import CylinderForces
@@ -22,6 +23,8 @@ RESULTS: tuple[type[Results], ...] = (
     MachineBalance,
     MachineOrders,
     ShaftVibration,
+    Delivery,
+    CompressorStage,
 )
 """The classes of results, in the order in which their quantities are listed; those of a part come with it."""
 

@@ -184,7 +184,7 @@ PHI = Quantity(
     "φ",
     "angle",
     "Crank angle from the inner dead centre, in the sense of rotation",
-    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion"),
+    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion", "delivery"),
 )
 """Over it all other columns are printed."""
 

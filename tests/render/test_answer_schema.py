@@ -32,6 +32,8 @@ MACHINES = [
     ("balance", "boxer"),
     ("harmonics", "punch"),
     ("torsion", "torsional-damper"),
+    ("delivery", "compressor-two-stage"),
+    ("delivery", "triplex-pump"),
 ]
 ANSWERS = [
     ["table", "--compare"],

@@ -2,7 +2,7 @@
 
 from kurbel.cli.find import find
 from kurbel.cli.group import exit_statuses, kurbel
-from kurbel.cli.machine import balance, bearings, flywheel, forces, harmonics, motion, stress, torsion
+from kurbel.cli.machine import balance, bearings, delivery, flywheel, forces, harmonics, motion, stress, torsion
 from kurbel.cli.pages import accuracy, check, plot, report
 from kurbel.cli.reference import example, friction, keys, schema, table, units
 from kurbel.cli.sweep import sweep
@@ -21,6 +21,7 @@ for _command in (
         balance,
         harmonics,
         torsion,
+        delivery,
         plot,
         report,
         sweep,

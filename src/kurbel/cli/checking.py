@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 from kurbel.cli.group import DONE, message_of, to_stderr
 from kurbel.designs.uncertainty import given_uncertainty
-from kurbel.errors import Fault, KurbelError, MachineFileError
+from kurbel.errors import KurbelError
 from kurbel.machine import Machine
-from kurbel.machine.origin import Origin
 from kurbel.machine_file import load
 from kurbel.machine_file.events import located
-from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
 from kurbel.render.data import findings_json
 from kurbel.render.output import refuse_overwriting, stdout_look, write_out
@@ -65,7 +64,7 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         if machine.uncertainty:  # is judged by what is in the file
             given_uncertainty(machine)
         names = [one.name for one in machine.cases] if not case_name else []
-        cases = [Case(one) for one in _of_cases(machine.origin, names)] if machine.origin else []
+        cases = [Case(one) for one in load_cases(machine.origin, names)] if machine.origin else []
     except KurbelError as error:
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
@@ -73,20 +72,6 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
     # all errors of a machine as one of the gravest kind
     gravest = min(found.errors, key=lambda error: error.exit_status, default=None)
     return Outcome(file, gravest and type(gravest)("\n".join(map(str, found.errors))), machine, found)
-
-
-def _of_cases(origin: Origin, names: Sequence[str]) -> list[Machine]:
-    """Return the machine of each load case; raises MachineFileError with the faults of all of them."""
-    machines: list[Machine] = []
-    faults: list[Fault] = []
-    for name in names:
-        try:
-            machines.append(read_machine(origin._replace(case=name)))
-        except MachineFileError as error:
-            faults += error.faults
-    if faults:
-        raise MachineFileError(origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column)))
-    return machines
 
 
 def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:

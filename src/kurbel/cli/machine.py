@@ -50,6 +50,11 @@ machine_table = stacked(
 """Gives a command FILE and all options of a table, which reach it as one `Request`."""
 
 
+cases_option = click.option(
+    "--cases", is_flag=True, help="A row of key values for every load case of FILE, those of --columns if given."
+)
+
+
 @click.command()
 @machine_table
 @row_options
@@ -67,13 +72,14 @@ def motion(request: "Request") -> None:
 
 @click.command()
 @machine_table
+@cases_option
 @uncertainty_option
 @row_options
 @click.option(
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
+def forces(request: "Request", cases: bool, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -82,6 +88,8 @@ def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spr
     """
     from kurbel.report.crank import forces_report
 
+    if cases:
+        return request.print_cases()
     case = request.case(cycle)
     if not each_cycle:
         request.print(forces_report, case=case, parts=len(case.cylinders), spreads=spreads)
@@ -126,7 +134,8 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
 
 @click.command()
 @machine_table
-def bearings(request: "Request") -> None:
+@cases_option
+def bearings(request: "Request", cases: bool) -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
     The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
@@ -136,6 +145,8 @@ def bearings(request: "Request") -> None:
     """
     from kurbel.report.crank import bearings_report
 
+    if cases:
+        return request.print_cases()
     request.print(bearings_report)
 
 
@@ -176,6 +187,7 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 
 @click.command()
 @machine_table
+@cases_option
 @orders_option
 @speeds_option
 @click.option(
@@ -190,6 +202,7 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 )
 def torsion(
     request: "Request",
+    cases: bool,
     orders: tuple[float, ...] | None,
     speeds: tuple[float, ...] | None,
     modes: int,
@@ -205,8 +218,27 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
+    if cases:
+        return request.print_cases()
     if mode is not None and at is not None:
         raise click.UsageError(
             "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
         )
     request.print(torsion_report, Wanted(orders, modes, mode or 1, speeds, at))
+
+
+@click.command()
+@machine_table
+@cases_option
+def delivery(request: "Request", cases: bool) -> None:
+    """Print what the pumps and compressors of FILE deliver.
+
+    Of pumps the flow over the crank angle, its mean, how much it swings, and what air vessels and pipes make of it;
+    of compressors capacity, mass flow and temperature of every end and stage, by their ideal cards. Key values are
+    exact and do not depend on --step. FILE may be - for standard input.
+    """
+    from kurbel.report.delivery import delivery_report
+
+    if cases:
+        return request.print_cases()
+    request.print(delivery_report)

@@ -53,7 +53,7 @@ def report(
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
-    from kurbel.cli.request import case_of
+    from kurbel.cli.request import case_of, cases_of
     from kurbel.machine_file.given import given
     from kurbel.render.report_page import report_page
     from kurbel.report.whole import side_by_side, whole_report
@@ -68,7 +68,8 @@ def report(
     keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
     system = units or "metric"
     if len(cases) == 1:
-        document = whole_report(cases[0], keys[0], system, step, progress)
+        load_cases = cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
+        document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
     else:
         document = side_by_side(cases, keys, system, progress)
     document = document._replace(title=title or document.title)

@@ -8,10 +8,13 @@ from typing import Any
 import click
 
 from kurbel.cli.options import Output, Spreads, with_bar
-from kurbel.machine import of_cycle
+from kurbel.errors import UsageError
+from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
+from kurbel.machine_file.reader import load_cases
 from kurbel.render.output import refuse_overwriting
 from kurbel.report.commands import COMMANDS
+from kurbel.report.delivery import cases_report
 from kurbel.report.frame import Frame
 from kurbel.report.rows import over_stroke, rows_where
 from kurbel.report.tables import Report, crank_angles
@@ -27,6 +30,13 @@ def case_of(file: str, case_name: str, overrides: Iterable[str], *outputs: str |
     for output in outputs:
         refuse_overwriting(output, (file, *machine.trace_files))
     return Case(machine)
+
+
+def cases_of(machine: Machine) -> list[Case]:
+    """Return the load cases of the file of a machine. Raises UsageError where it has none."""
+    if not machine.cases or machine.origin is None:
+        raise UsageError("--cases: the file has no 'cases'")
+    return [Case(one) for one in load_cases(machine.origin, [one.name for one in machine.cases])]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +83,14 @@ class Request:
         if self.command == "balance":
             end = case.balance.cycle
         self.write(report(case, self.frame(end, parts), *how), case, **also)
+
+    def print_cases(self) -> None:
+        """Print a row for each load case of the file. Raises UsageError where it has none."""
+        given = self.given(**{"--columns": None, "--case": self.case_name or None})
+        if given:
+            raise click.UsageError(f"--cases has a row for every load case; leave {' and '.join(given)} out.")
+        machine = self.case().machine
+        self.write(cases_report(machine, cases_of(machine), self.command, self.units, self.columns))
 
     def frame(self, end: float, parts: int) -> Frame:
         """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""

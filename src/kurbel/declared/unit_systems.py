@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
-from kurbel.declared.units import KINDS, unit_factor
+from kurbel.declared.units import KINDS, unit_factor, zero_of
 
 SYSTEMS: dict[str, dict[str, Any]] = {
     "si": {name: kind.si for name, kind in KINDS.items()},
@@ -15,7 +15,7 @@ SYSTEMS: dict[str, dict[str, Any]] = {
 }
 """Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
 SI: dict[str, str] = SYSTEMS["si"]
-_TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3}
+_TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3, "m^3/h": 10 / 3600}
 """Base value from which a larger unit is taken, where that is not one of the unit itself."""
 
 _TOLD: ContextVar[str] = ContextVar("told", default="metric")
@@ -66,7 +66,8 @@ def convert(value: Any, kind: str, unit: str) -> Any:
     if not unit:
         return value
     up, down = unit_factor(unit, kind)
-    return value if up == down else value / up * down
+    value, zero = value if up == down else value / up * down, zero_of(unit)
+    return value - zero if zero else value
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:

@@ -61,6 +61,11 @@ KINDS = {
     "volume_rise": Kind(0, 1e27, "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
     "pressure_rise": Kind(0, 1e15, "Pa/deg", ("mbar/deg", "bar/deg"), "at/deg", "psi/deg", "10 bar/deg"),
     "density": Kind(1e-9, 1e9, "kg/m^3"),
+    "temperature": Kind(1e-3, 1e6, "K", written="20 °C"),
+    "flow": Kind(0, 1e18, "m^3/s", ("l/min", "m^3/h"), "m^3/h", "ft^3/min"),
+    "mass_flow": Kind(0, 1e18, "kg/s", "kg/h", "kg/h", "lb/h"),
+    "molar_mass": Kind(1e-9, 1e6, "kg/mol", "g/mol", written="28.96 g/mol"),
+    "gas_constant": Kind(1e-3, 1e9, "J/kg K"),
     "spring": Kind(1e-15, 1e3, "m/Pa", "mm/bar", "mm/at", "in/psi", "10 mm/at"),
     "ratio": Kind(1e-15, 1e15, ""),
 }
@@ -97,6 +102,8 @@ _FACTORS: dict[str, Factor] = {
     **{"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "tonne": (1e3, 1), "lb": (_POUND, 1)},
     **{"long_ton": (2240 * _POUND, 1), "short_ton": (2e3 * _POUND, 1)},
     **{"s": (1, 1), "min": (60, 1), "h": (3600, 1), "Hz": (1, 1)},
+    # temperature in K, see `_ZEROS`
+    **{"K": (1, 1), "°C": (1, 1), "°F": (5, 9), "mol": (1, 1), "kmol": (1e3, 1)},
     # angle and revolutions, but for those of `_ELSEWHERE`
     **dict.fromkeys(("rad", "deg", "°", "rps", "U", "rev", "r", "1"), (1, 1)),
     "rpm": (1, 60),
@@ -121,6 +128,8 @@ _FACTORS |= {
     if prefix + name != "kg"
 }
 
+_ZEROS = {"°C": 273.15, "°F": 459.67}
+"""Temperatures that count from elsewhere than from absolute zero, and by how many of their degrees."""
 _DEGREES: dict[str, Factor] = {"rad": (180, math.pi)}
 _POUND_OF_FORCE: dict[str, Factor] = {"lb": (_LBF, 1)}
 _ELSEWHERE: dict[str, dict[str, Factor]] = {
@@ -167,6 +176,11 @@ _UNITS: dict[str, tuple[str, ...]] = {
     "density": ("kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",),
     "spring": (f"mm, cm, m, in / {_PRESSURES}, lb/in2, lb/ft2", "mm/kgf/cm2, cm/kgf/cm2"),
     "volume": ("m3, dm3, l, cm3, mm3, in3",),
+    "temperature": ("K, °C, °F",),
+    "flow": ("m3, dm3, l, cm3, ft3, in3 / s, min, h",),
+    "mass_flow": (f"{_MASSES} / s, min, h",),
+    "molar_mass": ("kg/mol, g/mol, kg/kmol",),
+    "gas_constant": ("J/kg K, kJ/kg K, kgf m/kg K",),
     "volume_rise": ("m3, cm3, in3 / deg, rad",),
     "pressure_rise": (f"{_PRESSURES}, lb/in2, lb/ft2 / deg, rad",),
     "pressure_velocity": ("W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s",),
@@ -216,6 +230,7 @@ def _normal(unit: str) -> str:
     unit = plain(unit)
     for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("³", "3"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
         unit = unit.replace(sign, ours)
+    unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit.replace("/(kg K)", "/kg K"))
     unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
@@ -284,9 +299,15 @@ def parse_quantity(text: str, kind: str) -> float:
     if unit[0] in "0123456789._:" and not unit.startswith("1/"):
         raise UnitError(f"expected a number with its unit, such as '{example(kind)}', got '{stripped}'")
     up, down = unit_factor(unit, kind)
+    value += zero_of(unit)
     if not math.isfinite(value * up / down):
         raise UnitError(f"{stripped} is too large to compute with")
     return value * up / down
+
+
+def zero_of(unit: str) -> float:
+    """Return how far below its 0 a unit has the 0 of its base, in that unit: 273.15 of °C, 0 of most."""
+    return _ZEROS.get(unit) or _ZEROS.get(_normal(unit), 0.0) if unit[-1:] in "CF" else 0.0
 
 
 _FITTING = {
@@ -314,7 +335,7 @@ def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
         factor = units.get(unit)
         if factor is None or not NUMBER.fullmatch(number):
             return None
-        values.append(float(number) * factor[0] / factor[1])
+        values.append((float(number) + zero_of(unit)) * factor[0] / factor[1])
     return values if all(map(math.isfinite, values)) else None
 
 

@@ -26,6 +26,7 @@ from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
 from kurbel.machine.parts import Piston
+from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import MOST_TURNS, Coupling, Flywheel, Known, Load, Swing
@@ -194,6 +195,10 @@ class Machine(Record):
         "engine presses its crosshead down, or under (R p. 602)",
         absent="over, and nothing is said of the guide",
         also=("direction", "sense"),
+    )
+    gas: Gas | None = field(Gas, "The gas that a compressor draws in", absent="volumes only")
+    pump: Pump | None = field(
+        Pump, "Slip, liquid, pipes and vessels of a pump; its driven pistons are then those of pumps", absent="no pipes"
     )
     origin: Origin | None = None
     cases: tuple[LoadCase, ...] = field(

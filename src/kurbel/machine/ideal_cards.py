@@ -156,11 +156,23 @@ class Compressor(_TwoStroke):
     delivery: float = _pressure("Pressure while the chamber empties", required=True, also=("discharge",))
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", required=True)
     exponent: float = _exponent("Exponent of compression and expansion", "1.4, air")
+    expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression", None)
+    unloaded: bool = field(
+        bool,
+        "Whether the suction valves are held open, so that nothing is delivered; stands beside `compressor`, too",
+        default=False,
+        absent="false",
+    )
 
     higher, lower = "delivery", "suction"
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
+
+    @property
+    def of_expansion(self) -> float:
+        """Exponent of the expansion of what is left in the clearance."""
+        return self.exponent if self.expansion_exponent is None else self.expansion_exponent
 
     def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
@@ -169,8 +181,11 @@ class Compressor(_TwoStroke):
         with np.errstate(all="ignore"):
             enclosed = np.where(np.equal(c, 0), np.nan, c)
             top = after_polytrope(self.suction + lift, 1 + c, enclosed, self.exponent) - lift
+            left = after_polytrope(self.suction + lift, 1 + c, enclosed, self.of_expansion) - lift
         nothing = "delivery: the piston compresses to {top:pressure} only; such a compressor delivers nothing"
         yield Rule((), self.delivery >= top, nothing, {"top": top})
+        full = "expansion_exponent: what is left in the clearance fills the whole stroke; nothing is drawn in"
+        yield Rule((), (self.delivery < top) & (self.delivery >= left), full)
 
 
 _RATIO = alternative(

@@ -1,7 +1,7 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any, ClassVar, Protocol
 
@@ -294,12 +294,18 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
-    beside=("diagram_factor",),
+    beside=("diagram_factor", "unloaded"),
     texts={"mean_pressure": "Indicated mean pressure in place of a card: work and power hold, forces do not"},
 )
 _ONE_PRESSURE = Number(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
 )
+
+
+def _loaded(chamber: Any) -> Any:
+    """Return a card as it is with its valves at work, for the other end."""
+    unloaded = isinstance(chamber, Compressor) and chamber.unloaded
+    return replace(chamber, unloaded=False) if unloaded else chamber
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -327,7 +333,7 @@ class Indicator(Record):
         "head end's card, so counted",
         absent="open to the ambient",
         # each chamber's fractions count from its own dead centre, so that it is the same card
-        gives=lambda given: {"crank_end": given.get("head_end")} if given["crank_end"] == "mirrored" else {},
+        gives=lambda given: {"crank_end": _loaded(given.get("head_end"))} if given["crank_end"] == "mirrored" else {},
     )
     absolute: bool = False
 

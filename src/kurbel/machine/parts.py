@@ -12,6 +12,7 @@ from kurbel.declared.forms.values import Choice, Form, Number
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
+from kurbel.machine.pumped import Gas
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 
@@ -348,6 +349,7 @@ class Piston(Record):
         Indicator, "Pressures on the two sides", absent="no gas force", also=("pressure", "card", "trace")
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
+    gas: Gas | None = field(Gas, "The gas that it draws in", absent="that of the machine")
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:

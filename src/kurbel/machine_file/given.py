@@ -52,6 +52,8 @@ def case_names(origin: Origin) -> tuple[str, ...]:
     """Return the names of the load cases of a file; raises UsageError where it has none."""
     cases = tree_of(origin).get("cases")
     names = [one.get("name") for one in cases if isinstance(one, dict)] if isinstance(cases, list) else []
+    if not names and cases:
+        raise UsageError("--cases: 'cases' of the file is no list of cases, each with a 'name'; see kurbel check")
     if not names:
         raise UsageError("--cases: the file has no 'cases'")
     return tuple(map(str, names))

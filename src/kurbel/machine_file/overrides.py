@@ -103,7 +103,8 @@ def _of_case(tree: Tree, name: str) -> Iterator[Override]:
     listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
     named = {str(one.get("name")): index for index, one in enumerate(listed)}
     if name not in named:
-        there = f"there are {', '.join(map(shown, named))}" if named else "the file has no 'cases'"
+        none = "'cases' of the file is no list of cases; see kurbel check" if cases else "the file has no 'cases'"
+        there = f"there are {', '.join(map(shown, named))}" if named else none
         raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
     values = listed[named[name]].get("set")
     for key, value in values.items() if isinstance(values, dict) else ():

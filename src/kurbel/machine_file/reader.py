@@ -8,7 +8,7 @@ from typing import Any
 
 from kurbel.declared.forms.structures import Maker, RecordForm, places
 from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
-from kurbel.errors import UsageError
+from kurbel.errors import Fault, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
@@ -30,6 +30,20 @@ def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), case: str 
     cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
     """
     return read_machine(source.read(path)._replace(case=case).set_over(overrides))
+
+
+def load_cases(origin: Origin, names: Iterable[str]) -> list[Machine]:
+    """Return the machine of each of these load cases; raises MachineFileError with the faults of all of them."""
+    machines: list[Machine] = []
+    faults: list[Fault] = []
+    for name in names:
+        try:
+            machines.append(read_machine(origin._replace(case=name)))
+        except MachineFileError as error:
+            faults += error.faults
+    if faults:
+        raise MachineFileError(origin.name, sorted(dict.fromkeys(faults), key=lambda one: (one.line, one.column)))
+    return machines
 
 
 def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:

@@ -57,7 +57,7 @@ def _of(form: Form, definitions: Schema) -> Schema:
         return {"anyOf": [_of(one, definitions) for one in form.forms]}
     if isinstance(form, Keyed):
         one = {"type": "object", "additionalProperties": False}
-        each = []
+        each: list[Schema] = []
         for name, case in form.cases.items():
             own = case.keys if isinstance(case, RecordForm) else {}
             beside = {key: _of(own[key].form, definitions) for key in form.beside if key in own}

@@ -11,7 +11,11 @@ from kurbel.declared.reading import Reading
 from kurbel.declared.units import ZEROED_UNITS
 from kurbel.errors import Path
 
-_COUNTED = {"ambient": "absolute", **dict.fromkeys(("offset", "mean_pressure", "drawn"), "")}
+_COUNTED = {
+    "ambient": "absolute",
+    "vapour_pressure": "absolute",
+    **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
+}
 """Keys whose pressures do not count as the indicator around them says: '' where they are differences."""
 _VALUE = re.compile(rf"((?:{WRITTEN})?\s*)({'|'.join(ZEROED_UNITS)})")
 

@@ -76,7 +76,7 @@ class SliderCrank(Mechanism):
         above=0,
         words=_INFINITE,
         required=True,
-        also=("con_rod", "conrod", "connecting_rod"),
+        also=("con_rod", "conrod", "connecting_rod", "rod_length"),
     )
     _rod_ratio = alternative(
         "ratio",

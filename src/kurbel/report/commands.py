@@ -33,6 +33,7 @@ _ROWS = (
     Command("balance", "Free forces and moments, counterweights.", _STALLS, "Balance of the masses"),
     Command("harmonics", "Orders of the turning effort, gas and inertia apart.", (), "Orders of the turning effort"),
     Command("torsion", "Torsional vibration of the shaft line.", _STALLS, "Torsional vibration"),
+    Command("delivery", "Flow of pumps, capacity of compressors.", _STALLS, "Delivery"),
     Command("plot", "Pictures, in the terminal or as SVG, PNG, PDF.", _STALLS),
     Command("report", "Everything on one page of HTML; two machines side by side."),
     Command("sweep", "Key values of many designs of a machine."),

@@ -112,6 +112,10 @@ def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool =
     if command == "balance":
         balance = MachineBalance(case.effort, compare=True) if compare else case.balance
         return [Subject("whole machine", balance, balance.at)]
+    if command == "delivery":
+        whole = [case.delivery.pump] if case.delivery.pump else []
+        pumps = [Subject(one.name, one, one.at, source=one) for one in (*case.delivery.pistons, *whole)]
+        return [*(Subject(one.name, one) for one in case.delivery.stages), *pumps]
     if command == "harmonics":
         return [Subject("whole machine", case.harmonics())]
     if case.torsion.vibration is not None and case.torsion.vibration.endless.any():

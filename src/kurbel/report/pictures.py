@@ -283,6 +283,19 @@ def effort(source: Source) -> Iterator[Panel]:
             yield panel._replace(curves=(*panel.curves, mean_line))
 
 
+def flow(source: Source) -> Iterator[Panel]:
+    """Flow that the pumps deliver over the crank angle, and its mean; what is between them fills and empties the air
+    vessel. Below it, where there is a suction pipe without a vessel, the head that accelerates the liquid."""
+    if not source.having("flow"):
+        return
+    samples, mean = source.samples((PHI, "flow")), source.results.flow_mean
+    x, line = samples.values
+    panel = source.panel(("flow",))
+    curves = (*panel.curves, level(x, mean, source.words("flow_mean")))
+    yield panel._replace(curves=curves, shades=tuple(_between(x, np.full_like(x, mean), line)))
+    yield from source.panels(("acceleration_head",))
+
+
 def crank_efforts(source: Source) -> Iterator[Panel]:
     """Tangential force of each cylinder as its crank stands, their sum, and dashed the sum with the efficiency (R Abb.
     1062, 1064)."""
@@ -462,6 +475,7 @@ PICTURES = (
     PictureKind("effort-polar", "Tangential force in polar form", "forces", polar_effort),
     PictureKind("force-polar", "Piston force in polar form", "forces", polar_force),
     PictureKind("effort", "Turning effort", "flywheel", effort),
+    PictureKind("flow", "Flow delivered", "delivery", flow),
     PictureKind("effort-cranks", "Turning effort of each crank", "flywheel", crank_efforts),
     PictureKind("effort-sides", "Turning effort against the driven pistons", "flywheel", effort_of_sides),
     PictureKind("throw-stress", "Stress of the crankshaft", "stress", throw_stress),
@@ -479,7 +493,7 @@ PICTURES = (
 """The pictures, the one that says most of a machine first."""
 
 
-_OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion")
+_OF_MACHINE = ("flywheel", "stress", "balance", "harmonics", "torsion", "delivery")
 """Commands whose pictures are of the whole machine; those of others are drawn of each cylinder or bearing."""
 
 

@@ -152,7 +152,8 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
             )
         least, most = _EXPONENTS
         for end, chamber in piston.chambers.items():
-            given = {getattr(chamber, key) for key in ("exponent", "expansion_exponent") if hasattr(chamber, key)}
+            keys = "exponent", "expansion_exponent"
+            given = {one for key in keys if (one := getattr(chamber, key, None)) is not None}
             for value in sorted(one for one in given if not least <= one <= most):
                 text = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
                 yield f"{piston.name}, {end.replace('_', ' ')}: {text}"

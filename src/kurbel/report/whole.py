@@ -18,6 +18,7 @@ from kurbel.report.balance import balance_report
 from kurbel.report.check import Checked, checked
 from kurbel.report.commands import REPORTS, Command
 from kurbel.report.crank import bearings_report, forces_report, motion_report, stress_report
+from kurbel.report.delivery import IN_CASES, cases_report, delivery_report
 from kurbel.report.frame import Frame, Subject, provenance, subjects_of
 from kurbel.report.keys import every_place, meaning
 from kurbel.report.picture import Document, Fact, Facts, Grid, Item, Pair, Section
@@ -46,6 +47,7 @@ _REPORTS: dict[str, Callable[[Case, Frame], Report]] = {
     "balance": balance_report,
     "harmonics": harmonics_report,
     "torsion": torsion_report,
+    "delivery": delivery_report,
 }
 
 
@@ -56,6 +58,7 @@ def report_of(case: Case, frame: Frame) -> Report:
 
 _FACTS = (
     *(("flywheel", id) for id in ("power_shaft", "M_max", "dE", "delta", "J")),
+    *(("delivery", id) for id in ("flow_mean", "capacity")),
     *(("forces", id) for id in ("mean_pressure", "p_max", "P_peak", "N_peak", "T_max")),
     *(("bearings", "load_max"), ("stress", "safety_pin_min"), ("torsion", "f_1"), ("balance", "F_free_max")),
     *(
@@ -65,14 +68,16 @@ _FACTS = (
 )
 """Commands and ids of the key values that say most of a machine, the first ones first."""
 _MOST_FACTS = 8
-_ORDER = ("flywheel", "forces", "bearings", "stress", "balance", "torsion", "harmonics", "motion")
+_ORDER = ("flywheel", "delivery", "forces", "bearings", "stress", "balance", "torsion", "harmonics", "motion")
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
-def whole_report(case: Case, given: Given, system: str, step: float, progress: Progress) -> Document:
+def whole_report(
+    case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
+) -> Document:
     """Return all that a machine has: what says most of it, pictures and tables of each command, energy, input.
 
-    given: the keys of its file; step: of the tables in degrees.
+    given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
     stepped(step, 360.0)  # a step that is none is refused at once
     found, places = checked(case), every_place()
@@ -84,7 +89,10 @@ def whole_report(case: Case, given: Given, system: str, step: float, progress: P
         command = REPORTS[word]
         progress(command.title.lower())
         try:
-            sections.append(Section(word, command.title, tuple(_items(case, command, system, step))))
+            made = _items(case, command, system, step)
+            if cases and word in IN_CASES:
+                made.append(cases_report(case.machine, cases, word, system))
+            sections.append(Section(word, command.title, tuple(made)))
         except UsageError as error:
             left_out.append((command.title, str(error).removeprefix(f"{case.machine.name}: ")))
 

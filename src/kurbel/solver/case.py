@@ -9,6 +9,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.bearings import Bearing, ShaftBearings
+from kurbel.solver.delivery import CompressorStage, Delivery, MachineDelivery
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Figure, Shown, rows_of
 from kurbel.solver.flywheel import MachineTurning
@@ -47,6 +48,12 @@ class Case(Shown):
             return self.balance[name]
         if rows_of(ShaftVibration).named(name):
             return self.torsion[name]
+        if rows_of(Delivery).named(name) and self.delivery.pump:
+            return self.delivery.pump[name]
+        if rows_of(CompressorStage).named(name):
+            if len(self.delivery.stages) == 1:
+                return self.delivery.stages[0][name]
+            raise UsageError(f"each stage has its own {name}: ask one of case.delivery.stages")
         if of_cylinder:
             raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
         if rows_of(Bearing).named(name):
@@ -80,6 +87,11 @@ class Case(Shown):
     def flywheel(self) -> MachineTurning:
         """Turning effort, flywheel and speed line of the whole machine. Raises UsageError where nothing turns it."""
         return MachineTurning(self.effort)
+
+    @cached_property
+    def delivery(self) -> MachineDelivery:
+        """What pumps and compressors deliver. Raises UsageError where the machine delivers nothing."""
+        return MachineDelivery(self.effort)
 
     @cached_property
     def effort(self) -> TurningEffort:

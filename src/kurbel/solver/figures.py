@@ -61,7 +61,7 @@ class Figure(NamedTuple):
 
 
 class Shown:
-    """What a notebook shows; `kurbel.notebook` puts in how, since tables and pictures are made far above the solver."""
+    """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
 
     as_html: ClassVar[Callable[[Any], str] | None] = None
 
@@ -135,14 +135,14 @@ class Rows(NamedTuple):
 
 
 class PartResults(Computed[V]):
-    """Results that are a part of others; their rows stand in the place of the attribute."""
+    """Results that are a part of others; their rows are printed in the place of the attribute."""
 
     kind: type[Results]
     unless: Condition | None
 
 
 def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], PartResults[V]]:
-    """Return what makes a method a part of results, of this class; it may return None where there is no such part.
+    """Return a decorator for a method that returns results of this class, or None where there is no such part.
 
     unless: takes the results; where it is true, all of the part says nothing new.
     """

@@ -147,10 +147,14 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
         run(1, 1.0, card.exhaust, card.compression)
         compressed = run(1, card.compression, card.exhaust, card.lead, card.exponent)
         lines.append((1, card.lead, compressed, 0.0, card.admission, 0.0))
+    elif isinstance(card, Compressor) and card.unloaded:
+        run(0, 0.0, card.suction, 1.0)
+        run(1, 1.0, card.suction, 0.0)
     elif isinstance(card, Compressor):  # expansion of the clearance gas, suction; compression, delivery
-        rise = math.log((card.delivery + lift) / (card.suction + lift)) / card.exponent
-        fills, empties = clearance * math.expm1(rise), 1.0 + (1.0 + clearance) * math.expm1(-rise)
-        lines.append((0, 0.0, card.delivery, fills, card.suction, card.exponent))
+        ratio, expansion = math.log((card.delivery + lift) / (card.suction + lift)), card.of_expansion
+        fills = clearance * math.expm1(ratio / expansion)
+        empties = 1.0 + (1.0 + clearance) * math.expm1(-ratio / card.exponent)
+        lines.append((0, 0.0, card.delivery, fills, card.suction, expansion))
         run(0, fills, card.suction, 1.0)
         lines.append((1, 1.0, card.suction, empties, card.delivery, card.exponent))
         run(1, empties, card.delivery, 0.0)

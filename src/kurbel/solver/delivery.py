@@ -1,0 +1,509 @@
+"""What pumps and compressors deliver: flow over the angle, air vessels and pipes; capacities, temperatures, stages.
+
+    q(φ) = (1 − slip) Σ A |dx/dt|            over the chambers that shrink; where they grow it is drawn in
+    ΔV = swing of ∫ (q − q_m) dt             the fluctuating volume, found as ΔE of the turning effort is
+    V = ΔV (r + 1)/(2 (r − 1))               air vessel; r = V_max/V_min = ((2 + δ)/(2 − δ))^(1/n), V = ΔV/δ for n = 1
+    h_a = l/(g a) dq/dt, h_f = f l u²/(2 g d)    heads in a pipe of the section a, u = q/a; behind a vessel q is q_m
+    η_v = 1 − ε₀ [(p_d/p_s)^(1/n) − 1]       end of a compressor with the clearance ε₀
+    V̇ = η_v V_s n, m = p_s V̇/(R T₁)          capacity at suction, mass flow
+    T₂ = T₁ (p_d/p_s)^((n − 1)/n)            temperature of delivery
+    N_is = κ/(κ − 1) p_s V̇ [(p_d/p_s)^((κ − 1)/κ) − 1]
+
+Pressures in the formulas are absolute. The flow is sampled on the pieces of the cycle, which are cut at dead centres,
+where the valves change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy
+from functools import cached_property, partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from kurbel.arrays import Array
+from kurbel.declared.unit_systems import show
+from kurbel.declared.units import GRAVITY
+from kurbel.errors import UsageError
+from kurbel.machine import Machine
+from kurbel.machine.ideal_cards import Compressor
+from kurbel.machine.indicator import Card, Rectangle
+from kurbel.machine.pumped import Pipe, Pump, Vessel
+from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
+from kurbel.numerics.extreme import Extremes
+from kurbel.numerics.pieces import Pieces
+from kurbel.quantity import value, values_for
+from kurbel.solver.drive import Drive
+from kurbel.solver.effort import Term, TurningEffort
+from kurbel.solver.figures import AtAngles, Results, Searched, told
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.gas import PistonGas
+from kurbel.solver.state import State
+
+_NORMAL = 101325.0, 273.15
+"""Pressure in Pa and temperature in K of normal conditions."""
+_CANCELLED = 4e-14
+"""Relative to its largest value: a smaller flow is rounding."""
+
+# pistons that deliver
+
+
+class Driven(NamedTuple):
+    """A driven piston: its number among those of the cylinder, its pressures, and which of its ends deliver."""
+
+    number: int
+    gas: PistonGas
+    head: bool
+    crank: bool
+    pumps: bool
+
+
+def driven_pistons(drive: Drive) -> Iterator[Driven]:
+    """Yield the pistons of a cylinder that are driven by it; raises UsageError where many machines differ in that."""
+    for gas in drive.gas:
+        chambers = list(gas.piston.chambers.values())
+        ideal = any(isinstance(one, Compressor) for one in chambers)
+        if _agreed(gas.work < 0) or (ideal and not _agreed(gas.work > 0)):
+            number = next(number for number, one in enumerate(drive.cylinder.pistons) if one is gas.piston)
+            works = iter(gas.works)
+            head, crank = (end is not None and _agreed(next(works) < 0) for end in (gas.head, gas.crank))
+            pumps = not ideal and (drive.machine.pump is not None or all(map(_is_level, chambers)))
+            yield Driven(number, gas, head, crank, pumps)
+
+
+def _agreed(condition: Any) -> bool:
+    if some(condition) and not every(condition):
+        raise UsageError("these machines differ in what is driven")
+    return bool(every(condition))
+
+
+def _is_level(chamber: Any) -> bool:
+    """Return whether a chamber has one pressure on each stroke, as a pump's has."""
+    if isinstance(chamber, Card):
+        return all(np.array_equal(one, line.pressures[0]) for line in chamber.lines for one in line.pressures)
+    return isinstance(chamber, Rectangle) and not some(chamber.mean != 0)
+
+
+def _displaced(
+    state: State, piston: Driven, draws: bool = False, rises: bool = False, head: bool = True, crank: bool = True
+) -> Any:
+    """Return dV/dφ in m³ of what chambers deliver, or draw in; rises: d²V/dφ². On each stroke it is one of them.
+
+    head, crank: whether that end counts.
+    """
+    own = state.drive.cylinder.pistons[piston.number]
+    areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
+    # a piston that a lever moves against the crosshead draws in where another one delivers
+    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
+    return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
+
+
+def _displacing(piston: Driven, **how: bool) -> Callable[[State], Any]:
+    return lambda state: _displaced(state, piston, **how)
+
+
+# pumps
+
+
+class DeliveryState(AtAngles):
+    """The flow of a pump at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
+
+    commands = ("delivery",)
+    flow_head = value("q_H", "flow", "Flow delivered at the head end", lambda state: state.course("flow_head"))
+    flow_crank = value("q_C", "flow", "Flow delivered at the crank end", lambda state: state.course("flow_crank"))
+    flow = value(
+        "q", "flow", "Flow delivered", lambda state: state.course("flow"), called="flow", extremes=("delivery",)
+    )
+    flow_suction = value("q_s", "flow", "Flow drawn in", lambda state: state.course("flow_suction"))
+    acceleration_head = value(
+        "h_a",
+        "length",
+        "Head that the suction pipe takes to accelerate the liquid",
+        lambda state: state.course("acceleration_head"),
+        called="acceleration head of the suction pipe",
+        extremes=("delivery",),
+    )
+    friction_head = value(
+        "h_f", "length", "Head of friction in the suction pipe", lambda state: state.course("friction_head")
+    )
+    delivery_acceleration_head = value(
+        "h_a,d",
+        "length",
+        "Head that the delivery pipe takes to accelerate the liquid",
+        lambda state: state.course("delivery_acceleration_head"),
+        called="acceleration head of the delivery pipe",
+        extremes=("delivery",),
+    )
+    delivery_friction_head = value(
+        "h_f,d", "length", "Head of friction in the delivery pipe", lambda state: state.course("delivery_friction_head")
+    )
+
+    def __init__(self, delivery: Delivery, phi: Array, within: Array) -> None:
+        self._delivery, self.phi, self._within = delivery, phi, within
+
+    def course(self, id: str) -> Array | None:
+        """Return the values (n,) of what `Delivery.sampled` has; None for what is left out."""
+        values, pieces = self._delivery.sampled(id), self._delivery.pieces
+        if values is None:
+            return None
+        found = pieces.at(values, np.zeros(len(self.phi), dtype=np.intp), self.phi, self._within)
+        return np.asarray(unless_cancelled(found, pieces.largest(values)[0], _CANCELLED))
+
+
+_PIPES = {"": ("", "delivery"), "suction_": ("s,", "suction")}
+_RATES: dict[str, dict[str, bool]] = {
+    "flow": {},
+    "flow_suction": {"draws": True},
+    "flow_head": {"crank": False},
+    "flow_crank": {"head": False},
+    "rise": {"rises": True},
+    "suction_rise": {"draws": True, "rises": True},
+}
+"""What is sampled of a flow -> the words of `_displaced`."""
+_WORKS = {"": ("R", "as they are"), "_bare": ("R,0", "without vessels"), "_steady": ("R,m", "with vessels at both")}
+
+
+class Delivery(Results):
+    """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
+
+    pieces: of the cycle in degrees; sampled: takes the words of `_displaced` and returns dV/dφ at their nodes; both:
+    whether both ends of one piston deliver; pump: its pipes, None for one piston of several. Raises UsageError for a
+    vessel that would empty.
+    """
+
+    command, state = "delivery", DeliveryState
+
+    stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
+    flow_mean = value("q_m", "flow", "Mean flow delivered", wanted_large=True)
+    extremes = Searched()
+    volume_fluctuation = value("ΔV", "volume", "Fluctuating volume: swing of what is delivered above the mean flow")
+    vessel_volume = values_for(_PIPES, "*vessel_volume", "V_*W", "volume", "Mean volume of air in the * vessel")
+    vessel_swing = values_for(
+        _PIPES, "*vessel_swing", "δ_*W", "ratio", "Swing of the absolute pressure in the * vessel, over its mean"
+    )
+    suction_lift_max = value(
+        "h_s", "length", "Largest suction lift: barometer less vapour pressure and heads", wanted_large=True
+    )
+    pipe_work = values_for(_WORKS, "pipe_work*", "A_*", "energy", "Work against friction in the pipes per cycle, *")
+    vessel_saving = value("A_W", "ratio", "Share of the work against pipe friction that a vessel saves")
+
+    def __init__(
+        self,
+        name: str,
+        machine: Machine,
+        pieces: Pieces,
+        count: int | None,
+        sampled: Callable[..., Array],
+        both: bool,
+        pump: Pump | None = None,
+    ) -> None:
+        self.name, self.machine, self.pieces, self.pump = name, machine, pieces, pump
+        self._sampled, self._both = sampled, both
+        self._rates: dict[str, Array] = {}
+        self._extremes: dict[str, Extremes | None] = {}
+        self._told = partial(told, count=count)
+        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.breaks = np.append(pieces.low, pieces.cycle)
+        if count is None:
+            _ = self.answers  # refuses a vessel that would empty
+
+    def _columns(self, phi: Array, within: Array) -> DeliveryState:
+        return DeliveryState(self, phi, within)
+
+    def rate(self, id: str) -> Array:
+        """Return one of `_RATES` in m³ per radian at the nodes of the pieces, sampled once."""
+        if id not in self._rates:
+            self._rates[id] = self._sampled(**_RATES[id])
+        return self._rates[id]
+
+    def sampled(self, column: str) -> Array | None:
+        """Return a column at the nodes of the pieces; None for one that is left out, and without a speed."""
+        omega = None if self.omega is None else self.pieces.of(self.omega)
+        if omega is None or (column in ("flow_head", "flow_crank") and not self._both):
+            return None
+        if column in _RATES:
+            return np.asarray(self.rate(column) * omega)
+        for pipe, flow, rise, prefix in self._pipes():
+            if column == f"{prefix}acceleration_head" and pipe.vessel is None:
+                scale = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
+                return np.asarray(self.rate(rise) * omega**2 * scale)
+            if column == f"{prefix}friction_head":
+                passed = self.pieces.of(self.mean_of(flow)) if pipe.vessel else self.rate(flow)
+                heads = self.pieces.of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
+                return np.broadcast_to(heads, self.pieces.degrees.shape)
+        return None
+
+    def _pipes(self) -> Iterator[tuple[Pipe, str, str, str]]:
+        """Yield each pipe with the names of its flow, of that flow's rise, and what its columns begin with."""
+        if self.pump and self.pump.suction_pipe:
+            yield self.pump.suction_pipe, "flow_suction", "suction_rise", ""
+        if self.pump and self.pump.delivery_pipe:
+            yield self.pump.delivery_pipe, "flow", "rise", "delivery_"
+
+    def mean_of(self, flow: str, power: int = 1) -> Any:
+        """Return the mean over the cycle of dV/dφ, or of a power of it."""
+        return self._told(self.pieces.mean(self.rate(flow) ** power))
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
+        if column not in self._extremes:
+            values = self.sampled(column)
+            self._extremes[column] = None if values is None else self.pieces.extremes(values[None]).each(self._told)[0]
+        return self._extremes[column]
+
+    def swing(self, flow: str) -> Any:
+        """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
+        rate = self.rate(flow)
+        above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
+        high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
+        return self._told((high - low)[0])
+
+    @cached_property
+    def answers(self) -> dict[str, Any]:
+        """The key values that are no extremes."""
+        found, mean = dict[str, Any](), self.mean_of("flow")
+        slip = self.machine.pump.slip if self.machine.pump else 0.0
+        found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
+        found["volume_fluctuation"] = self.swing("flow")
+        found["vessel_saving"] = 1 - mean**3 / self.mean_of("flow", 3)
+        for pipe, flow, _, _ in self._pipes():
+            if pipe.vessel:
+                name = "" if flow == "flow" else "suction_"
+                sizes = _vessel(pipe.vessel, self.swing(flow), f"{name or 'delivery_'}pipe")
+                found[f"{name}vessel_volume"], found[f"{name}vessel_swing"] = sizes
+        if self.omega is None:
+            return found
+
+        found["flow_mean"] = mean * self.omega
+        works = [self._pipe_works(pipe, flow) for pipe, flow, *_ in self._pipes()]
+        for id, terms in zip(("pipe_work", "pipe_work_bare", "pipe_work_steady"), zip(*works)):
+            found[id] = total(*terms)
+        if self.pump and self.pump.suction_pipe:
+            liquid, friction = self.pump.liquid, self.sampled("friction_head")
+            inertia = self.sampled("acceleration_head")
+            assert friction is not None
+            heads = friction if inertia is None else friction + inertia
+            most = self._told(self.pieces.extremes(heads[None]).largest[0])
+            weight = liquid.density * GRAVITY
+            found["suction_lift_max"] = (self.machine.ambient - liquid.vapour_pressure) / weight - most
+        return found
+
+    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Any, Any, Any]:
+        """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
+        assert self.pump is not None
+        scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
+        bare, steady = scale * self.mean_of(flow, 3), scale * self.mean_of(flow) ** 3
+        return steady if pipe.vessel else bare, bare, steady
+
+
+def _section(pipe: Pipe) -> Any:
+    return math.pi / 4 * pipe.diameter**2
+
+
+def _friction(pipe: Pipe) -> Any:
+    """Return f l/(2 d a²) in 1/m⁴, which times ρ q² is the loss of pressure."""
+    return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
+
+
+def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Any, Any]:
+    """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
+    if vessel.pressure_swing is not None:
+        delta = vessel.pressure_swing
+        ratio = ((2 + delta) / (2 - delta)) ** (1 / vessel.exponent)
+        return swing * (ratio + 1) / (2 * (ratio - 1)), delta
+    volume: Any = vessel.volume
+    half = swing / 2
+    empties = volume <= half
+    if isinstance(empties, (bool, np.bool_)) and empties:
+        least, given = show(half, "volume"), show(volume, "volume")
+        raise UsageError(f"pump.{place}.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}")
+    ratio = where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half)) ** vessel.exponent
+    return where(empties, math.nan, volume), 2 * (ratio - 1) / (ratio + 1)
+
+
+# compressors
+
+
+class CompressorEnd:
+    """One end of a compressor: its figures, None without card, speed or gas; of many machines (machines,).
+
+    volume: that it sweeps in m³; suction, delivery: absolute pressures in Pa, None with a drawn card or a trace.
+    """
+
+    def __init__(self, drive: Drive, piston: Driven, end: str) -> None:
+        self.suction: Any = None
+        self.delivery: Any = None
+        self.efficiency: Any = None
+        self.capacity: Any = None
+        self.normal: Any = None
+        self.mass_flow: Any = None
+        self.temperature: Any = None
+        self.isentropic: Any = None
+        self.power: Any = None
+        machine, own = drive.machine, piston.gas.piston
+        card, head = own.chambers[end], end == "head_end"
+        self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
+        self.end = end.replace("_", " ")
+        self.volume = piston.gas.areas[0 if head else 1] * piston.gas.stroke
+        self.loaded = not (isinstance(card, Compressor) and card.unloaded)
+        if not isinstance(card, Compressor):
+            return
+
+        lift = 0.0 if piston.gas.absolute else machine.ambient
+        self.suction, self.delivery = card.suction + lift, card.delivery + lift
+        ratio, n, speed = self.delivery / self.suction, card.exponent, machine.speed
+        gas, of_all = own.gas or machine.gas, machine.gas
+        if self.loaded:
+            self.efficiency = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
+            self.temperature = gas and gas.inlet_temperature * ratio ** ((n - 1) / n)
+        if speed is None:
+            return
+        self.capacity = self.efficiency * self.volume * speed if self.loaded else 0.0 * self.volume * speed
+        work = piston.gas.works[0 if head or piston.gas.head is None else 1] / piston.gas.repeats
+        self.power = -work * speed
+        constant, kappa = (
+            getattr(gas, key, None) or getattr(of_all, key, None) for key in ("gas_constant", "isentropic_exponent")
+        )
+        if gas:
+            density = self.suction / gas.inlet_temperature
+            self.mass_flow = None if constant is None else density * self.capacity / constant
+            self.normal = density * self.capacity * (_NORMAL[1] / _NORMAL[0])
+        if kappa is not None:
+            rise = ratio ** ((kappa - 1) / kappa) - 1
+            self.isentropic = kappa / (kappa - 1) * self.suction * self.capacity * rise
+
+
+class CompressorStage(Results):
+    """The ends of a compressor that have suction and delivery pressure in common, or one piston with another card."""
+
+    command = "delivery"
+
+    stroke_volume = value("V_s", "volume", "Volume that the delivering chambers displace in a turn")
+    volumetric_efficiency = value(
+        "η_v", "ratio", "Volumetric efficiency of the ends that deliver", wanted_large=True, plain="eta_v"
+    )
+    capacity = value("V_1", "flow", "Capacity: volume flow as it is drawn in", wanted_large=True)
+    capacity_normal = value("V_N", "flow", "Volume flow at normal conditions, 0 °C and 1.01325 bar", wanted_large=True)
+    mass_flow = value("q_M", "mass_flow", "Mass flow", wanted_large=True)
+    discharge_temperature = value("T_2", "temperature", "Temperature of what is delivered")
+    stage_power = value("N_i,s", "power", "Indicated power that the stage takes")
+    isentropic_power = value("N_is", "power", "Power of the compression without heat")
+    isentropic_efficiency = value("η_is", "ratio", "Isentropic over indicated power", wanted_large=True)
+
+    def __init__(self, ends: Sequence[CompressorEnd]) -> None:
+        self.name, self.ends = ends[0].owner, tuple(ends)
+        self.suction, self.delivery = ends[0].suction, ends[0].delivery
+
+    @cached_property
+    def answers(self) -> dict[str, Any]:
+        """The key values; a stage all of whose ends are unloaded delivers nothing."""
+        loaded = [one for one in self.ends if one.loaded]
+        found: dict[str, Any] = {"stroke_volume": sum(one.volume for one in self.ends)}
+        if loaded and self.suction is not None:
+            swept = sum(one.volume for one in loaded)
+            found["volumetric_efficiency"] = sum(one.efficiency * one.volume for one in loaded) / swept
+            if all(one.temperature is not None for one in loaded):  # of ends with gases of their own the mean
+                weighed = sum(one.temperature * one.volume for one in loaded)
+                found["discharge_temperature"] = weighed / swept
+        for id, name in (
+            ("capacity", "capacity"),
+            ("capacity_normal", "normal"),
+            ("mass_flow", "mass_flow"),
+            ("stage_power", "power"),
+            ("isentropic_power", "isentropic"),
+        ):
+            each = [getattr(one, name) for one in self.ends]
+            found[id] = None if any(one is None for one in each) else sum(each)
+        ideal, taken = found["isentropic_power"], found["stage_power"]
+        if loaded and ideal is not None and some(taken > 0):
+            found["isentropic_efficiency"] = ideal / where(taken > 0, taken, math.nan)
+        return found
+
+
+# the machine
+
+
+class MachineDelivery:
+    """All that a machine delivers: `pump`, of all its pumping pistons together, None without any; `pistons`, each of
+    several; `stages`, those of its compressors, the lowest suction pressure first.
+
+    Raises UsageError where nothing is delivered.
+    """
+
+    def __init__(self, effort: TurningEffort) -> None:
+        self.machine, self.effort, self._count = effort.machine, effort, effort.count
+        driven = [(forces, list(driven_pistons(forces.drive))) for forces in effort.cylinders]
+        self._pumps = [(forces, one) for forces, pistons in driven for one in pistons if one.pumps]
+        ends = [
+            CompressorEnd(forces.drive, one, end)
+            for forces, pistons in driven
+            for one in pistons
+            for end, works in (("head_end", one.head), ("crank_end", one.crank))
+            if not one.pumps and (works or isinstance(one.gas.piston.chambers.get(end), Compressor))
+        ]
+        self.stages = _staged(ends)
+        if not (self._pumps or self.stages):
+            raise UsageError(
+                f"{self.machine.name} delivers nothing: no piston is driven by the shaft; a pump has a 'constant' "
+                "pressure on each stroke, the higher one on compression, a compressor has 'compressor: {…}'"
+            )
+
+    @cached_property
+    def pump(self) -> Delivery | None:
+        """What all pumping pistons deliver together, over the angle of crank 1."""
+        if not self._pumps:
+            return None
+        pump, pieces = self.machine.pump, self.effort.pieces
+        slip = pump.slip if pump else 0.0
+        mine = {id(forces): [one for other, one in self._pumps if other is forces] for forces, _ in self._pumps}
+        groups = [(group, one) for group in self.effort.groups for one in mine.get(id(group[0]), ())]
+
+        def summed(**how: bool) -> Array:
+            return self.effort.sampled([Term(1 - slip, group, _displacing(one, **how)) for group, one in groups])
+
+        both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
+        return Delivery("whole machine", self.machine, pieces, self._count, summed, both, pump)
+
+    @cached_property
+    def pistons(self) -> tuple[Delivery, ...]:
+        """What each of several pumping pistons delivers, over the angle of its own crank; equal ones once."""
+        found, slip = list[Delivery](), self.machine.pump.slip if self.machine.pump else 0.0
+        firsts = {id(forces): group[0] for group in self.effort.groups for forces in group}
+        known: dict[tuple[int, int], Delivery] = {}
+        for forces, one in self._pumps if len(self._pumps) > 1 else ():
+            first = firsts[id(forces)]
+            if (id(first), one.number) not in known:
+
+                def own(first: CylinderForces = first, one: Driven = one, **how: bool) -> Array:
+                    values = np.broadcast_to(_displaced(first.samples, one, **how), first.pieces.degrees.shape)
+                    return np.asarray(values * first.pieces.of(1 - slip))
+
+                made = Delivery("", self.machine, first.pieces, self._count, own, one.head and one.crank)
+                _ = made.answers
+                known[id(first), one.number] = made
+            found.append(copy(known[id(first), one.number]))
+            name = forces.drive.name
+            found[-1].name = name if one.number == 0 else f"{name}, {one.gas.piston.name}"
+        return tuple(found)
+
+
+def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
+    """Return the stages that ends make, in the order of their suction pressures; those without any last."""
+    groups: list[list[CompressorEnd]] = []
+    for end in ends:
+        alike = (group for group in groups if _in_one_stage(group[0], end))
+        group = next(alike, None)
+        groups.append([end]) if group is None else group.append(end)
+    stages = [CompressorStage(group) for group in groups]
+    stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
+    for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
+        stage.name = f"stage {number}"
+    return tuple(stages)
+
+
+def _in_one_stage(one: CompressorEnd, other: CompressorEnd) -> bool:
+    if one.suction is None or other.suction is None:
+        return one.suction is other.suction and one.owner == other.owner
+    return _agreed((abs(one.suction - other.suction) <= 1e-9 * one.suction) & (one.delivery == other.delivery))

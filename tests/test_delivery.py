@@ -1,0 +1,306 @@
+"""`kurbel delivery`: flows against the books and an own quadrature, vessels, pipes, compressors, load cases."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+import kurbel as api
+from kurbel.cli import kurbel
+from kurbel.designs.answers import answers_in, asked_answers
+from kurbel.designs.binding import Binder
+from kurbel.errors import KurbelError, MachineFileError, UsageError
+from kurbel.machine_file.source import decode
+from kurbel.solver.case import Case
+
+CONFIGS = Path(__file__).parents[1] / "configs"
+AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
+SINGLE, DOUBLE = "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}", ", crank_end: mirrored"
+PUMPS = {
+    "one single-acting": ((0,), ""),
+    "one double-acting": ((0,), DOUBLE),
+    "two double-acting": ((0, 90), DOUBLE),
+    "three single-acting": ((0, 120, 240), ""),
+    "five single-acting": ((0, 72, 144, 216, 288), ""),
+}
+BOOK = {  # formulas: fluctuating volume over A s for L/R = ∞, 5, 4; largest over mean flow for ∞, 5
+    "one single-acting": (0.551102, 0.553084, 0.554255, 3.141593, 3.203900),
+    "one double-acting": (0.210514, 0.258025, 0.272393, 1.570796, 1.601950),
+    "two double-acting": (0.042176, 0.142999, 0.168801, 1.110721, 1.269395),
+    "three single-acting": (0.009042, 0.029388, 0.035476, 1.047198, 1.067967),
+    "five single-acting": (0.003197, 0.007658, 0.008854, 1.016641, 1.019489),
+}
+
+
+def machine(kind: str, ratio: object, more: str = "") -> str:
+    angles, second = PUMPS[kind]
+    one = f"stroke: 200 mm, rod_ratio: {ratio}, bore: 100 mm, indicator: {{{SINGLE}{second}}}"
+    cylinders = "".join(f"  - {{{one}, crank_position: {angle} deg}}\n" for angle in angles)
+    return f"speed: 60 rpm\ncylinders:\n{cylinders}{more}"
+
+
+def run(*arguments: object, file: str = "") -> Result:
+    return CliRunner().invoke(kurbel, [str(one) for one in arguments], input=file or None)
+
+
+# pumps
+
+
+@pytest.mark.parametrize("kind", BOOK)
+def test_fluctuating_volumes_of_the_table(kind: str) -> None:
+    for ratio, printed in zip(("infinite", 5, 4), BOOK[kind]):
+        pump = api.solve(api.loads(machine(kind, ratio))).delivery.pump
+        assert pump
+        assert pump["volume_fluctuation"].value / (AREA * STROKE) == pytest.approx(printed, abs=1e-6)
+    for ratio, printed in zip(("infinite", 5), BOOK[kind][3:]):
+        pump = api.solve(api.loads(machine(kind, ratio))).delivery.pump
+        assert pump
+        assert pump["flow_max"].value / pump["flow_mean"].value == pytest.approx(printed, abs=1e-6)
+
+
+def by_quadrature(cylinders: list[tuple[float, float, float, float, float, float]]) -> float:
+    """Return ΔV in m³ of cylinders (R, L, e, A_head, A_crank, crank angle) from their displacements alone.
+
+    What a chamber has delivered is its displacement. Extremes are those of 2 million angles, near which V is flat.
+    """
+    phi = np.linspace(0.0, 2 * np.pi, 2_000_001)
+    delivered = np.zeros_like(phi)
+    for R, L, e, head, crank, late in cylinders:
+
+        def x(angle: np.ndarray, R: float = R, L: float = L, e: float = e) -> np.ndarray:
+            side = R * np.sin(angle) - e
+            return R * np.cos(angle) + (np.sqrt(L * L - side * side) if math.isfinite(L) else 0.0)
+
+        steps = np.diff(x(phi - math.radians(late)))  # outward motion shrinks the head end
+        delivered[1:] += np.cumsum(np.where(steps > 0, head * steps, -crank * steps))
+    swing = delivered - delivered[-1] * phi / (2 * np.pi)
+    return float(np.ptp(swing))
+
+
+MIXED = """\
+speed: 60 rpm
+cylinders:
+  - {crank: 100 mm, rod: 450 mm, offset: 30 mm, bore: 100 mm, crank_end_rod: 40 mm, indicator: {H, crank_end: mirrored}}
+  - {crank: 80 mm, rod: 300 mm, bore: 120 mm, crank_position: 100 deg, indicator: {H}}
+  - {crank: 90 mm, rod_ratio: infinite, bore: 70 mm, crank_position: 230 deg, indicator: {H}}
+""".replace("H", SINGLE)
+
+
+def test_own_quadrature_of_offset_and_unequal_machines() -> None:
+    head = [math.pi / 4 * bore**2 for bore in (0.1, 0.12, 0.07)]
+    crank = math.pi / 4 * (0.1**2 - 0.04**2)
+    pump = api.solve(api.loads(MIXED)).delivery.pump
+    assert pump
+    own = by_quadrature(
+        [
+            (0.1, 0.45, 0.03, head[0], crank, 0.0),
+            (0.08, 0.3, 0.0, head[1], 0.0, 100.0),
+            (0.09, math.inf, 0.0, head[2], 0.0, 230.0),
+        ]
+    )
+    assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
+    for kind, ratio in (("one double-acting", "infinite"), ("three single-acting", 5)):
+        angles, second = PUMPS[kind]
+        L = math.inf if ratio == "infinite" else 0.1 * float(ratio)
+        own = by_quadrature([(0.1, L, 0.0, AREA, AREA if second else 0.0, angle) for angle in angles])
+        pump = api.solve(api.loads(machine(kind, ratio))).delivery.pump
+        assert pump
+        assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
+
+
+def test_a_vessel_saves_what_the_books_say() -> None:
+    for kind, saved in (("one single-acting", 1 - 3 / (2 * math.pi**2)), ("one double-acting", 1 - 6 / math.pi**2)):
+        pump = api.solve(api.loads(machine(kind, "infinite"))).delivery.pump
+        assert pump
+        assert pump["vessel_saving"].value == pytest.approx(saved, rel=1e-12)
+    assert (round(1 - 3 / (2 * math.pi**2), 4), round(1 - 6 / math.pi**2, 4)) == (0.848, 0.3921)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.3])
+def test_vessels_both_ways(exponent: float) -> None:
+    """The wanted swing gives a volume, and that volume the swing; isothermal it is ΔV/δ."""
+    pipe = "pump: {delivery_pipe: {length: 10 m, diameter: 50 mm, vessel: {%s, exponent: %s}}}"
+    text = machine("three single-acting", 5, pipe % ("pressure_swing: 0.1", exponent))
+    sized = api.solve(api.loads(text)).delivery.pump
+    assert sized
+    volume, swing = sized["vessel_volume"].value, sized["volume_fluctuation"].value
+    ratio = (volume + swing / 2) / (volume - swing / 2)
+    high, low = ratio**exponent, 1.0
+    assert 2 * (high - low) / (high + low) == pytest.approx(0.1, rel=1e-12)
+    if exponent == 1:
+        assert volume == pytest.approx(swing / 0.1, rel=1e-12)
+    text = machine("three single-acting", 5, pipe % (f"volume: {volume!r} m3", exponent))
+    given = api.solve(api.loads(text)).delivery.pump
+    assert given
+    assert given["vessel_swing"].value == pytest.approx(0.1, rel=1e-12)
+
+
+def test_heads_in_a_suction_pipe() -> None:
+    """With an infinite rod dq/dt = A R ω² cos φ: largest where the suction begins."""
+    pipe = "pump: {slip: 10 %, suction_pipe: {length: 8 m, diameter: 80 mm, friction_factor: 0.03}}"
+    pump = api.solve(api.loads(machine("one single-acting", "infinite", pipe))).delivery.pump
+    assert pump
+    omega, section = 2 * math.pi, math.pi / 4 * 0.08**2
+    acceleration = 8 / (9.80665 * section) * 0.9 * AREA * 0.1 * omega**2
+    assert pump["acceleration_head_max"].value == pytest.approx(acceleration, rel=1e-12)
+    u = 0.9 * AREA * 0.1 * omega / section
+    friction = 0.03 * 8 * u**2 / (2 * 9.80665 * 0.08)
+    columns = pump.columns([90.0, 270.0], "friction_head", "flow_suction")
+    assert columns["friction_head"] == pytest.approx([friction, 0.0], rel=1e-12)
+    phi = np.linspace(0, np.pi, 100_001)
+    most = np.max(acceleration * np.cos(phi) + friction * np.sin(phi) ** 2)
+    assert pump["suction_lift_max"].value == pytest.approx((101325 - 2339) / 9806.65 - most, rel=1e-9)
+    assert pump["flow_mean"].value == pytest.approx(0.9 * AREA * STROKE, rel=1e-12)
+
+
+def test_each_piston_and_chamber() -> None:
+    delivery = api.solve(api.loads(MIXED)).delivery
+    assert delivery.pump
+    assert sum(one["flow_mean"].value for one in delivery.pistons) == pytest.approx(delivery.pump["flow_mean"].value)
+    first = delivery.pistons[0].columns([40.0, 100.0, 200.0, 300.0])
+    assert first["flow_head"] + first["flow_crank"] == pytest.approx(first["flow"])
+    assert (first["flow_head"][:2] == 0).all()  # the outstroke shrinks the crank end
+
+
+# compressors
+
+ENDS = """\
+speed: 600 rpm
+stroke: 180 mm
+rod: 450 mm
+bore: 320 mm
+crank_end_rod: 50 mm
+gas: {inlet_temperature: 35 °C, molar_mass: 28.96 g/mol, isentropic_exponent: 1.4}
+indicator:
+  pressures: absolute
+  head_end: {compressor: {suction: 1 bar, delivery: 4 bar, clearance: 10 %, exponent: 1.3}}
+  crank_end: mirrored
+"""
+UNLOADED = ENDS.replace("1.3}}", "1.3}, unloaded: true}")
+
+
+def test_figures_of_the_ideal_card() -> None:
+    (stage,) = api.solve(api.loads(ENDS)).delivery.stages
+    assert stage["volumetric_efficiency"].value == pytest.approx(0.809515, abs=1e-6)
+    assert stage["discharge_temperature"].value == pytest.approx(424.325, abs=1e-3)
+    volume = 0.18 * math.pi / 4 * (2 * 0.32**2 - 0.05**2)
+    capacity = (1 - 0.1 * (4 ** (1 / 1.3) - 1)) * volume * 10
+    assert stage["capacity"].value == pytest.approx(capacity, rel=1e-12)
+    mass = 1e5 * capacity * 28.96e-3 / (8.31446261815324 * 308.15)
+    assert stage["mass_flow"].value == pytest.approx(mass, rel=1e-12)
+    assert stage["capacity_normal"].value == pytest.approx(capacity / 1.01325 * 273.15 / 308.15, rel=1e-12)
+    ideal = 3.5 * 1e5 * capacity * (4 ** (0.4 / 1.4) - 1)
+    taken = 1.3 / 0.3 * 1e5 * capacity * (4 ** (0.3 / 1.3) - 1)  # of a polytropic card with equal exponents
+    assert stage["isentropic_efficiency"].value == pytest.approx(ideal / taken, rel=1e-12)
+
+
+def test_an_exponent_of_its_own_for_the_expansion() -> None:
+    text = ENDS.replace("exponent: 1.3", "exponent: 1.3, expansion_exponent: 1.2")
+    (stage,) = api.solve(api.loads(text)).delivery.stages
+    assert stage["volumetric_efficiency"].value == pytest.approx(1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12)
+
+
+def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
+    case, whole = api.solve(api.loads(UNLOADED)), api.solve(api.loads(ENDS))
+    head, crank = case.cylinders[0].drive.gas[0].works
+    assert head == 0
+    assert crank == pytest.approx(whole.cylinders[0].drive.gas[0].works[1], rel=1e-15)
+    (stage,) = case.delivery.stages
+    share = (0.32**2 - 0.05**2) / (2 * 0.32**2 - 0.05**2)
+    assert stage["capacity"].value == pytest.approx(share * whole.delivery.stages[0]["capacity"].value, rel=1e-12)
+    assert case.cylinders[0].at([10.0, 200.0]).p_head == pytest.approx([1e5, 1e5])
+
+
+def test_stages_that_do_not_fit_are_noted() -> None:
+    ran = run("delivery", CONFIGS / "compressor-two-stage.yaml")
+    assert "stage 2 draws in 0.9657 times the mass flow of stage 1" in " ".join(ran.stdout.split())
+
+
+# load cases
+
+
+@pytest.mark.parametrize("command", ["forces", "delivery"])
+def test_a_row_for_each_load_case(command: str) -> None:
+    file = CONFIGS / "compressor-two-stage.yaml"
+    ids = {"forces": "rod_compression_max", "delivery": "capacity"}[command]
+    found = json.loads(run(command, file, "--cases", "--columns", ids, "-f", "json").stdout)
+    tables = {part["name"]: part["place_tables"][0] for part in found["cylinders"]}
+    assert len(tables) == 2
+    for place, case in enumerate(("both ends", "one end unloaded", "relief pressure")):
+        alone = json.loads(run(command, file, "--case", case, "--key-values", "-f", "json").stdout)
+        for part in alone["cylinders"]:
+            table = tables[part["name"]]
+            assert table["rows"][place] == {"case": case}
+            value = next(one["value"] for one in part["key_values"] if one["id"] == ids)
+            assert table["columns"][0]["values"][place] == value
+
+
+def test_cases_need_cases() -> None:
+    assert "the file has no 'cases'" in run("delivery", CONFIGS / "triplex-pump.yaml", "--cases").stderr
+    both = run("forces", CONFIGS / "compressor-two-stage.yaml", "--cases", "--case", "both ends")
+    assert both.exit_code == 2
+
+
+def test_they_are_in_the_report() -> None:
+    page = run("report", CONFIGS / "compressor-two-stage.yaml", "--step", "90").stdout
+    assert page.count("one end unloaded") >= 4
+
+
+# many machines, limits, bad input
+
+
+def test_a_batch_is_its_machines_one_by_one() -> None:
+    text = machine(
+        "three single-acting",
+        5,
+        "pump: {suction_pipe: {length: 5 m, diameter: 80 mm}, delivery_pipe: {length: 9 m, diameter: 50 mm, "
+        "vessel: {volume: 0.2 l, exponent: 1.2}}}\n",
+    )
+    asked = ["flow_mean", "flow_max", "volume_fluctuation", "vessel_swing", "suction_lift_max", "acceleration_head_max"]
+    binder = Binder(decode("<text>", text.encode()), ["speed"], ["60 rpm"])
+    (lot,) = binder.bound([["50 rpm"], ["60 rpm"], ["70 rpm"], ["80 rpm"]]).lots
+    wanted = [one for one in asked_answers(lot.one(0), asked) if one.subject == "whole machine"]
+    batch = answers_in(Case(lot.machine, 4), wanted)
+    for place in range(4):
+        alone_values = answers_in(Case(lot.one(place)), wanted)
+        for one, other in zip(batch, alone_values):
+            assert np.broadcast_to(one, 4)[place] == pytest.approx(other, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (ENDS.replace("35 °C", "35"), "inlet_temperature: 35 has no unit"),
+        (ENDS.replace("inlet_temperature: 35 °C, ", ""), "'inlet_temperature' is missing"),
+        (
+            ENDS.replace("mirrored", "{constant: {expansion: 1 bar, compression: 2 bar}, unloaded: true}"),
+            "cannot stand",
+        ),
+        (ENDS.replace("clearance: 10 %", "clearance: 20 %, expansion_exponent: 0.5"), "nothing is drawn in"),
+    ],
+)
+def test_files_that_are_refused(text: str, message: str) -> None:
+    with pytest.raises(MachineFileError, match=message):
+        api.loads(text)
+
+
+def test_a_vessel_that_would_empty_and_a_machine_that_pumps_nothing() -> None:
+    pipe = "pump: {delivery_pipe: {length: 10 m, diameter: 50 mm, vessel: {volume: 0.01 l}}}"
+    with pytest.raises(UsageError, match=r"pump\.delivery_pipe\.vessel\.volume: .* would empty"):
+        _ = api.solve(api.loads(machine("three single-acting", 5, pipe))).delivery.pump
+    with pytest.raises(KurbelError, match="delivers nothing: no piston is driven"):
+        _ = api.solve(api.load(CONFIGS / "gas-engine.yaml")).delivery
+    ran = run("delivery", CONFIGS / "gas-engine.yaml")
+    assert (ran.exit_code, "delivers nothing" in ran.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("written", ["35 °C", "308.15 K", "95 °F", "35 degC"])
+def test_temperatures(written: str) -> None:
+    gas = api.loads(ENDS.replace("35 °C", written)).gas
+    assert gas
+    assert gas.inlet_temperature == pytest.approx(308.15, abs=1e-9)
