@@ -265,6 +265,10 @@ def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str, Path]:
             owner = one if owner is None or depth > len(owner.path) else owner
     if owner is None:
         raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
+    if len(owner.path) < len(path) - 1:  # a key beside the telling one belongs to its mapping
+        for one in every:
+            if len(one.path) == len(path) and one.path[:-1] == path[:-1] and _reads(one, path[-1]):
+                return one, str(path[-1]), ()
     return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]
 
 

@@ -67,6 +67,10 @@ class Crankshaft(Record):
         absent="false",
     )
 
+    bearing_metal: str | None = field(
+        ("gunmetal", "white-metal"), "Metal of the shells, by which p_m v of the crank pin is judged", absent="both"
+    )
+
     def rules(self) -> Iterator[Rule]:
         beside = "beside the web" if self.overhung else "between the webs"
         numbers = {"end": self._web_end, "span": self.span, "gap": 2 * self.web_distance - self.web_thickness}

@@ -15,7 +15,7 @@ from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.parts import Friction, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
+from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 
@@ -202,6 +202,9 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
     if friction is not None:
         on_bore = friction.rings is not None and not cylinder.pistons
         yield Rule(("friction", "rings"), on_bore, "rings rub on the bore; give the cylinder a 'bore'")
+        by_gas = friction.rings is not None and isinstance(friction.rings.pressure, GasOnRings)
+        without = by_gas and bool(cylinder.pistons) and cylinder.pistons[0].indicator is None
+        yield Rule(("friction", "rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
         reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
         unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
         yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")

@@ -62,6 +62,19 @@ def _above_vacuum(lift: Any, **pressures: Any) -> Iterator[Rule]:
             yield Rule((), pressure + lift <= 0, sentence, {"pressure": pressure})
 
 
+def _diagram_factor() -> Any:
+    text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
+    return field("ratio", text, "κ_d", default=1.0, above=0, most=1, absent="1")
+
+
+def _factor_notes(factor: float) -> tuple[str, ...]:
+    """Return what a diagram factor leaves out of the pressures."""
+    if factor == 1:
+        return ()
+    most = f"{100 * (1 - factor):.3g} %"
+    return (f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, here up to {most} low",)
+
+
 class _TwoStroke(Record):
     """What the cards of machines of two strokes share: two pressures, one above the other."""
 
@@ -102,11 +115,32 @@ class Steam(_TwoStroke):
         below=1,
         absent="0",
     )
+    lead: float = field(
+        "ratio",
+        "Fraction of the stroke before the dead centre at which admission opens; the pressure then rises evenly",
+        default=0.0,
+        least=0,
+        below=1,
+        absent="0",
+    )
     exponent: float = _exponent("Exponent of expansion and compression", "1, the hyperbola", 1.0)
+    diagram_factor: float = _diagram_factor()
 
     higher, lower = "admission", "exhaust"
 
+    @property
+    def back_pressure(self) -> float:
+        """Pressure in Pa about which a diagram factor lowers the card."""
+        return self.exhaust
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the diagram factor leaves out."""
+        return _factor_notes(self.diagram_factor)
+
     def rules(self) -> Iterator[Rule]:
+        early = "{lead} is not less than the compression ({compression}), in which admission opens"
+        yield Rule("lead", (self.lead > 0) & (self.lead >= self.compression), early)
         yield _order("admission", self.admission, "exhaust", self.exhaust)
         late = "the exhaust opens at {release}, before the cut-off at {cut_off}"
         yield Rule("release", self.release < self.cut_off, late)
@@ -199,6 +233,7 @@ class _Engine(Record):
     peak: float | None
     clearance: float
     exponent: float
+    diagram_factor: float
 
     fires: ClassVar[bool] = True
 
@@ -215,6 +250,16 @@ class _Engine(Record):
     def leaving(self) -> float:
         """Pressure of the exhaust stroke in Pa."""
         return self.intake if self.exhaust is None else self.exhaust
+
+    @property
+    def back_pressure(self) -> float:
+        """Pressure in Pa about which a diagram factor lowers the card."""
+        return self.leaving
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the diagram factor leaves out."""
+        return _factor_notes(self.diagram_factor)
 
     def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
@@ -244,6 +289,7 @@ class Otto(_Engine):
     exhaust: float | None = _exhaust()
     exponent: float = _compression_exponent()
     expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression")
+    diagram_factor: float = _diagram_factor()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -264,6 +310,7 @@ class Diesel(_Engine):
     )
     exponent: float = _compression_exponent()
     expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression")
+    diagram_factor: float = _diagram_factor()
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

@@ -207,6 +207,11 @@ class Card(Record):
         return [] if "drawn" in values else _line_faults(lines, 1.0, "")
 
     @property
+    def flat(self) -> bool:
+        """Whether each line is one pressure, as those of an ideal pump."""
+        return all(np.ndim(p) == 0 and p == line.pressures[0] for line in self.lines for p in line.pressures)
+
+    @property
     def cycles(self) -> tuple[str, ...]:
         """The one cycle that has so many lines."""
         return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
@@ -289,8 +294,8 @@ _CHAMBER = Keyed(
         "diesel": RecordForm(Diesel),
     },
     otherwise=RecordForm(Card),
+    beside=("diagram_factor", "unloaded"),
     texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
-    beside={"unloaded": "compressor"},
 )
 _ONE_PRESSURE = Number(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Choice, Form, Number
 from kurbel.declared.record import Record, Rule, alternative, field, first_of
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
@@ -160,12 +160,27 @@ class Masses(Record):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class GasOnRings(Record):
+    """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
+
+    gas: float = field(
+        "ratio", "Pressure on the wall over the difference across the piston", "k", least=0, required=True
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Rings(Record):
     """Piston rings."""
 
     count: int = field(int, "Number of rings", least=1, required=True)
     height: float = field("length", "Height of one ring along the bore", "h", above=0, required=True)
-    pressure: float = field("pressure", "Pressure of the ring on the wall", "p_r", least=0, required=True)
+    pressure: float | GasOnRings = field(
+        OneOf(Choice(("gas",)), Number("pressure", least=0), RecordForm(GasOnRings)),
+        "Pressure of the ring on the wall; `gas` or `{gas: k}`: k times the pressure difference across the piston",
+        "p_r",
+        required=True,
+        gives=lambda given: {"pressure": GasOnRings(1.0)} if given["pressure"] == "gas" else {},
+    )
     coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
 
 

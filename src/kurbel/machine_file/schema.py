@@ -57,13 +57,11 @@ def _of(form: Form, definitions: Schema) -> Schema:
         return {"anyOf": [_of(one, definitions) for one in form.forms]}
     if isinstance(form, Keyed):
         one = {"type": "object", "additionalProperties": False}
-        cases = form.cases.items()
-        each: list[Schema] = [
-            {**one, "required": [name], "properties": {name: _of(case, definitions)}} for name, case in cases
-        ]
-        for word, of in form.beside.items():
-            inner = next(one for name, one in form.cases[of].parts if name == word)
-            each[list(form.cases).index(of)]["properties"] |= {word: _of(inner, definitions)}
+        each: list[Schema] = []
+        for name, case in form.cases.items():
+            own = case.keys if isinstance(case, RecordForm) else {}
+            beside = {key: _of(own[key].form, definitions) for key in form.beside if key in own}
+            each.append({**one, "required": [name], "properties": {name: _of(case, definitions), **beside}})
         return {"anyOf": [*each, _of(form.otherwise, definitions)]}
     if isinstance(form, FigureForm):
         name = f"figure_{form.size.kind}"

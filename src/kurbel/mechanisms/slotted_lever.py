@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
@@ -65,7 +65,21 @@ class SlottedLever(Mechanism):
     Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
     """
 
-    crank: float = field("length", "Crank radius", "r", above=0, required=True)
+    crank: float = field("length", "Crank radius; or give `stroke`", "r", above=0, required=True, example="100 mm")
+    _stroke = alternative(
+        "length",
+        "Stroke of the ram of a lever that swings; or give `crank`",
+        "s",
+        above=0,
+        instead="crank",
+        needs="lever",
+        gives=lambda given: (
+            {"crank": given["stroke"] * given["frame"] / (2 * given["lever"])}
+            if given.get("frame") and given.get("lever")
+            else {}
+        ),
+        key="stroke",
+    )
     frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0, required=True)
     lever: float | None = field(
         "length", "Length of the lever, pivot to end", "R_l", above=0, absent="angles and times only: no ram"

@@ -25,6 +25,7 @@ from kurbel.report.warnings import (
     by_cylinder,
     guide_notes,
     of_machine,
+    rod_ratio_notes,
     shell_verdict,
 )
 from kurbel.solver.bearings import Bearing
@@ -114,6 +115,7 @@ def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
 
 def _forces_notes(case: Case) -> Iterator[str]:
     yield from guide_notes(case)
+    yield from rod_ratio_notes(case)
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
             "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "
@@ -218,7 +220,8 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
         declared = {"phi": PHI, **STRESSES}
         tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
 
-    cool, verdict = shell_verdict(strength.pressure_velocity("pin"))
+    metal = machine.crankshaft.bearing_metal if machine.crankshaft else None
+    cool, verdict = shell_verdict(strength.pressure_velocity("pin"), metal)
     notes = [
         "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
         "D toward the shaft, T in the sense of rotation.",

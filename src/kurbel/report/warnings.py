@@ -14,6 +14,7 @@ import numpy as np
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
+from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.indicator import Card
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
@@ -297,6 +298,24 @@ def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts"
     return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
 
 
+_USUAL_RATIO = 4.0, 5.0
+
+
+def rod_ratio_notes(case: Case) -> Iterator[str]:
+    """Yield L/R of steam engines and pumps beyond those that the book has (R Zusammenstellung 112)."""
+    for forces in case.cylinders:
+        cylinder = forces.drive.cylinder
+        chambers = [one for piston in cylinder.pistons for one in piston.chambers.values()]
+        steam = any(isinstance(one, Steam) for one in chambers)
+        pump = (forces.work or 0.0) < 0 and all(isinstance(one, Card) and one.flat for one in chambers)
+        least, most = _USUAL_RATIO
+        if (steam or pump) and cylinder.mechanism.has_rod and 0 < cylinder.mechanism.lam < math.inf:
+            ratio = 1 / cylinder.mechanism.lam
+            if not least - 1e-9 <= ratio <= most + 1e-9:
+                kind = "steam engines" if steam else "pumps"
+                yield f"{cylinder.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
+
+
 # results of the whole machine
 
 _BEYOND = 1e308
@@ -360,18 +379,34 @@ _SHELLS = (
 """p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
 
 
-def shell_verdict(pressure_velocity: float | None) -> tuple[bool, str]:
-    """Return whether all shells permit p_m v of the crank pin, and a sentence (G), "" if it is not known."""
+_METALS = {"gunmetal": ("gun metal", 25.0, 25.0), "white-metal": ("white metal", 30.0, 35.0)}
+"""Metal of the shells -> its name, p_m v in kgf m/(cm² s) that it bears, and that the best of it bears (G)."""
+
+
+def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> tuple[bool, str]:
+    """Return whether the shells permit p_m v of the crank pin, and a sentence (G), "" if it is not known.
+
+    metal: of the shells, None where any may be meant.
+    """
     if pressure_velocity is None:
         return True, ""
     shown = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
+    if metal is not None:
+        name, usual, best = _METALS[metal]
+        bounds = f"{name} ({usual:g}{f' to {best:g}' if best > usual else ''})"
+        word = (
+            "permissible for" if shown <= usual else "permissible only for the best" if shown <= best else "more than"
+        )
+        permits = " permits" if shown > best else ""
+        return shown <= usual, f"Crank pin: k_v = p_m v = {shown:.3g} kgf m/(cm² s); {word} {bounds}{permits}."
     bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
     return bound == _SHELLS[0][0], f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}."
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:
     if not case.machine.strength_obstacle:
-        cool, verdict = shell_verdict(case.stress.pressure_velocity("pin"))
+        shaft = case.machine.crankshaft
+        cool, verdict = shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
         if not cool:
             yield verdict
 

@@ -16,6 +16,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
+from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
 from kurbel.solver.drive import Drive
@@ -66,6 +67,9 @@ class SampledCylinder:
     def _cut(self) -> Pieces:
         """The cycle cut only where something bends or jumps, and at multiples of 45°."""
         drive, pieces = self.drive, self.drive.pieces
+        if drive.has_force and some(drive.ring_surface != 0):
+            pieces, (across,) = refined(pieces, lambda one: _known(one, State.on(drive, one).across_piston))
+            pieces = pieces.split(pieces.zeros(across))
         return _cut_at_sides(drive, pieces) if drive.has_force and (drive.rubs or drive.pin_friction) else pieces
 
     @property

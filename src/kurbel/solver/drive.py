@@ -13,6 +13,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
+from kurbel.machine.parts import GasOnRings
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -65,7 +66,8 @@ class Drive:
     is left out; resistance: what the output works against, a force or, on what only swings, a moment; resistance_work:
     what it takes out in a cycle, negative; way: path of what slides, there and back, per cycle; crosshead_friction: f,
     0 without one; rubs: whether the crosshead rubs on its guide; guide_area: of its shoe, None where it is not given;
-    ring_force: n π d h p_r f (D, Kolbenreibung); steady_friction: that and what is given as a force.
+    ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas presses;
+    steady_friction: that and what is given as a force.
     """
 
     def __init__(
@@ -112,10 +114,13 @@ class Drive:
         self.rubs = some(self.crosshead_friction != 0)
         guide, rings = (friction.guide, friction.rings) if friction else (None, None)
         self.guide_area: Any = guide.length * guide.width if guide else None
-        self.ring_force: Any = 0.0
+        self.ring_force, self.ring_surface = 0.0, 0.0
         if rings:
-            bore = cylinder.pistons[0].bore
-            self.ring_force = rings.count * math.pi * bore * rings.height * rings.pressure * rings.coefficient
+            surface: Any = rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
+            if isinstance(rings.pressure, GasOnRings):
+                self.ring_surface = surface * rings.pressure.gas
+            else:
+                self.ring_force = surface * rings.pressure
         self.steady_friction: Any = self.ring_force + constant
 
     def taken(self, index: Indices) -> Drive:

@@ -425,6 +425,9 @@ class CylinderForces(SampledCylinder, Results):
             found["crosshead"] = 0.0 if drag is None else over_cycle(drag)
         if friction.rings is not None:
             found["rings"] = drive.ring_force * drive.way
+            if some(drive.ring_surface != 0):
+                drag = np.abs(self.samples.across_piston) * drive.ring_surface
+                found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
             found["constant"] = friction.constant * drive.way
         if friction.of_pins and drive.has_force:

@@ -115,6 +115,13 @@ def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: floa
             lines.append((stroke, float(stroke % 2), pressure, float(1 - stroke % 2), pressure, 0.0))
     else:
         clearance, lines = chamber.clearance, _ideal(chamber, lift, four_stroke=cycle == 720.0)
+        if not isinstance(chamber, Compressor) and chamber.diagram_factor != 1:  # p V^n = const about another vacuum
+            factor, back = chamber.diagram_factor, chamber.back_pressure
+            lift = factor * lift - (1 - factor) * back
+            lines = [
+                (stroke, z, back + factor * (p - back), next_z, back + factor * (next_p - back), n)
+                for stroke, z, p, next_z, next_p, n in lines
+            ]
     return Process(np.array([line for line in lines if line[3] != line[1]]), lift, clearance)
 
 
@@ -138,7 +145,8 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
         run(0, card.cut_off, card.admission, card.release, card.exponent)
         run(0, card.release, card.exhaust, 1.0)
         run(1, 1.0, card.exhaust, card.compression)
-        run(1, card.compression, card.exhaust, 0.0, card.exponent)
+        compressed = run(1, card.compression, card.exhaust, card.lead, card.exponent)
+        lines.append((1, card.lead, compressed, 0.0, card.admission, 0.0))
     elif isinstance(card, Compressor) and card.unloaded:
         run(0, 0.0, card.suction, 1.0)
         run(1, 1.0, card.suction, 0.0)
@@ -186,6 +194,7 @@ class CardPressure:
         self._processes = [process_in(each[one], lift, setting.cycle, base) for one, lift, base in made]
         self._which: Indices = own
         self._clearance = self._of_machines([one.clearance for one in self._processes])
+        self._lift = self._of_machines([one.lift for one in self._processes])
 
         # lines at the same angles in all machines are kept once
         alike = self._alike = len(made) == 1 and not varies(setting.mechanism)
@@ -231,7 +240,7 @@ class CardPressure:
         """
         setting, row = self.setting, self._holding(within, machine)
         begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
-        lift, base, clearance = (spread(one, machine) for one in (setting.lift, setting.base, self._clearance))
+        lift, base, clearance = (spread(one, machine) for one in (self._lift, setting.base, self._clearance))
         own, rest = (z, remaining) if setting.head_end else (remaining, z)
         way = (1 - z if own is None else own) - begin
         if remaining is not None:

@@ -63,7 +63,7 @@ def residual(cylinder: SampledCylinder) -> float | None:
     parts = masses.parts if masses else 0.0
     given = sum(one for one in (state.P_gas, state.P_ram) if one is not None)
     side = 0.0 if state.N is None else np.abs(state.N)
-    rubs = state.direction * (drive.steady_friction + drive.crosshead_friction * side)
+    rubs = state.direction * (state.steady_friction + drive.crosshead_friction * side)
     push = on_crosshead_pin(state).D if rigid else state.along_rod
     left = [given - gravity.real * parts - rubs - push + parts * places.crosshead.real * places.square]
     # the shaft: T R less the moments in crank pin and journals less M, over R

@@ -394,9 +394,23 @@ class State(MotionColumns):
     # the guide
 
     @cached_property
+    def across_piston(self) -> Any:
+        """Pressure in Pa at the head end of the cylinder's own piston over that at its crank end."""
+        gas = self.drive.own_gas
+        head, crank = (self.pressure(end) if end else 0.0 for end in ((gas.head, gas.crank) if gas else (None, None)))
+        return head - crank
+
+    @cached_property
+    def steady_friction(self) -> Any:
+        """Friction in N of rings, and what is given as a force."""
+        drive = self.drive
+        by_gas = np.abs(self.across_piston) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
+        return drive.steady_friction + by_gas
+
+    @cached_property
     def _after_steady_friction(self) -> Any:
-        """Piston force in N less the friction that is constant over the stroke; it acts on crosshead and rod."""
-        steady = self.drive.steady_friction
+        """Piston force in N less the friction of rings and what is given as a force; acts on crosshead and rod."""
+        steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
@@ -518,7 +532,7 @@ class State(MotionColumns):
         lambda state: (
             None
             if state.P is None or state.drive.cylinder.friction is None
-            else state.filled((state.crosshead_drag + state.drive.steady_friction) * -state.direction)
+            else state.filled((state.crosshead_drag + state.steady_friction) * -state.direction)
         ),
     )
 

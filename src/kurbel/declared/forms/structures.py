@@ -347,7 +347,8 @@ class OneOf(Form):
         """Read a value by the first form that has its shape."""
         shape = type(value) if isinstance(value, (dict, list)) else str
         words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
-        if found := [name for name in value if name in words] if shape is dict else []:
+        keys = [key for form in self.forms if isinstance(form, RecordForm) for key in form.keys]
+        if found := [name for name in value if name in words and name not in keys] if shape is dict else []:
             alone = f"- {found[0]}" if isinstance(path[-1], int) else f"{path[-1]}: {found[0]}"
             return reading.fault((*path, found[0]), f"takes no value; write '{alone}'", at_key=True)
         alike = [form for form in self.forms if form.shape is shape]
@@ -360,14 +361,14 @@ class OneOf(Form):
 class Keyed(Form):
     """A mapping with one key that decides its form, `{constant: …}` or `{trace: …}`; without one, `otherwise` reads it.
 
-    texts: meanings of those deciding keys whose value is no mapping. beside: words that may also stand next to one
-    deciding key, as keys of its mapping.
+    texts: meanings of those deciding keys whose value is no mapping; beside: keys of their mappings that may also stand
+    beside the deciding one.
     """
 
     shape = dict
 
     def __init__(
-        self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str], beside: dict[str, str]
+        self, cases: dict[str, Form], otherwise: RecordForm, texts: dict[str, str], beside: tuple[str, ...] = ()
     ) -> None:
         expected = f"{otherwise.expected}; or with one of {', '.join(cases)}"
         super().__init__(expected, parts=(*cases.items(), ("", otherwise)))
@@ -390,16 +391,18 @@ class Keyed(Form):
             for name, meant in misspelt.items():
                 reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
             return REFUSED if misspelt else self.otherwise.read(reading, value, path)
-        own = {name: value[name] for name, of in self.beside.items() if of == telling and name in value}
-        if own and isinstance(value[telling], dict):
-            value = {name: one for name, one in value.items() if name not in own}
-            value[telling] = {**value[telling], **own}
+        inside = value[telling]
+        if isinstance(inside, dict):
+            case = cases[telling]
+            keys = case.keys if isinstance(case, RecordForm) else {}
+            moved = {name: value[name] for name in self.beside if name in value and name in keys and name not in inside}
+            inside, value = {**inside, **moved}, {name: one for name, one in value.items() if name not in moved}
         for name in value:
             if name != telling:
                 home = reading.where_it_belongs(name, path) or "leave it out"
                 way_out = "leave one of them out" if name in known or name in cases else home
                 reading.fault((*path, name), f"cannot be combined with '{telling}'; {way_out}", at_key=True)
-        inner = cases[telling].read(reading, value[telling], (*path, telling))
+        inner = cases[telling].read(reading, inside, (*path, telling))
         return inner if len(value) == 1 else REFUSED
 
 
