@@ -159,10 +159,11 @@ def describe(record: RecordForm, properties: Schema, rules: list[Schema], defini
             if form.unless:
                 rules.append({"if": {"required": [form.unless]}, "then": _none_of(added)})
             continue
+        shared = name in properties  # with another mechanism, where it may need nothing
         properties.setdefault(name, {**_of(form, definitions), "description": key.description})
         if key.instead:
             rules.append(_none_of([[name, key.instead]]))
-        if key.needs:
+        if key.needs and not shared:
             rules.append({"dependencies": {name: [key.needs]}})
         if not isinstance(form, Variant):
             continue

@@ -91,7 +91,7 @@ class RecordForm(Form):
                 # a fault of an inline record points at one of its keys that is given
                 beside = next((given for given in own if given in mapping), "") if inline else ""
                 meaning = key.text[:1].lower() + key.text[1:]
-                message = f"'{name}' is missing{' beside it' if beside else ''}: {meaning}; {key.write(name)}"
+                message = f"'{name}' is missing{' as well' if beside else ''}: {meaning}; {key.write(name)}"
                 values[name] = reading.fault((*path, beside) if beside else path, message, bool(beside))
         return Given(self, mapping, path, values)
 
