@@ -23,6 +23,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.report.frame import Frame
+from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import law_of_each
 
@@ -216,3 +218,28 @@ def test_size_does_not_matter(machine, scale):
         (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
     ):
         assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
+
+
+POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
+"""Unit -> the power of a length in it where forces stay; angles and ratios stay with them."""
+POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}
+"""The same where moments stay."""
+
+
+@law_of_each((machine, word) for machine in MACHINES.values() for word in ("motion", "forces"))
+def test_every_answer_grows_with_the_lengths_as_its_unit_says(machine, command):
+    """Twice as large: the same angles and forces, twice the lengths and moments, a quarter of the pressure."""
+    frame = Frame(command, (0.0, 33.0, 118.0, 291.0), None, "si")
+    parts = [report_of(loaded(one), frame).parts[0] for one in (machine, resized(machine, 2.0))]
+    powers = POWERS if machine.slides else POWERS_OF_A_MOMENT
+    small, large = (
+        {one.id: (one.unit, one.values) for one in part.columns}
+        | {one.id: (one.unit, one.value) for one in part.key_values}
+        for part in parts
+    )
+    assert list(small) == list(large)
+    assert {"x", "theta", "M"} & set(small)
+    for id, (unit, values) in small.items():
+        power = 1 if id == "coupler_inertia" else powers.get(unit, 0)  # of a mass, which stays
+        before, after = (np.array(each, dtype=float) for each in (values, large[id][1]))
+        assert after == pytest.approx(before * 2.0**power, rel=1e-12, abs=1e-12 * abs(before).max()), id

@@ -40,7 +40,7 @@ _LARGEST_EXPONENT = 709.7
 """Its power of e is all but the largest float."""
 _DOUBLINGS, _TRIALS = 30, 20
 """How many doublings of the flywheel are tried for one that turns, and how many flywheels for one that gives a δ."""
-_CLOSE = 1e-9
+_CLOSE = 1e-13
 """By what δ may miss the wanted one, relatively, with the flywheel that gives it."""
 
 
