@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from itertools import zip_longest
+from itertools import islice, zip_longest
 from operator import itemgetter
 from typing import TypeVar
 
@@ -56,17 +56,17 @@ def report_of(case: Case, frame: Frame) -> Report:
     return _REPORTS[frame.command](case, frame)
 
 
-_FACTS = (
-    *(("flywheel", id) for id in ("power_shaft", "M_max", "dE", "delta", "J")),
-    *(("delivery", id) for id in ("flow_mean", "capacity")),
-    *(("forces", id) for id in ("mean_pressure", "p_max", "P_peak", "N_peak", "T_max")),
-    *(("bearings", "load_max"), ("stress", "safety_pin_min"), ("torsion", "f_1"), ("balance", "F_free_max")),
-    *(
-        ("motion", id)
-        for id in ("stroke", "swing", "c_m", "c_max", "b_max", "time_ratio", "theta_max", "theta_dot_max")
-    ),
-)
-"""Commands and ids of the key values that say most of a machine, the first ones first."""
+_FACTS = {
+    "flywheel": ("power_shaft", "M_max", "dE", "delta", "J"),
+    "delivery": ("flow_mean", "capacity"),
+    "forces": ("mean_pressure", "p_max", "P_peak", "N_peak", "T_max"),
+    "bearings": ("load_max",),
+    "stress": ("safety_pin_min",),
+    "torsion": ("f_1",),
+    "balance": ("F_free_max",),
+    "motion": ("stroke", "swing", "c_m", "c_max", "b_max", "time_ratio", "theta_max", "theta_dot_max"),
+}
+"""Command -> ids of the key values that say most of a machine, the first ones first."""
 _MOST_FACTS = 8
 _ORDER = ("flywheel", "delivery", "forces", "bearings", "stress", "balance", "torsion", "harmonics", "motion")
 
@@ -119,7 +119,7 @@ def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
     mechanism = next(one for one in PICTURES if one.id == "mechanism")
     for one in _if_any(partial(pictures_if_any, case, mechanism, PictureOptions(system)))[:1]:
         yield one._replace(machine="")
-    if facts := tuple(_facts(case, system)):
+    if facts := tuple(islice(_facts(case, system), _MOST_FACTS)):
         yield Facts(facts)
     for part in found.sections:
         if part.title in _VERDICTS:
@@ -133,23 +133,20 @@ def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
 
 
 def _facts(case: Case, system: str) -> Iterator[Fact]:
-    """Yield the first eight of the key values that say most, each of the part where its magnitude is largest."""
-    left = _MOST_FACTS
-    for command, id in _FACTS:
-        values = []
+    """Yield the key values that say most, each of the part where its magnitude is largest."""
+    for command, ids in _FACTS.items():
+        values: dict[str, list[tuple[float, Quantity, object, str]]] = {}
         for subject in _if_any(partial(subjects_of, case, command)):
             for quantity, value in _if_any(partial(subject.key_values, command)):
-                if quantity.id == id and isinstance(number := number_of(value), float):
-                    values.append((abs(number), quantity, value, subject.name))
-        if not values or not left:
-            continue
-        left -= 1
-        size, quantity, value, name = max(values, key=itemgetter(0))
-        unit = shown_unit(quantity.kind, system, size)
-        at = f"at {value.degrees:.4g}°" if isinstance(value, Extreme) else ""
-        where = f"{name} {at}".strip() if len(values) > 1 else at
-        text = f"{convert(number_of(value), quantity.kind, unit):.4g}"
-        yield Fact(_SHORT.split(quantity.text)[0], text, quantity.marked(unit), quantity.symbol, where)
+                if quantity.id in ids and isinstance(number := number_of(value), float):
+                    values.setdefault(quantity.id, []).append((number, quantity, value, subject.name))
+        for each in (values[id] for id in ids if id in values):
+            number, quantity, value, name = max(each, key=lambda one: abs(one[0]))
+            unit = shown_unit(quantity.kind, system, abs(number))
+            at = f"at {value.degrees:.4g}°" if isinstance(value, Extreme) else ""
+            where = f"{name} {at}".strip() if len(each) > 1 else at
+            text = f"{convert(number, quantity.kind, unit):.4g}"
+            yield Fact(_SHORT.split(quantity.text)[0], text, quantity.marked(unit), quantity.symbol, where)
 
 
 def _items(case: Case, command: Command, system: str, step: float) -> list[Item]:
