@@ -51,14 +51,20 @@ class Condition(NamedTuple):
         return known is not None and bool(_RELATIONS[self.relation](known, self.value))
 
 
-def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
-    """Return what `c_max < 5 m/s` or, of the texts of a row, `keeps = yes` says; raises UsageError."""
+def parts_of(text: str) -> tuple[str, str, str]:
+    """Return the column, the relation and the value of a condition; raises UsageError."""
     found = _CONDITION.fullmatch(plain(text).strip())
     if not found:
         raise UsageError(
             f"--where: expected a column, a relation and a value, such as 'c_max < 5 m/s', got {shown(text)!r}"
         )
     name, relation, written = (part.strip() for part in found.groups())
+    return name, relation, written
+
+
+def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
+    """Return what `c_max < 5 m/s` or, of the texts of a row, `keeps = yes` says; raises UsageError."""
+    name, relation, written = parts_of(text)
     place = name if name in texts else place_of(name, heads, "--where", texts)
     if isinstance(place, str) or not heads[place].kind:
         if relation not in _OF_WORDS:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import groupby, product
 from typing import NamedTuple
@@ -10,15 +9,15 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Answer, answers_of, asked_answers
 from kurbel.designs.binding import Binder
-from kurbel.designs.chosen import Condition, read_condition
-from kurbel.designs.sweep import Design, Head, limit_answers
-from kurbel.errors import MachineFileError, NoSolutionError, UnitError, UsageError
+from kurbel.designs.chosen import Condition, parts_of, read_condition
+from kurbel.designs.plan import read_span
+from kurbel.designs.sweep import Design, Head, begun, limit_answers
+from kurbel.errors import NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.numerics.search import common_roots, lowest, roots
 from kurbel.report.limits import breaks
@@ -27,7 +26,6 @@ _EQUAL = 1e-12
 """Relative: extremes that differ by less are equally good."""
 _BESIDE = 1e-6
 """Of the range: step from an extreme to a design that shows which bound limits it."""
-_NAME = re.compile(r"\s*(.+?)\s*(?:[<>=!≤≥≠].*)?")
 
 
 class Varied(NamedTuple):
@@ -123,11 +121,10 @@ class _Designs:
     def __init__(
         self, origin: Origin, vary: Sequence[str], wanted: Sequence[str], aim: str, conditions: Sequence[str]
     ) -> None:
-        spans = [_span(one) for one in vary]
+        spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         parts = [one.partition("=") for one in wanted]
-        of_conditions = [found[1] for text in conditions if (found := _NAME.fullmatch(plain(text)))]
-        every = dict.fromkeys([*(name.strip() for name, _, _ in parts), *of_conditions])
+        every = dict.fromkeys([*(name.strip() for name, _, _ in parts), *(parts_of(one)[0] for one in conditions)])
         self.names = [name for name in every if name not in keys]
         self.binder, self.answers = _begun(origin, spans, self.names)
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.binder.kinds)]
@@ -297,42 +294,24 @@ _Span = tuple[str, str, str, str]
 """A key, the texts of both ends of its range, and their unit."""
 
 
-def _span(text: str) -> _Span:
-    """Return what `rod_ratio=3:6` or `crank=300:500 mm` says; raises UsageError."""
-    key, _, values = (part.strip() for part in plain(text).partition("="))
-    ends = [part.strip() for part in values.split(":")]
-    found = [NUMBER.match(part) for part in ends]
-    if not key or len(ends) != 2 or not all(found):
-        raise UsageError(f"--vary {shown(text)}: write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm")
-    units = [part[one.end() :].strip() for part, one in zip(ends, found) if one]
-    if units[0] and units[0] != units[1]:
-        raise UsageError(
-            f"--vary {shown(text)}: a range has one unit, this one has {units[0]} and {units[1] or 'none'}"
-        )
-    low, high = (f"{one.group()} {units[1]}".rstrip() for one in found if one)
-    return key, low, high, units[1]
-
-
 def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tuple[Binder, list[Answer]]:
     """Return the binder of the varied keys, made from the first ends of the ranges that give a valid machine, and the
     key values by these names. Raises UsageError for a name that is a list or that several parts have.
     """
-    errors: list[MachineFileError | NoSolutionError] = []
-    for texts in product(*((low, high) for _, low, high, _ in spans)):
-        try:
-            binder = Binder(origin, [key for key, *_ in spans], texts)
-            found = [(name, asked_answers(binder.machine, [name])) for name in names]
-        except (MachineFileError, NoSolutionError) as error:
-            errors.append(error)
-            continue
-        for name, each in found:
-            if each[0].quantity.listed:
-                raise UsageError(f"{name}: a list of values, of which none is the wanted one")
-            if len(each) > 1:
-                own = f"{each[0].subject}.{each[0].quantity.id}"
-                raise UsageError(f"{name}: there are {len(each)} of it; write which one, such as '{own}'")
-        return binder, [each[0] for _, each in found]
-    raise errors[0] if isinstance(errors[0], NoSolutionError) else UsageError(str(errors[0]))
+    ends = product(*((low, high) for _, low, high, _ in spans))
+    binder, found = begun(
+        origin,
+        [key for key, *_ in spans],
+        ends,
+        lambda machine: [asked_answers(machine, [name]) for name in names],
+    )
+    for name, each in zip(names, found):
+        if each[0].quantity.listed:
+            raise UsageError(f"{name}: a list of values, of which none is the wanted one")
+        if len(each) > 1:
+            own = f"{each[0].subject}.{each[0].quantity.id}"
+            raise UsageError(f"{name}: there are {len(each)} of it; write which one, such as '{own}'")
+    return binder, [each[0] for each in found]
 
 
 def _varied(span: _Span, kind: str) -> Varied:

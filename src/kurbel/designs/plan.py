@@ -98,6 +98,22 @@ def read_input(text: str) -> Input:
     return Input(key, _with_unit([part.strip() for part in values.split(",")], text))
 
 
+def read_span(text: str) -> tuple[str, str, str, str]:
+    """Return the key, the texts of both ends and the unit of `crank=300:500 mm`; raises UsageError.
+
+    >>> read_span("crank=300:500 mm")
+    ('crank', '300 mm', '500 mm', 'mm')
+    """
+    key, _, values = (part.strip() for part in plain(text).partition("="))
+    pairs = [_number_and_unit(part.strip()) for part in values.split(":")]
+    if not key or len(pairs) != 2 or not all(number for number, _ in pairs):
+        raise _refused(text, "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm")
+    (low, first), (high, unit) = pairs
+    if first and first != unit:
+        raise _refused(text, f"a range has one unit, this one has {first} and {unit or 'none'}")
+    return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
+
+
 def _refused(text: str, why: str) -> UsageError:
     return UsageError(f"--vary {shown(text)}: {why}")
 

@@ -1,10 +1,10 @@
 """A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from itertools import chain, pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,9 @@ _SLOWLY = 10
 _STARTS = 100
 """Rows that are tried for one that makes a machine."""
 _GOLDEN = (5**0.5 - 1) / 2
+
+
+Found = TypeVar("Found")
 
 
 class Spec(NamedTuple):
@@ -116,15 +119,13 @@ class Sweep:
         ):  # by the golden section: all over the plan, and not at the same value of a key each time
             rows = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
         starts = chain([written_texts(self.spec.origin, keys)] if self.spec.given else [], map(self.plan.texts, rows))
-        failed: list[KurbelError] = []
-        for texts in starts:
-            try:
-                binder = Binder(self.spec.origin, keys, texts, self.spec.cases)
-                asked = asked_answers(binder.machine, self.spec.columns, self.spec.with_angles)
-                return binder, asked, list(limit_answers(binder.machine))
-            except (MachineFileError, NoSolutionError) as error:
-                failed.append(error)
-        raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
+
+        def answers(machine: Machine) -> tuple[tuple[Answer, ...], list[tuple[str, Answer, float]]]:
+            asked = asked_answers(machine, self.spec.columns, self.spec.with_angles)
+            return asked, list(limit_answers(machine))
+
+        binder, (asked, limits) = begun(self.spec.origin, keys, starts, answers, self.spec.cases)
+        return binder, asked, limits
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
@@ -211,6 +212,27 @@ class Sweep:
         """Rows that are answered and handed over at once: few where each takes long."""
         every = (*self.asked, *(one for _, one, _ in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
+
+
+def begun(
+    origin: Origin,
+    keys: Sequence[str],
+    starts: Iterable[Sequence[str]],
+    answers: Callable[[Machine], Found],
+    cases: bool = False,
+) -> tuple[Binder, Found]:
+    """Return the binder from the first texts that make a machine, and what `answers` returns of that machine.
+
+    Raises the error of the first texts where none make one.
+    """
+    failed: list[KurbelError] = []
+    for texts in starts:
+        try:
+            binder = Binder(origin, keys, texts, cases)
+            return binder, answers(binder.machine)
+        except (MachineFileError, NoSolutionError) as error:
+            failed.append(error)
+    raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
