@@ -71,11 +71,10 @@ _HOMES = {
 
 
 def solve(machine: "Machine | str | os.PathLike[str]") -> "Case":
-    """Return the machine with its results, each computed when it is asked for.
+    """Return the machine with its results, each computed on first use.
 
     machine: from `load`, `loads`, or built in Python; or what these take, the path or the text of a machine file.
-    Raises NoSolutionError, when a result is asked for that does not exist, because a crosshead locks itself for
-    instance.
+    A result that does not exist raises NoSolutionError on use, as where a crosshead locks itself.
     """
     from kurbel.notebook import Case  # which shows itself there
 

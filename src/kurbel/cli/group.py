@@ -36,8 +36,8 @@ _MEANINGS = {
 def exit_statuses(command: str = "") -> str:
     """Return the last sentence of the help of a command, or of `kurbel` itself."""
     own = COMMANDS[command].statuses if command else (BROKEN, NO_SOLUTION)
-    told = (one for one in _MEANINGS if one not in (BROKEN, NO_SOLUTION) or one in own)
-    return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in told)
+    listed = (one for one in _MEANINGS if one not in (BROKEN, NO_SOLUTION) or one in own)
+    return "Exit status: " + "; ".join(f"{status} {_MEANINGS[status]}" for status in listed)
 
 
 class _Kurbel(click.Group):

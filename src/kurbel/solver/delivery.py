@@ -111,40 +111,36 @@ class DeliveryState(AtAngles):
     """The flow of a pump at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
 
     commands = ("delivery",)
-    flow_head = value("q_H", "flow", "Flow delivered at the head end", lambda state: state.course("flow_head"))
-    flow_crank = value("q_C", "flow", "Flow delivered at the crank end", lambda state: state.course("flow_crank"))
-    flow = value(
-        "q", "flow", "Flow delivered", lambda state: state.course("flow"), called="flow", extremes=("delivery",)
-    )
-    flow_suction = value("q_s", "flow", "Flow drawn in", lambda state: state.course("flow_suction"))
+    flow_head = value("q_H", "flow", "Flow delivered at the head end")
+    flow_crank = value("q_C", "flow", "Flow delivered at the crank end")
+    flow = value("q", "flow", "Flow delivered", called="flow", extremes=("delivery",))
+    flow_suction = value("q_s", "flow", "Flow drawn in")
     acceleration_head = value(
         "h_a",
         "length",
         "Head that the suction pipe takes to accelerate the liquid",
-        lambda state: state.course("acceleration_head"),
         called="acceleration head of the suction pipe",
         extremes=("delivery",),
     )
-    friction_head = value(
-        "h_f", "length", "Head of friction in the suction pipe", lambda state: state.course("friction_head")
-    )
+    friction_head = value("h_f", "length", "Head of friction in the suction pipe")
     delivery_acceleration_head = value(
         "h_a,d",
         "length",
         "Head that the delivery pipe takes to accelerate the liquid",
-        lambda state: state.course("delivery_acceleration_head"),
         called="acceleration head of the delivery pipe",
         extremes=("delivery",),
     )
-    delivery_friction_head = value(
-        "h_f,d", "length", "Head of friction in the delivery pipe", lambda state: state.course("delivery_friction_head")
-    )
+    delivery_friction_head = value("h_f,d", "length", "Head of friction in the delivery pipe")
 
     def __init__(self, delivery: Delivery, phi: Array, within: Array) -> None:
         self._delivery, self.phi, self._within = delivery, phi, within
 
-    def course(self, id: str) -> Array | None:
-        """Return the values (n,) of what `Delivery.sampled` has; None for what is left out."""
+    @cached_property
+    def answers(self) -> dict[str, Array | None]:
+        """The columns (n,) that `Delivery.sampled` has; None for what is left out."""
+        return {id: self._course(id) for id in self.rows if id != "phi"}
+
+    def _course(self, id: str) -> Array | None:
         values, pieces = self._delivery.sampled(id), self._delivery.pieces
         if values is None:
             return None
