@@ -178,8 +178,7 @@ def _bearing_notes(case: Case) -> Iterator[str]:
     yield (
         "Loads are those of a rod on its pin and of the shaft on its bearings. Directions are measured in the sense "
         "of rotation: ε_K from the throw outward (of a main bearing from that of crank 1), ε_M from the stroke line "
-        "of "
-        "cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to "
+        "of cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to "
         "either side of the load; crank pins and journals rotate with the throw, crosshead pins and main shells do "
         "not."
     )
