@@ -304,3 +304,22 @@ def test_temperatures(written: str) -> None:
     gas = api.loads(ENDS.replace("35 °C", written)).gas
     assert gas
     assert gas.inlet_temperature == pytest.approx(308.15, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45"]),
+        ("gas.molar_mass", ["28 g/mol", "28.5 g/mol", "29 g/mol", "29.5 g/mol"]),
+        ("gas.inlet_temperature", ["10 °C", "15 °C", "20 °C", "25 °C"]),
+    ],
+)
+def test_the_gas_of_many_compressors_is_that_of_each(key: str, values: list[str]) -> None:
+    """Arrays of gas constants and exponents were asked whether they are true."""
+    columns = ["mass_flow", "isentropic_power", "discharge_temperature", "capacity_normal"]
+    file = CONFIGS / "compressor-two-stage.yaml"
+    together = api.sweep(file, {key: values}, columns)
+    for row, value in enumerate(values):
+        alone = api.sweep(file, {key: [value]}, columns)
+        for name in set(together) - {"failure", "keeps"}:
+            assert together[name][row] == pytest.approx(alone[name][0], rel=1e-12), name

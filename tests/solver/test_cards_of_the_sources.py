@@ -145,3 +145,14 @@ def test_metal_of_the_shells(metal: str, k_v: float, cool: bool, words: str) -> 
     found, sentence = shell_verdict(k_v * 98066.5, metal)
     assert found == cool
     assert words in sentence
+
+
+def test_rings_pressed_by_the_gas_of_many_engines_are_those_of_each() -> None:
+    """The share of the gas was not spread over the cycles of a batch."""
+    text = steam() + "friction: {rings: {count: 3, height: 8 mm, pressure: {gas: 0.5}, coefficient: 0.1}}\n"
+    shares = ["0.3", "0.4", "0.5", "0.6"]
+    together = kurbel.sweep(text, {"friction.rings.pressure.gas": shares}, ["friction_work", "T_max"])
+    for row, share in enumerate(shares):
+        alone = kurbel.sweep(text, {"friction.rings.pressure.gas": [share]}, ["friction_work", "T_max"])
+        for name in ("friction_work", "T_max"):
+            assert together[name][row] == pytest.approx(alone[name][0], rel=1e-12), name

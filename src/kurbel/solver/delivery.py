@@ -350,7 +350,8 @@ class CompressorEnd:
         lift = 0.0 if piston.gas.absolute else machine.ambient
         self.suction, self.delivery = card.suction + lift, card.delivery + lift
         ratio, n, speed = self.delivery / self.suction, card.exponent, machine.speed
-        gas, of_all = own.gas or machine.gas, machine.gas
+        gases = [one for one in (own.gas, machine.gas) if one]
+        gas = gases[0] if gases else None
         if self.loaded:
             self.efficiency = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
             self.temperature = gas and gas.inlet_temperature * ratio ** ((n - 1) / n)
@@ -359,9 +360,8 @@ class CompressorEnd:
         self.capacity = self.efficiency * self.volume * speed if self.loaded else 0.0 * self.volume * speed
         work = piston.gas.works[0 if head or piston.gas.head is None else 1] / piston.gas.repeats
         self.power = -work * speed
-        constant, kappa = (
-            getattr(gas, key, None) or getattr(of_all, key, None) for key in ("gas_constant", "isentropic_exponent")
-        )
+        constant = next((one.gas_constant for one in gases if one.gas_constant is not None), None)
+        kappa = next((one.isentropic_exponent for one in gases if one.isentropic_exponent is not None), None)
         if gas:
             density = self.suction / gas.inlet_temperature
             self.mass_flow = None if constant is None else density * self.capacity / constant
@@ -403,14 +403,13 @@ class CompressorStage(Results):
             if all(one.temperature is not None for one in loaded):  # of ends with gases of their own the mean
                 weighed = sum(one.temperature * one.volume for one in loaded)
                 found["discharge_temperature"] = weighed / swept
-        for id, name in (
-            ("capacity", "capacity"),
-            ("capacity_normal", "normal"),
-            ("mass_flow", "mass_flow"),
-            ("stage_power", "power"),
-            ("isentropic_power", "isentropic"),
+        for id, each in (
+            ("capacity", [one.capacity for one in self.ends]),
+            ("capacity_normal", [one.normal for one in self.ends]),
+            ("mass_flow", [one.mass_flow for one in self.ends]),
+            ("stage_power", [one.power for one in self.ends]),
+            ("isentropic_power", [one.isentropic for one in self.ends]),
         ):
-            each = [getattr(one, name) for one in self.ends]
             found[id] = None if any(one is None for one in each) else sum(each)
         ideal, taken = found["isentropic_power"], found["stage_power"]
         if loaded and ideal is not None and some(taken > 0):
