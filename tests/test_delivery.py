@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 
 import kurbel as api
 from kurbel.cli import kurbel
-from kurbel.designs.answers import answers_in, asked_answers
+from kurbel.designs.answers import answers_in, requested_answers
 from kurbel.designs.binding import Binder
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine_file.source import decode
@@ -263,12 +263,12 @@ def test_a_batch_is_its_machines_one_by_one() -> None:
     )
     asked = ["flow_mean", "flow_max", "volume_fluctuation", "vessel_swing", "suction_lift_max", "acceleration_head_max"]
     binder = Binder(decode("<text>", text.encode()), ["speed"], ["60 rpm"])
-    (lot,) = binder.bound([["50 rpm"], ["60 rpm"], ["70 rpm"], ["80 rpm"]]).lots
-    wanted = [one for one in asked_answers(lot.one(0), asked) if one.subject == "whole machine"]
-    batch = answers_in(Case(lot.machine, 4), wanted)
+    (batch,) = binder.bound([["50 rpm"], ["60 rpm"], ["70 rpm"], ["80 rpm"]]).batches
+    wanted = [one for one in requested_answers(batch.one(0), asked) if one.subject == "whole machine"]
+    together = answers_in(Case(batch.machine, 4), wanted)
     for place in range(4):
-        alone_values = answers_in(Case(lot.one(place)), wanted)
-        for one, other in zip(batch, alone_values):
+        alone_values = answers_in(Case(batch.one(place)), wanted)
+        for one, other in zip(together, alone_values):
             assert np.broadcast_to(one, 4)[place] == pytest.approx(other, rel=1e-12)
 
 

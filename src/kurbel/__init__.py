@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     import os
     from typing import Any
 
-    from kurbel.designs.asked import find as find
-    from kurbel.designs.asked import sweep as sweep
+    from kurbel.designs.api import find as find
+    from kurbel.designs.api import sweep as sweep
     from kurbel.errors import KurbelError as KurbelError
     from kurbel.machine import Cylinder as Cylinder
     from kurbel.machine import Machine as Machine
@@ -62,10 +62,10 @@ _HOMES = {
     "Piston": "kurbel.machine.parts",
     "SliderCrank": "kurbel.mechanisms.slider_crank",
     "draw": "kurbel.notebook",
-    "find": "kurbel.designs.asked",
+    "find": "kurbel.designs.api",
     "load": "kurbel.machine_file",
     "loads": "kurbel.machine_file",
-    "sweep": "kurbel.designs.asked",
+    "sweep": "kurbel.designs.api",
 }
 """Public name -> module; nothing is imported before it is used, so that the command line starts quickly."""
 

@@ -33,7 +33,7 @@ def described(value: Any) -> Any:
 def bound(file: Origin, keys: Sequence[str], start: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[int, Any]:
     """What becomes of every row: a machine, or why there is none."""
     found = Binder(file, keys, start).bound(rows)
-    machines = {row: lot.one(place) for lot in found.lots for place, row in enumerate(lot.rows)}
+    machines = {row: batch.one(place) for batch in found.batches for place, row in enumerate(batch.rows)}
     return machines | found.failures
 
 

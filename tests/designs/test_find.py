@@ -160,3 +160,9 @@ def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
         assert message in run(*arguments, *wrong).stderr
     two = "--vary", "stroke=600:1000 mm", "T_max = 88 kN"
     assert "over one key, and two" in run(*arguments, *two).stderr
+
+
+def test_a_key_varied_twice_is_refused() -> None:
+    origin = decode("<text>", b"{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}")
+    with pytest.raises(UsageError, match="this key is varied twice"):
+        find(origin, ["speed=50:99 rpm", " speed =40:60 rpm"], ["c_m = 3 m/s", "b_max = 9 m/s2"])

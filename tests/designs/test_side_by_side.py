@@ -12,8 +12,8 @@ import pytest
 
 from batches import batch
 from kurbel import Machine, load, loads
-from kurbel.designs.answers import Answer, Values, answered_alone, answers_of, asked_answers, is_slow
-from kurbel.designs.binding import Lot
+from kurbel.designs.answers import Answer, Values, answered_alone, answers_of, is_slow, requested_answers
+from kurbel.designs.binding import Batch
 from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder
 from kurbel.machine.indicator import Indicator, Rectangle
@@ -65,7 +65,7 @@ def with_angle(one: Answer) -> list[Answer]:
 
 def together(machines: list[Machine], asked: list[Answer]) -> list[Values]:
     """What machines of one structure answer side by side, in their order."""
-    found = answers_of([Lot(batch(machines), range(len(machines)))], asked)
+    found = answers_of([Batch(batch(machines), range(len(machines)))], asked)
     return [found[row] for row in range(len(machines))]
 
 
@@ -141,7 +141,7 @@ ALONE = {"coupled-axle", "crank-rocker", "diesel-trace", "punch", "shaper"}
 def test_shipped_machines_answer_as_each_alone(name: str) -> None:
     """All that `forces` tells of them, which is answered side by side."""
     machines = [load(CONFIGS / f"{name}.yaml", overrides=[f"speed={speed} rpm"]) for speed in (61, 97, 149)]
-    asked = [part for one in asked_answers(machines[0], ()) for part in with_angle(one)]
+    asked = [part for one in requested_answers(machines[0], ()) for part in with_angle(one)]
     assert not any(is_slow(machines[0], one) for one in asked)
     for machine, values in zip(machines, together(machines, asked)):
         assert farthest(asked, values, alone(machine, asked)) <= 1e-12
@@ -160,7 +160,7 @@ OTHER_COMMANDS = {
 @pytest.mark.parametrize("name", OTHER_COMMANDS)
 def test_key_values_of_other_commands(name: str) -> None:
     machines = [load(CONFIGS / f"{name}.yaml", overrides=[f"speed={speed} rpm"]) for speed in (237, 251, 263)]
-    asked = list(asked_answers(machines[0], OTHER_COMMANDS[name].split()))
+    asked = list(requested_answers(machines[0], OTHER_COMMANDS[name].split()))
     for machine, values in zip(machines, together(machines, asked)):
         single = alone(machine, asked)
         assert not isinstance(single, str), single

@@ -101,7 +101,7 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
         (("bore=1 kg",), "kg is a unit of mass"),
         (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
         (("bore",), "write KEY=SPREAD"),
-        (("name=1 mm",), "is no number that could be off"),
+        (("name=1 mm",), "is not a number that could be uncertain"),
         (("bore=1 mm", "bore=2 mm"), "--uncertainty bore: this key is given twice"),
         (("tandem.0.bore=1 mm", "tandem[0].bore=2 mm"), "--uncertainty tandem[0].bore: this key is given twice"),
         (("tandem.bore=1 mm",), "did you mean 'tandem.0.bore'?"),

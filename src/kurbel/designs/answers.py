@@ -1,4 +1,4 @@
-"""What each design answers: key values of any command; machines of one structure in batches, the others one by one."""
+"""Key values of many designs, of any command: machines of one structure in batches, the others one by one."""
 
 from collections.abc import Container, Iterator, Sequence
 from typing import Any, NamedTuple, Union
@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel.arrays import Indices
 from kurbel.declared.reading import shown
-from kurbel.designs.binding import Lot
+from kurbel.designs.binding import Batch
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -25,7 +25,7 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 _MOST_POINTS = 40
 """Of a card in a batch."""
 _FEWEST = 3
-"""Machines of one structure; fewer are answered as quickly alone."""
+"""Machines of one structure; fewer are computed as quickly one by one."""
 AT_ONCE = 1000
 """Machines of a batch: enough to share the overhead of one run; more would only take memory."""
 
@@ -33,13 +33,13 @@ _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
 """Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""
 
 Values = Union[Sequence[Any], str]
-"""What a machine answers, in SI: a number, a tuple or None each; or why it answers nothing."""
+"""The key values of a machine, in SI, a number, a tuple or None each; or the reason why it has none."""
 
 
 class Answer(NamedTuple):
-    """A key value of a command; subject: whose it is, as the report of that command names it.
+    """A key value of a command; subject: the cylinder, bearing or machine it belongs to, as the report names it.
 
-    alone: it was asked of this subject alone, `LP.c_max`; angle: where an extreme stands, not its size.
+    alone: requested of this subject only, as `LP.c_max`; angle: the crank angle of an extreme, not its size.
     """
 
     quantity: Quantity
@@ -50,23 +50,23 @@ class Answer(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """Of which kind it is, which decides the unit."""
+        """The kind of the quantity, which decides the unit."""
         return "angle" if self.angle else self.quantity.kind
 
     def part_of(self, found: Any) -> Any:
-        """Return of a value what is asked: a number, a tuple or None."""
+        """Return the requested part of a value: a number, a tuple or None."""
         if self.angle:
             return found.degrees if isinstance(found, Extreme) else None
         return number_of(found)
 
 
-def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
-    """Return the key values that are asked for by id or symbol, of every cylinder that has them; none: the usual ones.
+def requested_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
+    """Return the key values requested by id or symbol, of every cylinder that has them; without names the usual ones.
 
     Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
-    with_angles: beside each that is an extreme the angle where it stands.
+    with_angles: next to each extreme the crank angle at which it occurs.
 
-    Raises UsageError for one that there is not, or that this machine has not.
+    Raises UsageError for a key value that does not exist, or that this machine does not have.
     """
     case = Case(machine)
     once: dict[Answer, tuple[Answer, ...]] = {}
@@ -80,22 +80,22 @@ def asked_answers(machine: Machine, names: Sequence[str], with_angles: bool = Fa
 
 
 def _stands(value: Any) -> bool:
-    """Return whether a value stands at an angle, or other designs may have one that does."""
+    """Return whether a value occurs at a crank angle, or may do so in other designs."""
     return isinstance(value, (Extreme, KurbelError))
 
 
 def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
-    """Yield who answers what a command tells unasked, each with what this machine has there: see `_answer`."""
+    """Yield the key values that a command prints by default, each with its value for this machine: see `_answer`."""
     command = "forces" if case.machine.cylinders else "flywheel"
     for subject in subjects_of(case, command):
         for quantity in subject.lists.key_values(command).values():
-            value = None if quantity.residual else _answer(subject, quantity, unasked=True)
+            value = None if quantity.residual else _answer(subject, quantity, default=True)
             if value is not None:
                 yield Answer(quantity, command, subject.name), value
 
 
 def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
-    """Return who answers a key value, each with what this machine has there: see `_answer`; pistons: among them."""
+    """Return the key values of a name, each with its value for this machine, see `_answer`; pistons: theirs, too."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
@@ -119,10 +119,10 @@ def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, A
     raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check shows why")
 
 
-def _answer(subject: Any, quantity: Quantity, unasked: bool = False) -> Any:
-    """Return what a machine has for a key value, None for nothing; or the error, where other designs may have it."""
+def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:
+    """Return the value of a key value, None where there is none; or the error, since other designs may have one."""
     try:
-        return None if unasked and not subject.says(quantity) else subject.answer(quantity)
+        return None if default and not subject.says(quantity) else subject.answer(quantity)
     except KurbelError as error:
         return error
 
@@ -145,52 +145,54 @@ def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
     return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]
 
 
-def answers_of(lots: Sequence[Lot], asked: Sequence[Answer], rows: Container[int] | None = None) -> dict[int, Values]:
-    """Return what each of many machines answers, by its row; rows: those that are wanted, all if None.
+def answers_of(
+    batches: Sequence[Batch], requested: Sequence[Answer], rows: Container[int] | None = None
+) -> dict[int, Values]:
+    """Return the key values of each of many machines, by its row; rows: those needed, all if None.
 
-    Where rounding depends on the length of an array, as in older versions of numpy, it depends on the company in which
-    a machine is computed: whoever wants the same digits of a row at every time gives all lots of its company each time.
+    In older versions of numpy rounding depends on the length of an array, and so on the machines that are computed
+    together: for the same digits of a row in every run, give the same batches each time.
     """
-    at_once = _AT_ONCE_LARGE if any(one.command in _LARGE for one in asked) else AT_ONCE
+    at_once = _AT_ONCE_LARGE if any(one.command in _LARGE for one in requested) else AT_ONCE
     found: dict[int, Values] = {}
     with np.errstate(all="ignore"):
-        for lot in lots:
-            places = np.arange(len(lot.rows))
-            if not any(is_slow(lot.machine, one) for one in asked):
+        for batch in batches:
+            places = np.arange(len(batch.rows))
+            if not any(is_slow(batch.machine, one) for one in requested):
                 for start in range(0, len(places), at_once):
-                    found |= _together(lot, places[start : start + at_once], asked)
-            for place, row in enumerate(lot.rows):
+                    found |= _together(batch, places[start : start + at_once], requested)
+            for place, row in enumerate(batch.rows):
                 if row not in found and (rows is None or row in rows):
-                    found[row] = _alone(lot.one(place), asked)
+                    found[row] = _alone(batch.one(place), requested)
     return found
 
 
-def is_slow(machine: Machine, asked: Answer) -> bool:
-    """Return whether many such machines answer this one after another, and not in batches.
+def is_slow(machine: Machine, answer: Answer) -> bool:
+    """Return whether this key value is computed one machine after another, and not in batches.
 
-    Torsion turns matrices of its own size; formulas of some mechanisms take no arrays; long cards and traces have so
-    many pieces that they fill one.
+    Torsion solves a matrix for each machine; formulas of some mechanisms take no arrays; a long card or a trace has
+    so many pieces that it fills an array by itself.
     """
     pistons = [piston for one in machine.cylinders for piston in one.pistons]
     cards = [chamber for piston in pistons for chamber in piston.chambers.values()]
     return (
-        asked.command == "torsion"
+        answer.command == "torsion"
         or any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders)
         or any(isinstance(one, Trace) for one in cards)
         or any(sum(len(line.fractions) for line in one.lines) > _MOST_POINTS for one in cards if isinstance(one, Card))
     )
 
 
-def _together(lot: Lot, places: Indices, asked: Sequence[Answer]) -> dict[int, Values]:
-    """Return the answers of a batch by its rows; those that fail, or whose numbers are none, are left out."""
-    if len(places) < _FEWEST or not asked:
+def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dict[int, Values]:
+    """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
+    if len(places) < _FEWEST or not requested:
         return {}
     try:
-        machine = changed(lot.machine, lambda numbers: numbers[places])
-        columns = answers_in(Case(machine, len(places)), asked)
+        machine = changed(batch.machine, lambda numbers: numbers[places])
+        columns = answers_in(Case(machine, len(places)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(places) // 2
-        return _together(lot, places[:half], asked) | _together(lot, places[half:], asked)
+        return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
     fit = np.ones(len(places), dtype=bool)
     each: list[Sequence[Any]] = []
     for value in columns:
@@ -201,12 +203,12 @@ def _together(lot: Lot, places: Indices, asked: Sequence[Answer]) -> dict[int, V
         else:
             fit &= np.isfinite(value)
             each.append(np.broadcast_to(value, fit.shape).tolist())
-    return {lot.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
+    return {batch.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
 
 
-def _alone(machine: Machine, asked: Sequence[Answer]) -> Values:
+def _alone(machine: Machine, requested: Sequence[Answer]) -> Values:
     try:
-        return answered_alone(machine, asked)
+        return answered_alone(machine, requested)
     except KurbelError as error:
         return str(error)
     except ArithmeticError as error:

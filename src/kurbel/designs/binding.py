@@ -1,8 +1,8 @@
-"""From a machine file and the values of some of its keys to machines, those of one structure in one record.
+"""Many machines from one machine file and the values of some of its keys, those of one structure in one record.
 
-Making records is what reading does, and the rules of records hold for arrays: rows that differ in numbers alone are
-read once, with arrays (machines,) in the places of numbers. Words, counts and points of cards are structure: rows that
-differ in these are read apart, and so is each row that breaks a rule, for its message.
+Rows that differ in numbers alone are read once, with arrays (machines,) in the places of numbers; the rules of records
+hold for arrays, too. Words, counts and points of cards are structure: rows that differ in these are read one by one,
+and so is each row that breaks a rule, for its message.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,7 +29,7 @@ from kurbel.machine_file.zeroed_units import without_zeros
 from kurbel.near_words import did_you_mean
 
 
-class Lot(NamedTuple):
+class Batch(NamedTuple):
     """Machines of one structure in one record, with arrays (machines,) for numbers that differ; rows: of each."""
 
     machine: Machine
@@ -41,17 +41,17 @@ class Lot(NamedTuple):
 
 
 class Batches(NamedTuple):
-    """What rows make, counted from 0: machines, those of one structure in one record, or the reason why none."""
+    """Machines of rows counted from 0, those of one structure in one record, or the reason why a row has none."""
 
-    lots: list[Lot]
+    batches: list[Batch]
     failures: dict[int, str]
 
 
 class Binder:
-    """Makes machines of a file from the values of these keys, in their order.
+    """Makes machines of a file from values of these keys, in their order.
 
-    start: texts that make a machine, from which the others differ; cases: the first of the keys is the load case.
-    Raises UsageError for a key that is none.
+    start: texts that make a valid machine; cases: the first of the keys is the load case.
+    Raises UsageError for an unknown key.
     """
 
     def __init__(self, origin: Origin, keys: Sequence[str], start: Sequence[str], cases: bool = False) -> None:
@@ -59,7 +59,7 @@ class Binder:
         root = read_values(self._with(start), reading_of(origin))
         self.machine: Machine = root.made
         self.kinds: list[str] = [""] * cases
-        """Of the numbers that stand under the keys, '' of words."""
+        """The kind of number of each key, '' for words."""
         self._numeric = [False] * cases
         every = list(_every(root))
         for key in keys[cases:]:
@@ -70,7 +70,7 @@ class Binder:
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
     def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
-        """Return the machines of rows of texts, those of one structure in one record, and why other rows make none."""
+        """Return the machines of rows of texts, those of one structure in one record, and why other rows have none."""
         found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
         for place, row in enumerate(rows):
@@ -79,8 +79,8 @@ class Binder:
         for places in groups.values():
             apart = places
             if len(places) > 1:
-                lots, apart = self._together(np.array(places), rows)
-                found.lots.extend(lots)
+                batches, apart = self._together(np.array(places), rows)
+                found.batches.extend(batches)
             for place in apart:
                 self._bind_alone(place, rows[place], found)
         return found
@@ -94,7 +94,7 @@ class Binder:
     def _read(self, texts: Sequence[str], reading: Reading) -> Any:
         """Return what the file says with these texts, before records are made of it; REFUSED after noting its faults.
 
-        Raises UsageError for a key that is none beside these texts.
+        Raises UsageError for a key that is unknown with these texts.
         """
         origin = self._with(texts)
         tree = parse(origin.text, reading)
@@ -102,7 +102,7 @@ class Binder:
         return ROOT.read(reading, {"name": origin.stem, **without_zeros(tree, reading)}, ())
 
     def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
-        """Make the machine of one row, or tell why there is none."""
+        """Add the machine of one row, or the reason why there is none."""
         reading = reading_of(self._origin)
         try:
             root = self._read(texts, reading)
@@ -113,12 +113,12 @@ class Binder:
         except StopReading:
             machine = REFUSED
         if machine is not REFUSED and not reading.faults:
-            found.lots.append(Lot(machine, [row]))
+            found.batches.append(Batch(machine, [row]))
             return
         faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
         found.failures[row] = "; ".join(dict.fromkeys(faults))  # equal cylinders have one fault in common
 
-    def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Lot], list[int]]:
+    def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Batch], list[int]]:
         """Return the machines of rows of the same words, and the rows that must be read by themselves."""
         words = rows[places[0]]
         texts = [first if number else word for first, number, word in zip(self._start, self._numeric, words)]
@@ -141,12 +141,12 @@ class Binder:
             return [], places.tolist()
         if reading.faults:
             return [], places.tolist()
-        lots = []
+        batches = []
         for at in _structures(machine, np.flatnonzero(~maker.broken)):
             # what all of them have is a number
-            lot = changed(machine, lambda numbers, at=at: _column(numbers[at]))  # type: ignore[misc]
-            lots.append(Lot(lot, places[read][at].tolist()))
-        return lots, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
+            batch = changed(machine, lambda numbers, at=at: _column(numbers[at]))  # type: ignore[misc]
+            batches.append(Batch(batch, places[read][at].tolist()))
+        return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
 
 
 class _Maker(Maker):
@@ -180,10 +180,10 @@ class _Maker(Maker):
 def _values(
     columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int
 ) -> tuple[dict[tuple[int, str], Any], Flags]:
-    """Return what stands in the place of numbers, by the id of its mapping and its key, and which rows have all.
+    """Return the arrays that replace numbers, by the id of their mapping and their key, and the rows that have all.
 
-    columns: texts (count,) by dotted key. What is like the cylinder of a key has its numbers, too. Raises UsageError
-    for a key under which no number stands.
+    columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
+    UsageError for a key whose value is not a number.
     """
     slots: list[tuple[Given, str, Number, Array]] = []
     read = np.ones(count, dtype=bool)
@@ -205,10 +205,10 @@ def _values(
 
 
 def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
-    """Yield the places of machines, of those that are fit, in which the solver's formulas distinguish nothing.
+    """Yield places, among those that fit, of machines that take the same branches in the solver.
 
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
-    place.
+    axial position.
     """
     codes: list[Any] = []
 
@@ -237,11 +237,11 @@ def _column(values: Array) -> Any:
     return values if (bits != bits[0]).any() else values[0].item()
 
 
-# where a key stands
+# the place of a key
 
 
 def _every(value: Any) -> Iterator[Given]:
-    """Yield what was read of every mapping, those inside others first."""
+    """Yield every mapping as read, inner ones first."""
     if isinstance(value, Given):
         for one in value.values.values():
             yield from _every(one)
@@ -265,7 +265,7 @@ def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str, Path]:
             owner = one if owner is None or depth > len(owner.path) else owner
     if owner is None:
         raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
-    if len(owner.path) < len(path) - 1:  # a key beside the telling one belongs to its mapping
+    if len(owner.path) < len(path) - 1:  # a key next to the deciding one belongs to its mapping
         for one in every:
             if len(one.path) == len(path) and one.path[:-1] == path[:-1] and _reads(one, path[-1]):
                 return one, str(path[-1]), ()
@@ -283,7 +283,7 @@ def _at(tree: Any, path: Path) -> str | None:
 
 
 def written(tree: Tree, key: str) -> str:
-    """Return what stands under a dotted key; raises UsageError where no value does, with the key probably meant."""
+    """Return the text of a dotted key; raises UsageError where it has no value, with the key probably meant."""
     text = _at(tree, path_of(key))
     if text is not None:
         return text
@@ -297,7 +297,7 @@ def written(tree: Tree, key: str) -> str:
 
 
 def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
-    """Return what a file has under these dotted keys; raises UsageError for a key under which no value stands."""
+    """Return the texts that a file has for these dotted keys; raises UsageError for a key without a value."""
     tree, texts = tree_of(origin), []
     for key in keys:
         try:

@@ -1,4 +1,4 @@
-"""Which rows of a sweep are kept: by conditions, as the best, as those that no other one betters; and a summary."""
+"""Choice of the rows of a sweep: by conditions, the best, the Pareto front; and a summary."""
 
 import math
 import operator
@@ -33,7 +33,7 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 _OF_WORDS = ("=", "==", "!=", "≠")
 _INFINITE = "infinite"
-"""What stands in a row for the length of a rod that is longer than any number."""
+"""The text of a row for an infinite rod length."""
 _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
@@ -96,7 +96,7 @@ def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str]
 
 
 def _number(value: Any) -> float | None:
-    """Return the number that stands in a row, inf for an infinite rod; None where there is none."""
+    """Return the number in a cell, inf for an infinite rod; None where there is none."""
     if value == _INFINITE:
         return math.inf
     return value if isinstance(value, (int, float)) else None
@@ -109,7 +109,7 @@ class Aim(NamedTuple):
     most: bool
 
     def of(self, row: Design) -> tuple[bool, float]:
-        """Return whether there is no number, and one that is the less the better: what is less is better."""
+        """Return whether there is no number, and the cost, of which less is better."""
         value = _number(row.values[self.place])
         return value is None, (value or 0.0) * (-1 if self.most else 1)
 
@@ -124,7 +124,7 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 
 
 def unbettered(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
-    """Yield the rows than which no other one is better in one aim and as good in all: the front of Pareto."""
+    """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
     given = list(rows)
     found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}
     places = [place for place, each in found.items() if not any(lacking for lacking, _ in each)]
@@ -140,14 +140,14 @@ def unbettered(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
 
 
 class Unit(str):
-    """A unit that stands in a cell, where a table writes it as people do."""
+    """A unit in a cell, which a table writes as units are written."""
 
 
 QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 
 def summary_heads(heads: Sequence[Head]) -> tuple[tuple[str, str], ...]:
-    """Return names and units of what a summary tells: quantiles, and the rank correlation with every input."""
+    """Return names and units of the columns of a summary: quantiles, and the rank correlation with every input."""
     inputs = [f"r({one.id})" for one in heads if one.input]
     return tuple((name, "") for name in ("unit", "rows", "mean", *(f"q{100 * q:g}" for q in QUANTILES), *inputs))
 

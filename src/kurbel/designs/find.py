@@ -12,24 +12,25 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_of, asked_answers
+from kurbel.designs.answers import Answer, answers_of, requested_answers
 from kurbel.designs.binding import Binder
 from kurbel.designs.chosen import Condition, parts_of, read_condition
 from kurbel.designs.plan import read_span
 from kurbel.designs.sweep import Design, Head, begun, limit_answers
 from kurbel.errors import NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.overrides import path_of
 from kurbel.numerics.search import common_roots, lowest, roots
 from kurbel.report.limits import breaks
 
 _EQUAL = 1e-12
-"""Relative: extremes that differ by less are equally good."""
-_BESIDE = 1e-6
+"""Relative difference below which extremes are equal."""
+_ASIDE = 1e-6
 """Of the range: step from an extreme to a design that shows which bound limits it."""
 
 
 class Varied(NamedTuple):
-    """A key and the range, in SI, in which its value is sought; unit: that in which the range is written."""
+    """A key and the range of its values, in SI; unit: that of the range as written."""
 
     key: str
     low: float
@@ -123,6 +124,8 @@ class _Designs:
     ) -> None:
         spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
+        if len({path_of(key) for key in keys}) < len(keys):
+            raise UsageError(f"--vary {keys[-1]}: this key is varied twice")
         parts = [one.partition("=") for one in wanted]
         every = dict.fromkeys([*(name.strip() for name, _, _ in parts), *(parts_of(one)[0] for one in conditions)])
         self.names = [name for name in every if name not in keys]
@@ -152,7 +155,7 @@ class _Designs:
         rows = self.numbers(places).tolist()
         texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
         bound = self.binder.bound(texts)
-        found = bound.failures | answers_of(bound.lots, (*self.answers, *(one for _, one, _ in self.limits)))
+        found = bound.failures | answers_of(bound.batches, (*self.answers, *(one for _, one, _ in self.limits)))
         count = len(self.answers)
         values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
         for number, row in enumerate(rows):
@@ -246,11 +249,11 @@ def _extreme(designs: _Designs, sign: float) -> Sequence[Solution]:
 def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
     """Return at which bounds an extreme is, and over which range of the only key it is as good."""
     notes: list[str] = []
-    steps = _BESIDE * np.concatenate([np.eye(len(place)), -np.eye(len(place))])
+    steps = _ASIDE * np.concatenate([np.eye(len(place)), -np.eye(len(place))])
     _, over, against = designs.at(np.clip(place + steps, 0.0, 1.0))
     for axis, one in enumerate(designs.varied):
         for end, word in ((0.0, "least"), (1.0, "greatest")):
-            if abs(place[axis] - end) < _BESIDE:
+            if abs(place[axis] - end) < _ASIDE:
                 notes.append(f"{one.key} is at the {word} of its range")
     notes += [f"beyond it: {text}" for text in dict.fromkeys([*over, *against]) if text]
     if len(place) == 1:
@@ -303,7 +306,7 @@ def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tupl
         origin,
         [key for key, *_ in spans],
         ends,
-        lambda machine: [asked_answers(machine, [name]) for name in names],
+        lambda machine: [requested_answers(machine, [name]) for name in names],
     )
     for name, each in zip(names, found):
         if each[0].quantity.listed:

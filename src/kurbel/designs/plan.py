@@ -20,7 +20,7 @@ from kurbel.errors import UsageError
 from kurbel.machine_file.overrides import path_of
 
 MOST_ROWS = 10_000_000
-"""Rows that are computed without being asked whether they are meant."""
+"""Rows that are computed without a confirmation (`--yes`)."""
 MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
 _LARGEST = 1e300
@@ -59,7 +59,7 @@ class Input(NamedTuple):
 
 
 def read_axis(text: str) -> tuple[Input, ...]:
-    """Return the keys that go together, in `bore=400,450 mm; head_end_rod=70,80 mm`; raises UsageError.
+    """Return the keys that change together, in `bore=400,450 mm; head_end_rod=70,80 mm`; raises UsageError.
 
     >>> [one.key for one in read_axis("bore=400,450 mm; head_end_rod=70,80 mm")]
     ['bore', 'head_end_rod']
@@ -236,7 +236,7 @@ def latin_hypercube(count: int, width: int, seed: int) -> Array:
     """Return (count, width) numbers between 0 and 1: in every column one in each of `count` equal strips, at random."""
     random = np.random.default_rng(seed)
     strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
-    # neither 0 nor 1, so that no distribution is asked for its end
+    # neither 0 nor 1: a distribution has no value there
     within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
     return np.asarray((strips + within) / count)
 

@@ -1,4 +1,4 @@
-"""A sweep: rows of inputs and answers, computed chunk by chunk in their order, here or by other processes."""
+"""A sweep: rows of inputs and key values, computed in order, chunk by chunk, here or by other processes."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -11,8 +11,8 @@ import numpy as np
 from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Answer, answers_of, asked_answers, is_slow
-from kurbel.designs.binding import Binder, Lot, written_texts
+from kurbel.designs.answers import Answer, answers_of, is_slow, requested_answers
+from kurbel.designs.binding import Batch, Binder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
@@ -23,11 +23,11 @@ from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
 
 CHUNK = 1000
-"""Rows that are computed together: what memory holds at once, and what a run computes anew that begins amid them."""
+"""Rows that are computed together; a run that starts within a chunk computes it from its beginning."""
 _FIRST = 20
-"""Rows of the first chunk, so that a reader sees something at once."""
+"""Rows of the first chunk, so that a reader soon sees something."""
 _SLOWLY = 10
-"""Rows that are handed over together where they are answered one after another."""
+"""Rows that are handed over together where machines are computed one after another."""
 _STARTS = 100
 """Rows that are tried for one that makes a machine."""
 _GOLDEN = (5**0.5 - 1) / 2
@@ -37,11 +37,11 @@ Found = TypeVar("Found")
 
 
 class Spec(NamedTuple):
-    """All that a sweep is made of, in texts, so that any process can make it anew.
+    """Everything that defines a sweep, as texts, so that any process can build it.
 
-    vary: `KEY=…` each, or several that go together; given: inputs beside these. columns: ids or symbols; with_angles:
-    beside extremes the angle where each stands; system: of units; most: rows, None for any number; cases: of every load
-    case of the file; the others: see `Plan`.
+    vary: `KEY=…` each, or several that change together; given: further inputs. columns: ids or symbols; with_angles:
+    next to each extreme its crank angle; system: of units; most: rows, None for any number; cases: every load case of
+    the file; the others: see `Plan`.
     """
 
     origin: Origin
@@ -83,16 +83,16 @@ class Design(NamedTuple):
     failure: str = ""
 
     def text(self, name: str) -> str:
-        """Return what stands in the row under `keeps`, `broken` or `failure`."""
+        """Return the text of the row under `keeps`, `broken` or `failure`."""
         return KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
 
 
 KEPT = {True: "yes", False: "no", None: ""}
-"""What is told of limits that are kept, are not, and cannot be judged."""
+"""The text for limits that are kept, are not kept, and cannot be judged."""
 
 
 class Sweep:
-    """Rows of one machine; heads: what stands over their values. Raises UsageError for what makes none."""
+    """Rows of one machine. Raises UsageError where the options define none."""
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
@@ -103,15 +103,15 @@ class Sweep:
         if spec.most and self.rows > spec.most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
         self._keys = [one.key for one in self.plan.inputs]
-        self._binder, self.asked, self._limits = self._started(self._keys)
+        self._binder, self.requested, self._limits = self._started(self._keys)
         self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Design.text` has them."""
 
     def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[tuple[str, Answer, float]]]:
-        """Return what binds texts, who answers what is wanted, and each limit with who answers that, and its bound.
+        """Return the binder, the requested key values, and each limit with its key value and bound.
 
-        Texts that may make a machine are those of the file of one that was read, and rows of the whole plan.
+        The first valid machine is searched for in the texts of the file itself and in rows of the whole plan.
         """
         rows: Iterable[int] = range(self.rows)
         if (
@@ -121,63 +121,63 @@ class Sweep:
         starts = chain([written_texts(self.spec.origin, keys)] if self.spec.given else [], map(self.plan.texts, rows))
 
         def answers(machine: Machine) -> tuple[tuple[Answer, ...], list[tuple[str, Answer, float]]]:
-            asked = asked_answers(machine, self.spec.columns, self.spec.with_angles)
-            return asked, list(limit_answers(machine))
+            requested = requested_answers(machine, self.spec.columns, self.spec.with_angles)
+            return requested, list(limit_answers(machine))
 
-        binder, (asked, limits) = begun(self.spec.origin, keys, starts, answers, self.spec.cases)
-        return binder, asked, limits
+        binder, (requested, limits) = begun(self.spec.origin, keys, starts, answers, self.spec.cases)
+        return binder, requested, limits
 
     @cached_property
     def heads(self) -> tuple[Head, ...]:
-        """What stands over the values."""
-        ids = [one.quantity.id for one in self.asked if not one.angle]
+        """The heads of the columns."""
+        ids = [one.quantity.id for one in self.requested if not one.angle]
         heads = []
         for key, text, kind in zip(self._keys, self.plan.texts(0), self._binder.kinds):
             first = _in_base([text], kind)[0] or 0.0
             heads.append(Head(key, shown_unit(kind, self.spec.system, first) if kind else "", True, kind))
-        for one, unit in zip(self.asked, self._units):
+        for one, unit in zip(self.requested, self._units):
             owned = one.alone or ids.count(one.quantity.id) > 1
             name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
             heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind, one.quantity.listed))
         return tuple(heads)
 
     def types(self) -> list[str]:
-        """Return what stands under the heads: `number`, `list`, or `text`, also where words stand among numbers."""
+        """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
         inputs = zip(self.plan.inputs, self._binder.kinds)
         wordy = [one.distribution is None and None in _in_base(one.texts, kind) for one, kind in inputs]
-        answers = ["list" if one.quantity.listed else "number" for one in self.asked]
+        answers = ["list" if one.quantity.listed else "number" for one in self.requested]
         return [*("text" if one else "number" for one in wordy), *answers]
 
     @cached_property
     def _units(self) -> tuple[str, ...]:
-        """Units of the answers, from the sizes that the first machine has."""
+        """Units of the key values, from their sizes for the first machine."""
         if self.spec.system == "si":
-            return tuple(SI[one.kind] for one in self.asked)
-        first = answers_of([Lot(self._binder.machine, (0,))], self.asked)[0]
-        sizes = [0.0] * len(self.asked) if isinstance(first, str) else map(size_of, first)
-        sized = [(one.kind, one.quantity.family, size) for one, size in zip(self.asked, sizes, strict=True)]
+            return tuple(SI[one.kind] for one in self.requested)
+        first = answers_of([Batch(self._binder.machine, (0,))], self.requested)[0]
+        sizes = [0.0] * len(self.requested) if isinstance(first, str) else map(size_of, first)
+        sized = [(one.kind, one.quantity.family, size) for one, size in zip(self.requested, sizes, strict=True)]
         return tuple(units_of(sized, self.spec.system))
 
     def chunk(self, company: range, wanted: range) -> list[Design]:
         """Return the wanted rows of a chunk, counted from 0."""
         bound = self._binder.bound([self.plan.texts(row) for row in company])
         own = range(wanted.start - company.start, wanted.stop - company.start)
-        found = bound.failures | answers_of(bound.lots, (*self.asked, *(one for _, one, _ in self._limits)), own)
+        found = bound.failures | answers_of(bound.batches, (*self.requested, *(one for _, one, _ in self._limits)), own)
         answered = {row: each for row in own if not isinstance(each := found[row], str)}
-        columns = zip(zip(*answered.values()), self.asked, self._units)
+        columns = zip(zip(*answered.values()), self.requested, self._units)
         values = dict(zip(answered, zip(*(_in_unit(column, one.kind, unit) for column, one, unit in columns))))
         rows = []
         for number, inputs in zip(wanted, self.inputs(wanted)):
             row = number - company.start
             if row in answered:
-                keeps, broken, unjudged = self._judged(answered[row][len(self.asked) :])
+                keeps, broken, unjudged = self._judged(answered[row][len(self.requested) :])
                 rows.append(Design(number + 1, (*inputs, *values[row]), keeps, broken, unjudged))
             else:
-                rows.append(Design(number + 1, (*inputs, *[None] * len(self.asked)), failure=str(found[row])))
+                rows.append(Design(number + 1, (*inputs, *[None] * len(self.requested)), failure=str(found[row])))
         return rows
 
     def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
-        """Return what is under the heads of the inputs in these rows, counted from 0: it is known unsolved."""
+        """Return the values of the inputs in these rows, counted from 0."""
         columns = []
         for head, texts in zip(self.heads, zip(*map(self.plan.texts, rows))):
             different = list(dict.fromkeys(texts))
@@ -198,7 +198,7 @@ class Sweep:
     def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
         """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
 
-        A row has the same company in every run, since its last digits may hang on how many are computed with it.
+        A row is computed with the same others in every run, since its last digits may depend on their number.
         """
         for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
             cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
@@ -209,8 +209,8 @@ class Sweep:
 
     @cached_property
     def _at_once(self) -> int:
-        """Rows that are answered and handed over at once: few where each takes long."""
-        every = (*self.asked, *(one for _, one, _ in self._limits))
+        """Rows that are computed and handed over together: few where each takes long."""
+        every = (*self.requested, *(one for _, one, _ in self._limits))
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
 
 
@@ -236,7 +236,7 @@ def begun(
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
-    """Return the values of texts in the base of their kind; None for a word, or what a row fails for."""
+    """Return the values of texts in the base unit of their kind; None for a word or an unreadable number."""
     found: list[float | None] = [None] * len(texts)
     if not kind:
         return found
@@ -249,7 +249,7 @@ def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
 
 
 def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
-    """Return values of a kind in a unit; lists in tuples, None for what is none."""
+    """Return values of a kind in a unit; lists as tuples, None for a missing value."""
     if set(map(type, column)) == {float}:  # as most are
         return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
     return [
@@ -263,7 +263,7 @@ def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
 
 
 def limit_answers(machine: Machine) -> Iterator[tuple[str, Answer, float]]:
-    """Yield each limit of the file with whose value it is for and its bound; raises UsageError where nobody has it."""
+    """Yield each limit of the file with its key value and bound; raises UsageError where the machine has none."""
     case = Case(machine)
     for name, bound in machine.limits:
         try:

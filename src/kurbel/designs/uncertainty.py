@@ -1,8 +1,7 @@
-"""What standard uncertainties of the inputs make of the key values, u² = Σ (∂y/∂x u_x)², and which input it comes from.
+"""Standard uncertainties of key values from those of the inputs, u² = Σ (∂y/∂x u_x)², and the share of each input.
 
-The derivatives by an input are differences of the solver's answers, which are exact but for rounding: at four places
-beside the value, extrapolated to none (Richardson).
-Where an answer bends over the width of an uncertainty, so that its first order does not hold, a sample tells instead.
+The derivatives are central differences at two steps, extrapolated (Richardson); results of the solver are exact but for
+rounding. Where a key value is too nonlinear over the width of an uncertainty, a sample replaces the first order.
 """
 
 import math
@@ -38,24 +37,24 @@ SAMPLE, SLOW_SAMPLE = 2000, 200
 _HELD, _FEW_HELD = 200, 10
 """Of these the machines that are held, and counted, at once: a measured trace of each may be large."""
 _STEP = 0.1
-"""Of an uncertainty: the outer difference; the inner one is half of it."""
+"""Outer step of the differences, as a share of an uncertainty; the inner step is half of it."""
 _BEND = 0.1
-"""What the second order may be beside the first one."""
+"""Largest second-order part relative to the first."""
 _ROUNDING = 1e-9
-"""What is less than this beside the value itself bends nothing."""
+"""Second-order parts below this share of the value are not counted."""
 
 Counted = Callable[[Sequence[Any]], Iterable[Any]]
-"""Yields what it is given, and may tell on the way how much of it is left."""
+"""Yields what it is given, and may report the progress."""
 
 _NOISE = 1e-12
-"""Of a value: what is less is no uncertainty but rounding."""
+"""Share of a value below which an uncertainty is rounding."""
 
 
 class Uncertain(NamedTuple):
     """The standard uncertainty of a key value in SI, and the share of each input in its square.
 
-    sample: from how many drawn machines both are told, 0 where they are of first order; failed: of how many no answer
-    came, and why, '' where all have one.
+    sample: number of sampled machines that both come from, 0 where they are of first order; failed: how many sampled
+    machines failed, and why, '' where none did.
     """
 
     answer: Answer
@@ -67,7 +66,7 @@ class Uncertain(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """Uncertain inputs: what makes machines of their texts, and of each the key, the value and its uncertainty."""
+    """Uncertain inputs: the binder of their machines, and key, value and uncertainty of each, in SI."""
 
     binder: Binder
     keys: tuple[str, ...]
@@ -76,9 +75,9 @@ class Inputs(NamedTuple):
 
 
 def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) -> Inputs | None:
-    """Return the uncertain inputs of a machine's file, and those that no file gives; None where there are none.
+    """Return the uncertain inputs of a machine's file, and those given outside it (`more`); None where there are none.
 
-    Raises MachineFileError or UsageError with all that is wrong with them.
+    Raises MachineFileError or UsageError with all faults.
     """
     outside, origin = dict(more), machine.origin
     if len(outside) < len(more):
@@ -88,8 +87,8 @@ def given_uncertainty(machine: Machine, more: Sequence[tuple[str, str]] = ()) ->
     if not spreads or origin is None:
         return None
     inputs, wrong = read_inputs(origin, spreads)
-    if told := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
-        raise UsageError("; ".join(told))
+    if faults := [f"--uncertainty {key}: {wrong[key]}" for key in outside if key in wrong]:
+        raise UsageError("; ".join(faults))
     if wrong:
         raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
     return inputs
@@ -114,7 +113,7 @@ def read_inputs(origin: Origin, spreads: Mapping[str, str]) -> tuple[Inputs, dic
         try:
             value = parse_quantity(text, kind)
         except (UnitError, KeyError):
-            wrong[key] = f"{shown(text)!r} is no number that could be off"
+            wrong[key] = f"{shown(text)!r} is not a number that could be uncertain"
             continue
         spread = spreads[key]
         try:
@@ -128,12 +127,12 @@ def read_inputs(origin: Origin, spreads: Mapping[str, str]) -> tuple[Inputs, dic
     return Inputs(binder, tuple(texts), values, sizes), wrong
 
 
-def uncertainties(inputs: Inputs, asked: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
-    """Return the uncertainties of those key values that are numbers; counted: goes through parts of a sample."""
+def uncertainties(inputs: Inputs, requested: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
+    """Return the uncertainties of the key values that are numbers; counted: iterates over the parts of a sample."""
     steps = [sign * step for step in (_STEP, _STEP / 2, 1.0) for sign in (1, -1)]
     units = np.eye(len(inputs.keys))
     shifts = np.array([0 * units[0], *(unit * step for unit in units for step in steps)])
-    found, _ = _answers(inputs, shifts, asked)
+    found, _ = _answers(inputs, shifts, requested)
     there = np.flatnonzero(np.isfinite(found[0])).tolist()
     values, found = found[0, there], found[:, there]
     outer, inner, whole = np.moveaxis(found[1:].reshape(len(inputs.keys), 3, 2, -1), 1, 0)
@@ -142,7 +141,7 @@ def uncertainties(inputs: Inputs, asked: Sequence[Answer], counted: Counted = it
     sizes = np.sqrt((first**2).sum(axis=0))
     shares = np.divide(first**2, sizes**2, out=np.zeros_like(first), where=sizes > 0)
     linear = [
-        Uncertain(asked[place], *each)
+        Uncertain(requested[place], *each)
         for place, *each in zip(there, values.tolist(), sizes.tolist(), map(tuple, shares.T.tolist()))
     ]
     bend = np.maximum(np.abs(whole.sum(axis=1) / 2 - values), np.abs(slopes[1] - slopes[0]))
@@ -152,15 +151,16 @@ def uncertainties(inputs: Inputs, asked: Sequence[Answer], counted: Counted = it
 
 
 def _drawn(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> list[Uncertain]:
-    """Return by a sample the uncertainties of what bends; shares are the squares of correlations."""
+    """Return the uncertainties of nonlinear key values from a sample; shares are the squares of correlations."""
     if not bent:
         return []
-    asked = [one.answer for one in bent]
-    slow = any(is_slow(inputs.binder.machine, one) for one in asked)
+    requested = [one.answer for one in bent]
+    slow = any(is_slow(inputs.binder.machine, one) for one in requested)
     count, held = (SLOW_SAMPLE, _FEW_HELD) if slow else (SAMPLE, _HELD)
     normal = np.vectorize(NormalDist().inv_cdf)
     shifts = normal(latin_hypercube(count, len(inputs.keys), 0))
-    parts = [_answers(inputs, part, asked) for part in counted([shifts[k : k + held] for k in range(0, count, held)])]
+    every = [shifts[start : start + held] for start in range(0, count, held)]
+    parts = [_answers(inputs, part, requested) for part in counted(every)]
     found = np.concatenate([values for values, _ in parts])
     failures = [why for _, each in parts for why in each]
     failed = f"{len(failures)} of {count} sampled machines fail and are ignored ({failures[0]})." if failures else ""
@@ -175,10 +175,10 @@ def _drawn(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> list[
     return result
 
 
-def _answers(inputs: Inputs, shifts: Array, asked: Sequence[Answer]) -> tuple[Array, list[str]]:
-    """Return the answers (machines, asked) where inputs are off by so many uncertainties, and why machines have none.
+def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tuple[Array, list[str]]:
+    """Return the key values (machines, requested) with inputs shifted, nan where there is none, and the failures.
 
-    shifts: (machines, inputs); nan where there is no number.
+    shifts: (machines, inputs), in uncertainties.
     """
     units = [SI[kind] for kind in inputs.binder.kinds]
     rows = [
@@ -186,8 +186,8 @@ def _answers(inputs: Inputs, shifts: Array, asked: Sequence[Answer]) -> tuple[Ar
         for row in (inputs.values + shifts * inputs.spreads).tolist()
     ]
     bound = inputs.binder.bound(rows)
-    values = bound.failures | answers_of(bound.lots, asked)
-    found = np.full((len(rows), len(asked)), math.nan)
+    values = bound.failures | answers_of(bound.batches, requested)
+    found = np.full((len(rows), len(requested)), math.nan)
     for row, each in values.items():
         if not isinstance(each, str):
             found[row] = [one if isinstance(one, (int, float)) else math.nan for one in each]
@@ -197,16 +197,14 @@ def _answers(inputs: Inputs, shifts: Array, asked: Sequence[Answer]) -> tuple[Ar
 def with_uncertainty(
     report: Report, case: Case, more: Sequence[tuple[str, str]], system: str, counted: Counted = iter
 ) -> Report:
-    """Return a report with a table of the uncertainties of its key values; more: those that no file gives.
+    """Return a report with a table of the uncertainties of its key values; more: those given outside the file.
 
-    counted: see `uncertainties`.
-
-    Raises what `given_uncertainty` does.
+    counted: see `uncertainties`; errors: see `given_uncertainty`.
     """
     inputs = given_uncertainty(case.machine, more)
     if inputs is None:
         return report
-    found = uncertainties(inputs, _asked(case, report.command), counted)
+    found = uncertainties(inputs, _numeric_answers(case, report.command), counted)
     parts = [_with_table(part, found, inputs.keys, system) for part in report.all_parts]
     last = parts.pop() if report.whole else None
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
@@ -220,11 +218,11 @@ def with_uncertainty(
 
 
 _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))
-"""Command -> ids of the quantities whose other errors stand beside those of the data."""
+"""Command -> ids of the quantities whose errors of data are compared with other errors."""
 
 
 def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
-    """Return what the uncertainties in a machine's file make of motion, work and torques, relatively.
+    """Return the relative uncertainties of motion, work and torques that come from those in a machine's file.
 
     Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
     """
@@ -234,8 +232,8 @@ def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
     if inputs is None:
         return ()
     case = Case(machine)
-    asked = [one for command, ids in _COMPARED for one in _asked(case, command) if one.quantity.id in ids]
-    first = [one for one in asked if one.subject in (asked[0].subject, "whole machine")]
+    requested = [one for command, ids in _COMPARED for one in _numeric_answers(case, command) if one.quantity.id in ids]
+    first = [one for one in requested if one.subject in (requested[0].subject, "whole machine")]
     found = [one for one in uncertainties(inputs, first) if one.spread > _NOISE * abs(one.value)]
     return tuple(
         Difference(one.answer.quantity.symbol, "standard uncertainties of the file", one.spread / abs(one.value))
@@ -244,8 +242,8 @@ def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
     )
 
 
-def _asked(case: Case, command: str) -> list[Answer]:
-    """Return the key values of a command that are numbers which the inputs move."""
+def _numeric_answers(case: Case, command: str) -> list[Answer]:
+    """Return the key values of a command that are numbers and depend on the inputs."""
     return [
         Answer(quantity, command, subject.name)
         for subject in subjects_of(case, command)

@@ -1,4 +1,4 @@
-"""Who computes the chunks of a sweep: this process, others on this machine, or a cluster; the order stays."""
+"""Chunks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
 
 import logging
 import os
@@ -22,18 +22,18 @@ _FOR_ONE = 5_000
 _MOST_JOBS = 4
 """Processes that are started unless a number is given: the machine may have other work, and each holds the library."""
 _AHEAD = 3
-"""Chunks per worker that are on their way: what is computed and not yet read stays little."""
+"""Chunks per worker that are submitted ahead: little is computed that is not yet read."""
 _RETRIES = 5
-"""How often a chunk is sent anew whose worker was lost."""
+"""How often a chunk is sent again if its worker is lost."""
 _ANSWERS_WITHIN = 10.0
 """Seconds in which a cluster must answer."""
 _LOOKED_EVERY = 1.0
-"""Seconds after which a chunk that is not there yet raises the question whether the cluster has workers at all."""
+"""Seconds of waiting for a chunk after which it is checked that the cluster has workers."""
 
 Answer = Callable[[], list[Design]]
 """Waits for the rows of a chunk and returns them."""
 Submit = Callable[[Spec, range, range], Answer]
-"""Has a chunk computed: see `computed`."""
+"""Submits a chunk: see `computed`."""
 
 
 def rows_of(
@@ -41,7 +41,7 @@ def rows_of(
 ) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
-    jobs: processes of this machine; dask: address of a cluster; note: is called with what a user should know meanwhile.
+    jobs: processes of this machine; dask: address of a cluster; note: is called with messages for the user.
     Raises UsageError for an address that does not answer, KurbelError where a process or the cluster is lost.
     """
     if dask:

@@ -1,4 +1,4 @@
-"""`kurbel.sweep` and `kurbel.find`: what Python asks of many designs of a machine."""
+"""`kurbel.sweep` and `kurbel.find`: many designs of a machine from Python."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,10 +28,10 @@ def sweep(
     """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
 
     machine: as `load` or `loads` returned it, or what these take; inputs: dotted key of its file -> numbers (n,) in SI
-    (angles in degrees, speeds in revolutions per second), or texts as the file would have them; a single one holds for
-    every row. columns: id or symbol of a key value, or
-    several, all of `kurbel forces` where none is named. Numbers are nan, and `failure` (n,) tells why, where a design
-    fails; a list of angles is a tuple. With limits in the file `keeps` tells whether they are kept.
+    (angles in degrees, speeds in revolutions per second), or texts as in the file; a single value is that of every
+    row. columns: id or symbol of a key value, or several; all of `kurbel forces` where none is named. Where a design
+    fails its numbers are nan, and `failure` (n,) has the reason; a list of angles is a tuple. If the file has limits,
+    `keeps` is true where all of them are kept.
 
     >>> import kurbel
     >>> found = sweep(kurbel.loads("{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}"), {"rod_ratio": [4, 5]}, ["b_max"])
@@ -58,7 +58,7 @@ def find(
     """Return the values of one key or two that give wanted key values, or for which one is the least or the greatest.
 
     machine: as `load` or `loads` returned it, or what these take; vary: dotted key of its file -> ends of the range, in
-    SI, or texts as the file would have them; wanted: as many texts `delta = 1/50`; least, greatest: id or symbol of a
+    SI, or texts as in the file; wanted: as many texts `delta = 1/50`; least, greatest: id or symbol of a
     key value instead; where: conditions such as `c_m < 5 m/s`. Solutions have `values` of the keys, in their order, and
     `key_values`, in SI.
 
