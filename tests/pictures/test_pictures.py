@@ -9,9 +9,10 @@ import pytest
 from drawn import curve_of, drawn, off_line, on_its_side
 from scipy.integrate import trapezoid
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.report.picture import Panel, Picture
-from kurbel.report.picture_source import PictureOptions
+from kurbel.report.picture_source import PictureOptions, sampled
 from kurbel.report.pictures import PICTURES, pictures
 from representative import case_of
 
@@ -162,3 +163,14 @@ def test_modes_are_those_of_holzer_with_their_frequencies() -> None:
         assert np.count_nonzero(np.diff(np.sign(curve.y))) == mode  # a free shaft has as many nodes
     assert curves[0].name.symbol == f"1: {case.torsion.natural_frequency:.4g} Hz"
     assert len(panel.x.names) == len(case.torsion.line.masses)
+
+
+def test_rounding_of_a_constant_is_not_refined() -> None:
+    random = np.random.default_rng(1)
+
+    def values(degrees: Array, within: Array) -> Array:
+        return np.array([np.sin(np.radians(degrees)), 2737.0 + random.normal(0.0, 1e-12, degrees.shape)])
+
+    alone = sampled(np.array([0.0, 180.0, 360.0]), lambda degrees, within: values(degrees, within)[:1])
+    both = sampled(np.array([0.0, 180.0, 360.0]), values)
+    assert len(both.degrees) == len(alone.degrees)

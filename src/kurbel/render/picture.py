@@ -290,7 +290,7 @@ def looks_of(panel: Panel) -> list[int]:
 
 def dense(x: Array, y: Array) -> tuple[Array, Array]:
     """Return points along a line x, y (n,), neither coordinate of neighbours more than 1 apart."""
-    steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y)))), 1).astype(int)
+    steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(x)), np.abs(np.diff(y))) - 1e-6), 1).astype(int)
     numbers, ends = np.arange(len(x)), np.append(0, steps.cumsum())
     along = np.interp(np.arange(ends[-1] + 1), ends, numbers)
     return np.interp(along, numbers, x), np.interp(along, numbers, y)

@@ -59,7 +59,9 @@ def sampled(breaks: Array, values: Values) -> Sampled:
     low, high, within = edges[:-1], edges[1:], np.repeat((breaks[:-1] + breaks[1:]) / 2, counts)
     at_low, at_high = values(low, within), values(high, within)
     found = [(low, within, at_low), (high, within, at_high)]
-    allowed = np.ptp(np.concatenate((at_low, at_high), axis=1), axis=1)[:, None] * FINENESS
+    ends_of_all = np.concatenate((at_low, at_high), axis=1)
+    height, size = np.ptp(ends_of_all, axis=1), np.abs(ends_of_all).max(axis=1)
+    allowed = np.maximum(height * FINENESS, size * _JUMP)[:, None]  # a constant has only rounding for its height
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
         at_middle = values(middle, within)
