@@ -60,15 +60,15 @@ def exact(state: State) -> ExactRod:
     return state.drive.rod
 
 
-LOSSES = State.pin_losses.func
+LOSSES = State.losses.func
 COUPLE = State.rod_couple.func
 FAULTS: dict[str, tuple[Any, str, Any]] = {
     "side of the guide friction in N": (State, "below", property(wrong_side)),
     "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),
     "turning of the rod on the pin": (
         State,
-        "pin_losses",
-        property(lambda state: (state.rubbing.at_crank * (1 - state.rod_slope), *LOSSES(state)[1:])),
+        "losses",
+        property(lambda state: LOSSES(state) | {"crank_pin": state.rubbing.at_crank * (1 - state.rod_slope)}),
     ),
     "couple of the rod": (State, "rod_couple", property(lambda state: COUPLE(state) * (1 + 1e-6))),
     "radial pull in S at the crank pin": (State, "S_crank", property(more_pull)),

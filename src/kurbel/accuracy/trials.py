@@ -20,6 +20,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
+from kurbel.machine.parts import GasOnRings
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -136,10 +137,14 @@ def _forces_lack(cylinder: Cylinder) -> str:
     """Return why there is no independent calculation of a cylinder's forces, or an empty text."""
     chambers = [chamber for piston in cylinder.pistons for chamber in piston.chambers.values()]
     rod = cylinder.masses.connecting_rod if cylinder.masses else None
+    rubbing = cylinder.friction
+    rings = rubbing.rings if rubbing else None
     reasons = {
         "traces and ideal cards": not all(isinstance(chamber, Card) for chamber in chambers),
         "a rod given by its centre of gravity": rod is not None and rod.exact,
-        "pins that rub": cylinder.friction is not None and bool(cylinder.friction.of_pins),
+        "pins that rub": rubbing is not None and bool(rubbing.of_pins),
+        "a yoke that rubs": rubbing is not None and (rubbing.block is not None or rubbing.guides is not None),
+        "rings that the gas presses": rings is not None and isinstance(rings.pressure, GasOnRings),
         "a ram force": bool(cylinder.ram_force),
     }
     found = [f"no independent calculation of {what}" for what in reasons if reasons[what]]

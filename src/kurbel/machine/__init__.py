@@ -30,6 +30,7 @@ from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import MOST_TURNS, Coupling, Flywheel, Known, Load, Swing
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace
 
@@ -269,7 +270,8 @@ class Machine(Record):
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
         for index, cylinder in enumerate(self.cylinders):
-            rubbing = cylinder.friction.faults_beside(self.crankshaft) if cylinder.friction else ()
+            of_yoke = cylinder.mechanism.pin_diameter if isinstance(cylinder.mechanism, ScotchYoke) else None
+            rubbing = cylinder.friction.faults_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
             yield from (Rule.of(fault.below(("cylinders", index, "friction"))) for fault in rubbing)
         yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):

@@ -18,6 +18,7 @@ from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
 
 Item = TypeVar("Item")
 
@@ -208,8 +209,11 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
         reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
         unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
         yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+        yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
         for key in friction.of_pins:
-            yield Rule(("friction", key), not has_rod, f"a {kind} has no connecting rod; leave '{key}' out")
+            without = not has_rod and (yoke is None or key == "crosshead_pin")
+            yield Rule(("friction", key), without, f"a {kind} has no connecting rod; leave '{key}' out")
+        yield from _of_yoke(yoke, friction, kind)
     rod = masses.connecting_rod if masses else None
     if rod is not None:
         message = f"a {kind} has no connecting rod; give the reciprocating mass as 'other'"
@@ -222,6 +226,19 @@ def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
             beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
             numbers = {"at": rod.center_of_gravity, "length": length}
             yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
+
+
+def _of_yoke(yoke: ScotchYoke | None, friction: Friction, kind: str) -> Iterator[Rule]:
+    """Only the yoke has a block and a pair of guides, whose distance must be known; they must not lock it."""
+    for key, given in (("block", friction.block), ("guides", friction.guides)):
+        if yoke is None:
+            yield Rule(("friction", key), given is not None, f"a {kind} is no scotch-yoke; leave '{key}' out")
+    if yoke is not None and friction.guides is not None:
+        apart = yoke.guide_length
+        yield Rule(("friction", "guides"), apart is None, "'guides' needs their distance; give 'guide_length'")
+        locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
+        message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
+        yield Rule(("friction", "guides"), locks, message)
 
 
 _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")

@@ -192,7 +192,7 @@ class Guide(Record):
     width: float = field("length", "Width of the shoe", above=0, required=True)
 
 
-_PINS = {
+_PINS: dict[str, tuple[str, str]] = {
     "crank_pin": ("crank_pin_diameter", "pin_diameter"),
     "crosshead_pin": ("crosshead_pin_diameter", ""),
     "journals": ("journal_diameter", "journal_diameter"),
@@ -233,11 +233,18 @@ class Friction(Record):
     journal_diameter: float | None = field(
         "length", "Diameter of the journals", "d_j", above=0, absent="that of `crankshaft`", needs="journals"
     )
+    block: float | None = field(
+        "ratio", "Coefficient of friction of the sliding block in a Scotch yoke", "f_b", least=0
+    )
+    guides: float | None = field(
+        "ratio", "Coefficient of friction of the two guides of a Scotch yoke, at `guide_length`", "f_g", least=0
+    )
 
     def rules(self) -> Iterator[Rule]:
         yield from self.contradictions()
-        none = not self.of_pins and self.crosshead is None and self.rings is None and self.constant is None
-        given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin' or 'journals'"
+        sliding = (self.crosshead, self.rings, self.constant, self.block, self.guides)
+        none = not self.of_pins and all(one is None for one in sliding)
+        given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', 'journals', 'block' or 'guides'"
         yield Rule((), none, f"no friction is given; leave 'friction' out or give {given}")
 
     @property
@@ -246,13 +253,19 @@ class Friction(Record):
         given = (self.crank_pin, self.crosshead_pin, self.journals)
         return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
 
-    def faults_beside(self, shaft: "Crankshaft | None") -> Iterator[Fault]:
-        """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft."""
+    def faults_beside(self, shaft: "Crankshaft | None", pin_of_yoke: float | None) -> Iterator[Fault]:
+        """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft.
+
+        pin_of_yoke: diameter in m of the crank pin that a Scotch yoke gives.
+        """
         for name in self.of_pins:
             here, there = _PINS[name]
             in_shaft = there and shaft is not None and vars(shaft)[there] is not None
             given = vars(self)[here] is not None
-            if not given and not in_shaft:
+            if name == "crank_pin" and pin_of_yoke is not None:
+                if given:
+                    yield Fault((here,), "'pin_diameter' gives the same; leave one of them out")
+            elif not given and not in_shaft:
                 needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
                 yield Fault((name,), f"{needed}, or give '{there}' in 'crankshaft'" if there else needed)
             elif given and in_shaft:

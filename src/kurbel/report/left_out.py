@@ -37,7 +37,8 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
 
     of_rod, works = {}, {}
     if mechanism.slides and not mechanism.has_rod:
-        known = mechanism.known_across and cylinder.inclination is not None and cylinder.masses
+        pressed = cylinder.inclination is not None and cylinder.masses
+        known = mechanism.known_across and (pressed or (cylinder.friction and cylinder.friction.block))
         of_rod = {"S" if known else "S, N": f"a {mechanism.name} has no connecting rod"}
     # of a ram without a piston nobody expects an indicator
     if mechanism.slides and (cylinder.pistons or not cylinder.ram_force):

@@ -27,7 +27,7 @@ from kurbel.report.pictures import PICTURES, pictures_if_any
 from kurbel.report.tables import Report, stepped
 from kurbel.report.turning import flywheel_report, harmonics_report, torsion_report
 from kurbel.solver.case import Case
-from kurbel.solver.forces import CylinderForces
+from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 
 Thing = TypeVar("Thing")
 Given = Sequence[tuple[str, str]]
@@ -185,11 +185,11 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
 def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[str, str, str], ...]:
     try:
         left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
+        places = {name: place for name, (_, place) in {**SLIDING, **RUBBING}.items()}
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            ("Friction of the crosshead", -(friction.get("crosshead") or 0.0)),
-            ("Friction of the piston rings", -(friction.get("rings") or 0.0)),
+            *((f"Friction {place}", -(friction.get(name) or 0.0)) for name, place in places.items()),
             ("Friction given as a force", -(friction.get("constant") or 0.0)),
             ("What the output works against", forces.resistance_work),
         ]

@@ -1,7 +1,7 @@
 """The cycle of one cylinder, or of that cylinder of many machines, in smooth pieces, and what is sampled on them.
 
 The cycle is cut where something bends or jumps, and halved until all forces are polynomials on every piece. Where the
-crosshead rubs, it is cut also where the guide force changes sides; where pins rub, where their loads turn.
+crosshead rubs, it is cut also where the guide force changes sides; where pins or a yoke rub, where their loads turn.
 """
 
 from __future__ import annotations
@@ -70,7 +70,8 @@ class SampledCylinder:
         if drive.has_force and some(drive.ring_surface != 0):
             pieces, (across,) = refined(pieces, lambda one: _known(one, State.on(drive, one).across_piston))
             pieces = pieces.split(pieces.zeros(across))
-        return _cut_at_sides(drive, pieces) if drive.has_force and (drive.rubs or drive.pin_friction) else pieces
+        by_load = drive.rubs or drive.yoke_rubs or drive.pin_friction
+        return _cut_at_sides(drive, pieces) if drive.has_force and by_load else pieces
 
     @property
     def breaks(self) -> Array:
@@ -111,24 +112,30 @@ def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
 
     def before(some: Pieces) -> list[Array]:
         state = State.on(drive, some).unrubbed
-        return _known(some, state.rod_angle and state.guide_sense, state.curvature, state.P_gas, state.P)
+        return _known(some, _sense(state), state.curvature, state.P_gas, state.P)
 
     def rubbed(some: Pieces) -> list[Array]:
         state = State.on(drive, some)
-        return _known(some, state.rod_angle and state.guide_sense, *(state.rubbing or ()))
+        return _known(some, _sense(state), *(state.rubbing or ()))
 
     pieces, (sense, *_) = refined(pieces, before)
-    if drive.rubs:
+    if drive.rubs or drive.yoke_rubs:
         pieces = pieces.split(pieces.zeros(sense))
     if drive.pin_friction is None:
         return pieces
     _refuse_locking(drive, pieces)
     # where the load of a pin passes through zero, its magnitude has a kink
     unrubbed = State.on(drive, pieces).unrubbed
-    passed = [pieces.zeros(load) for load in (on_pin(unrubbed).T, on_crosshead_pin(unrubbed).D)]
+    loads = [on_pin(unrubbed).T, *([on_crosshead_pin(unrubbed).D] if unrubbed.rod_angle else [])]
+    passed = [pieces.zeros(load) for load in loads]
     pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
     pieces, (sense, *_) = refined(pieces, rubbed)
     return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
+
+
+def _sense(state: State) -> Any:
+    """Return the force in N whose sign decides on which side a guide, or the block of a Scotch yoke, is pressed."""
+    return state.guide_sense if state.rod_angle else state.after_steady_friction
 
 
 def _refuse_locking(drive: Drive, pieces: Pieces) -> None:

@@ -14,6 +14,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.parts import GasOnRings
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.pieces import Angles, Pieces
 from kurbel.solver.gas import PistonGas
@@ -66,8 +67,9 @@ class Drive:
     is left out; resistance: what the output works against, a force or, on what only swings, a moment; resistance_work:
     what it takes out in a cycle, negative; way: path of what slides, there and back, per cycle; crosshead_friction: f,
     0 without one; rubs: whether the crosshead rubs on its guide; guide_area: of its shoe, None where it is not given;
-    ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas presses;
-    steady_friction: that and what is given as a force.
+    yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether any of them
+    is not 0; ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
+    presses; steady_friction: that and what is given as a force.
     """
 
     def __init__(
@@ -112,6 +114,9 @@ class Drive:
         given = (friction.crosshead, friction.constant) if friction else (None, None)
         self.crosshead_friction, constant = (0.0 if one is None else one for one in given)
         self.rubs = some(self.crosshead_friction != 0)
+        block, guides = (friction.block, friction.guides) if friction else (None, None)
+        self.yoke_friction = (0.0 if block is None else block, 0.0 if guides is None else guides)
+        self.yoke_rubs = any(some(one != 0) for one in self.yoke_friction)
         guide, rings = (friction.guide, friction.rings) if friction else (None, None)
         self.guide_area: Any = guide.length * guide.width if guide else None
         self.ring_force, self.ring_surface = 0.0, 0.0
@@ -211,6 +216,8 @@ class Drive:
         if friction is None or not (friction.crank_pin or friction.crosshead_pin or friction.journals):
             return None
         pin, journal = friction.crank_pin_diameter, friction.journal_diameter
+        if isinstance(self.mechanism, ScotchYoke) and self.mechanism.pin_diameter is not None:
+            pin = self.mechanism.pin_diameter
         given = (
             (friction.crank_pin, shaft.pin_diameter if shaft and pin is None else pin),
             (friction.crosshead_pin, friction.crosshead_pin_diameter),

@@ -26,11 +26,16 @@ from kurbel.solver.newton import residual
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
 
-_SLIDING = {"crosshead": ("K", "at the crosshead"), "rings": ("R", "at the piston rings")}
-_RUBBING = {
+SLIDING = {
+    "crosshead": ("K", "at the crosshead"),
+    "rings": ("R", "at the piston rings"),
+    "guides": ("F", "at the guides of the yoke"),
+}
+RUBBING = {
     "crank_pin": ("Z", "in the crank pin"),
     "crosshead_pin": ("H", "in the crosshead pin"),
     "journals": ("J", "in the journals of the throw"),
+    "block": ("B", "at the block in the yoke"),
 }
 """Key of a coefficient of friction -> index of the symbols, and where it rubs."""
 
@@ -235,7 +240,7 @@ class CylinderForces(SampledCylinder, Results):
         ),
     )
     loss_of_sliding = values_for(
-        _SLIDING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+        SLIDING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
     )
     loss_crosshead_redtenbacher = value(
         "½ λ f",
@@ -248,7 +253,7 @@ class CylinderForces(SampledCylinder, Results):
         after="loss_crosshead",
     )
     pin_work = values_for(
-        _RUBBING,
+        RUBBING,
         "work_*",
         "A_f,*",
         "energy",
@@ -256,7 +261,7 @@ class CylinderForces(SampledCylinder, Results):
         of=lambda forces, name: forces.friction_works.get(name),
     )
     pin_loss = values_for(
-        _RUBBING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
+        RUBBING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
     )
     energy_residual = value(
         "ΔA/A",
@@ -430,9 +435,12 @@ class CylinderForces(SampledCylinder, Results):
                 found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
             found["constant"] = friction.constant * drive.way
-        if friction.of_pins and drive.has_force:
-            losses = dict(zip(_RUBBING, self.samples.pin_losses or (0.0, 0.0, 0.0)))
-            found |= {name: over_cycle(losses[name]) for name in _RUBBING if name in friction.of_pins}
+        given = (*friction.of_pins, *(["block"] if friction.block is not None else []))
+        if drive.has_force:
+            found |= {name: over_cycle(self.samples.losses.get(name, 0.0)) for name in given}
+        if friction.guides is not None and drive.has_force:
+            samples = self.samples
+            found["guides"] = over_cycle(samples.drag_of_guides * (samples.slope * samples.direction))
         return found
 
     def energy_left(self) -> Any:

@@ -10,6 +10,11 @@ What acts on the crosshead, drawn for a stroke line to the left, the shaft on th
     S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by its work: T R dφ = P dx
 
 P here is what friction leaves. An exact rod adds the side force of its couple, and so do pins that rub.
+
+In a Scotch yoke P presses the block against the yoke and, R sin φ beside the stroke line, the yoke against two guides:
+
+    guides 2 f_g |P R sin φ|/l_g along the stroke, against the motion
+    block  f_b |P| across it, against R ω cos φ: on the pin −f_b |P| sgn cos φ, on the guides the same
 """
 
 from __future__ import annotations
@@ -24,6 +29,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Indices
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
@@ -356,8 +362,17 @@ class State(MotionColumns):
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
     @cached_property
+    def _forward(self) -> Array:
+        """+1 where the crank pin moves up across the stroke line, 270° … 90°, else −1."""
+        turned = np.mod(self.within, 360.0)
+        return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
+
+    @cached_property
     def _friction_side(self) -> Any:
-        """Side force in N of the friction in both pins on the rod; 0 without it."""
+        """Side force in N of the friction in both pins on the rod, or of the block in a Scotch yoke; 0 without it."""
+        block, _ = self.drive.yoke_friction
+        if self.rod_angle is None:
+            return np.abs(self.along_rod) * self._forward * block if self.drive.yoke_rubs else 0.0
         rubbing = self.rubbing
         return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
 
@@ -376,11 +391,7 @@ class State(MotionColumns):
         drive, friction = self.drive, self.drive.pin_friction if self.rubs else None
         if friction is None or self.P is None:
             return None
-        pin, crosshead_pin = on_pin(self.unrubbed), on_crosshead_pin(self.unrubbed)
-        # the rod turns by −dψ: forward where it swings back
-        turned = np.mod(self.within, 360.0)
-        swings = np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
-
+        pin = on_pin(self.unrubbed)
         bearings: Any = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [one.name for one in drive.machine.cylinders]
@@ -388,7 +399,9 @@ class State(MotionColumns):
             count = len(throw.cylinders)
             carried = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
             bearings = sum(np.hypot(*force) for force in carried) / count
-        at_crosshead = np.hypot(*crosshead_pin) * (swings * friction.crosshead_pin)
+        at_crosshead: Any = 0.0
+        if self.rod_angle is not None:  # the rod turns by −dψ: forward where it swings back
+            at_crosshead = np.hypot(*on_crosshead_pin(self.unrubbed)) * (self._forward * friction.crosshead_pin)
         return Rubbing(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
 
     # the guide
@@ -408,7 +421,7 @@ class State(MotionColumns):
         return drive.steady_friction + by_gas
 
     @cached_property
-    def _after_steady_friction(self) -> Any:
+    def after_steady_friction(self) -> Any:
         """Piston force in N less the friction of rings and what is given as a force; acts on crosshead and rod."""
         steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
@@ -417,7 +430,7 @@ class State(MotionColumns):
     def guide_sense(self) -> Any:
         """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
-        return self._after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
+        return self.after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
 
     @cached_property
     def guide_side(self) -> Array:
@@ -435,6 +448,15 @@ class State(MotionColumns):
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
 
+    @cached_property
+    def drag_of_guides(self) -> Any:
+        """Friction in N of the two guides of a Scotch yoke, against the motion; 0 without it."""
+        yoke, (_, f) = self.mechanism, self.drive.yoke_friction
+        if not isinstance(yoke, ScotchYoke) or not some(f != 0):
+            return 0.0
+        pair = yoke.guide_pair_factor(self.angle)
+        return np.abs(self.after_steady_friction * pair) * (2 * f)
+
     @column("N", "force", extremes=("forces",), called="guide force", peak=True)
     def N(self) -> Any:
         """Force on the guide (yoke frame: on the piston rod), positive on the side loaded while an engine drives.
@@ -446,10 +468,11 @@ class State(MotionColumns):
         if self.P is None:
             return None
         if self.rod_angle is None:
-            return self.filled(drive.weight[1]) if drive.weight and self.mechanism.known_across else None
+            known = self.mechanism.known_across and (drive.weight or drive.yoke_rubs)
+            return self.filled(drive.guide_weight - self._friction_side) if known else None
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
-            return self._after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
+            return self.after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
         locked = self.below <= 0
         if locked.any() and drive.index is None:
             raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
@@ -523,7 +546,7 @@ class State(MotionColumns):
         if self._output is None:
             return None
         push = self._output * (self.slope / self.mechanism.crank) + self._rod_tangential
-        return push if self.rubbing is None else push - self.angle.cos * self._friction_side
+        return push - self.angle.cos * self._friction_side
 
     F_friction = value(
         "F_f",
@@ -532,7 +555,7 @@ class State(MotionColumns):
         lambda state: (
             None
             if state.P is None or state.drive.cylinder.friction is None
-            else state.filled((state.crosshead_drag + state.steady_friction) * -state.direction)
+            else state.filled((state.crosshead_drag + state.drag_of_guides + state.steady_friction) * -state.direction)
         ),
     )
 
@@ -552,18 +575,21 @@ class State(MotionColumns):
         return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 
     @cached_property
-    def pin_losses(self) -> tuple[Any, Any, Any] | None:
-        """Torque in N m lost by friction in crank pin, crosshead pin and journals; None without it."""
-        found = self.rubbing
-        if found is None:
-            return None
-        return found.at_crank * (1 + self.rod_slope), found.at_crosshead * self.rod_slope, found.journals
+    def losses(self) -> dict[str, Any]:
+        """Torque in N m lost by friction in pins, journals and the block of a yoke, by the keys in `friction`."""
+        found, lost = self.rubbing, dict[str, Any]()
+        if found is not None:
+            lost["crank_pin"] = found.at_crank * (1 + self.rod_slope)
+            lost["crosshead_pin"], lost["journals"] = found.at_crosshead * self.rod_slope, found.journals
+        if self.drive.yoke_rubs:
+            lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
+        return lost
 
     M = value(
         "M",
         "torque",
         "Torque on the shaft",
-        lambda state: None if state._output is None else state._free_torque - sum(state.pin_losses or (), start=0.0),
+        lambda state: None if state._output is None else state._free_torque - sum(state.losses.values(), start=0.0),
     )
 
 
