@@ -47,7 +47,8 @@ def polar_force(source: Source) -> Iterator[Panel]:
     cuts off T on the vertical through the shaft (R Abb. 1063)."""
     drive = source.results.drive
     mechanism = drive.mechanism
-    known = isinstance(mechanism, (SliderCrank, ScotchYoke)) and drive.rod is None and drive.pin_friction is None
+    by_rod = drive.rod is None and drive.pin_friction is None and not drive.yoke_rubs
+    known = isinstance(mechanism, (SliderCrank, ScotchYoke)) and by_rod
     if not known or not source.having("T"):
         return
 
