@@ -107,3 +107,10 @@ def test_a_batch_is_its_machines() -> None:
 def test_contradictions(text: str, message: str) -> None:
     with pytest.raises(MachineFileError, match=message):
         kurbel.loads(text)
+
+
+def test_a_batch_varies_the_coefficient_of_the_pin() -> None:
+    machine = kurbel.loads(TEXT + "friction: {crank_pin: 0.05}\n")
+    found = kurbel.sweep(machine, {"friction.crank_pin": [0.0, 0.04, 0.05, 0.06]}, ["work_crank_pin"])
+    alone = [case(f"crank_pin: {f}").cylinders[0].work_crank_pin for f in (0.0, 0.04, 0.05, 0.06)]
+    assert found["work_crank_pin"] == pytest.approx(alone, rel=1e-12, abs=1e-12)

@@ -213,7 +213,10 @@ class Drive:
     def pin_friction(self) -> PinFriction | None:
         """Friction in the pins of the rod and in the journals; None where no coefficient of it is given."""
         friction, shaft = self.cylinder.friction, self.machine.crankshaft
-        if friction is None or not (friction.crank_pin or friction.crosshead_pin or friction.journals):
+        if friction is None:
+            return None
+        coefficients = (friction.crank_pin, friction.crosshead_pin, friction.journals)
+        if not any(one is not None and some(one != 0) for one in coefficients):
             return None
         pin, journal = friction.crank_pin_diameter, friction.journal_diameter
         if isinstance(self.mechanism, ScotchYoke) and self.mechanism.pin_diameter is not None:

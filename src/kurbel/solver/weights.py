@@ -81,7 +81,8 @@ def wheels_of(machine: Machine) -> tuple[Any, ...]:
     """Return the places in m of the counterweights in the wheels of a locomotive; () of another machine."""
     if machine.locomotive is None:
         return ()
-    middle, half = middle_of(machine) or 0.0, machine.locomotive.wheel_distance / 2
+    middle, half = middle_of(machine), machine.locomotive.wheel_distance / 2
+    middle = 0.0 if middle is None else middle
     return middle - half, middle + half
 
 
