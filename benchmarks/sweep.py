@@ -20,8 +20,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, asked_answers
-from kurbel.designs.binding import Binder, Lot
+from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, requested_answers
+from kurbel.designs.binding import Batch, Binder
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.machine_file import source
@@ -54,18 +54,18 @@ def seconds(task: Callable[[], object]) -> float:
     return min(times)
 
 
-def designs(name: str, count: int) -> list[Lot]:
+def designs(name: str, count: int) -> list[Batch]:
     """Machines like one that is shipped, with rods and speeds of every length and size."""
     binder = Binder(source.read(CONFIGS / f"{name}.yaml"), ("rod_ratio", "speed"), ("5", "50 rpm"))
-    return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).lots
+    return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).batches
 
 
-def at_speeds(name: str, count: int) -> list[Lot]:
+def at_speeds(name: str, count: int) -> list[Batch]:
     """Machines like one that is shipped, at so many speeds."""
     origin = source.read(CONFIGS / f"{name}.yaml")
     speed = 60 * (read_machine(origin).speed or 1.0)
     binder = Binder(origin, ("speed",), (f"{speed} rpm",))
-    return binder.bound([(f"{speed * share:.6f} rpm",) for share in np.linspace(0.9, 1.1, count)]).lots
+    return binder.bound([(f"{speed * share:.6f} rpm",) for share in np.linspace(0.9, 1.1, count)]).batches
 
 
 def told(name: str, many: float, count: int, single: float | None = None) -> None:
@@ -74,28 +74,28 @@ def told(name: str, many: float, count: int, single: float | None = None) -> Non
     print(f"{name:<48}{many / count * 1e6:>10.0f} us{ratio}")
 
 
-def beside_alone(name: str, lots: list[Lot], asked: list[Answer]) -> None:
+def beside_alone(name: str, batches: list[Batch], requested: list[Answer]) -> None:
     """Compare machines side by side with the same ones alone."""
-    alone = [lots[0].one(place) for place in range(SINGLE)]
+    alone = [batches[0].one(place) for place in range(SINGLE)]
     with np.errstate(all="ignore"):
-        single = seconds(lambda: [answered_alone(machine, asked) for machine in alone]) / SINGLE
-    told(name, seconds(lambda: answers_of(lots, asked)), AT_ONCE, single)
+        single = seconds(lambda: [answered_alone(machine, requested) for machine in alone]) / SINGLE
+    told(name, seconds(lambda: answers_of(batches, requested)), AT_ONCE, single)
 
 
 def main() -> None:
     """Print the table."""
     rows = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     machines = designs(WATERWORKS, AT_ONCE)
-    every = list(asked_answers(machines[0].one(0), ()))
+    every = list(requested_answers(machines[0].one(0), ()))
     motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
     beside_alone(f"key values of forces: {WATERWORKS}", machines, every)
     beside_alone(f"motion alone: {WATERWORKS}", machines, motion)
     for name in OTHERS:
-        lots = designs(name, AT_ONCE)
-        beside_alone(f"key values of forces: {name}", lots, list(asked_answers(lots[0].one(0), ())))
+        batches = designs(name, AT_ONCE)
+        beside_alone(f"key values of forces: {name}", batches, list(requested_answers(batches[0].one(0), ())))
     for name, columns in CHAPTERS:
-        lots = at_speeds(name, AT_ONCE)
-        beside_alone(f"{', '.join(columns)}: {name}", lots, list(asked_answers(lots[0].one(0), columns)))
+        batches = at_speeds(name, AT_ONCE)
+        beside_alone(f"{', '.join(columns)}: {name}", batches, list(requested_answers(batches[0].one(0), columns)))
     told("binding to the file", seconds(lambda: designs(WATERWORKS, AT_ONCE)), AT_ONCE)
     vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
     begin = time.process_time()

@@ -161,7 +161,7 @@ def test_an_interrupt_leaves_whole_rows_and_the_old_file(jobs: str, tmp_path: Pa
     file.write_text("old")
     process = in_the_midst(file, jobs)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-    stderr = process.communicate()[1]
+    stderr = process.communicate(timeout=60)[1]
     lines = part(file).read_text().splitlines(keepends=True)
     assert stderr.rstrip() == f"{part(file)} holds {len(lines) - 1} rows; run again with --resume to continue"
     assert (process.returncode, file.read_text()) == (130, "old")
