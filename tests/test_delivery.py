@@ -14,7 +14,6 @@ import kurbel as api
 from kurbel.cli import kurbel
 from kurbel.designs.answers import answers_in, requested_answers
 from kurbel.designs.binding import Binder
-from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine_file.source import decode
 from kurbel.solver.case import Case
 
@@ -240,12 +239,6 @@ def test_a_row_for_each_load_case(command: str) -> None:
             assert table["columns"][0]["values"][place] == value
 
 
-def test_cases_need_cases() -> None:
-    assert "the file has no 'cases'" in run("delivery", CONFIGS / "triplex-pump.yaml", "--cases").stderr
-    both = run("forces", CONFIGS / "compressor-two-stage.yaml", "--cases", "--case", "both ends")
-    assert both.exit_code == 2
-
-
 def test_they_are_in_the_report() -> None:
     page = run("report", CONFIGS / "compressor-two-stage.yaml", "--step", "90").stdout
     assert page.count("one end unloaded") >= 4
@@ -270,33 +263,6 @@ def test_a_batch_is_its_machines_one_by_one() -> None:
         alone_values = answers_in(Case(batch.one(place)), wanted)
         for one, other in zip(together, alone_values):
             assert np.broadcast_to(one, 4)[place] == pytest.approx(other, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (ENDS.replace("35 °C", "35"), "inlet_temperature: 35 has no unit"),
-        (ENDS.replace("inlet_temperature: 35 °C, ", ""), "'inlet_temperature' is missing"),
-        (
-            ENDS.replace("mirrored", "{constant: {expansion: 1 bar, compression: 2 bar}, unloaded: true}"),
-            "cannot be combined",
-        ),
-        (ENDS.replace("clearance: 10 %", "clearance: 20 %, expansion_exponent: 0.5"), "nothing is drawn in"),
-    ],
-)
-def test_files_that_are_refused(text: str, message: str) -> None:
-    with pytest.raises(MachineFileError, match=message):
-        api.loads(text)
-
-
-def test_a_vessel_that_would_empty_and_a_machine_that_pumps_nothing() -> None:
-    pipe = "pump: {delivery_pipe: {length: 10 m, diameter: 50 mm, vessel: {volume: 0.01 l}}}"
-    with pytest.raises(UsageError, match=r"pump\.delivery_pipe\.vessel\.volume: .* would empty"):
-        _ = api.solve(api.loads(machine("three single-acting", 5, pipe))).delivery.pump
-    with pytest.raises(KurbelError, match="delivers nothing: no piston is driven"):
-        _ = api.solve(api.load(CONFIGS / "gas-engine.yaml")).delivery
-    ran = run("delivery", CONFIGS / "gas-engine.yaml")
-    assert (ran.exit_code, "delivers nothing" in ran.stderr) == (2, True)
 
 
 @pytest.mark.parametrize("written", ["35 °C", "308.15 K", "95 °F", "35 degC"])

@@ -116,21 +116,6 @@ def test_several_cylinders_each_with_its_own_part() -> None:
     assert "Key values: valve gear" in run("motion", "-", text=text).stdout
 
 
-@pytest.mark.parametrize(
-    ("column", "message"),
-    [
-        ("P", "'P' is no column of kurbel motion (this machine has phi (φ), z, psi (ψ), x, x_book (x_0); other "),
-        ("theta", "'theta' is left out for this machine"),
-        ("c_m", "'c_m' is a key value and no column: a line below the table, --key-values | grep 'c_m '"),
-        ("thetta", "did you mean 'theta'?"),
-    ],
-)
-def test_columns_that_are_not_there(column: str, message: str) -> None:
-    result = run("motion", "-", "--columns", column, text=SLIDER)
-    assert result.exit_code == 2
-    assert message in result.stderr
-
-
 def test_a_mechanism_from_outside_needs_one_file_and_one_line(tmp_path: Path) -> None:
     """The one of the page on architecture, as it stands there."""
     page = (FOLDER.parent / "docs" / "architecture.md").read_text(encoding="utf-8")

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
-from imported import modules_after
 from kurbel.accuracy import trials
 from kurbel.accuracy.trials import Trial, better, by_fit, by_gauss, equidistant, errors, examined, float_roots, savings
 from kurbel.machine_file import loads
@@ -159,10 +157,3 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert found[0].ratio == 1.0
     bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
     assert bare == ["everything", "no speed either: positions alone"]
-
-
-def test_mpmath_belongs_to_accuracy_alone(tmp_path: Path) -> None:
-    bare = tmp_path / "bare.yaml"
-    bare.write_text(BARE, encoding="utf-8")
-    absent = ("kurbel.accuracy", "mpmath", "scipy", "matplotlib", "rich")
-    assert modules_after(["motion", str(bare)], ["forces", str(bare)]).isdisjoint(absent)

@@ -32,12 +32,6 @@ masses: {{piston: 200 kg}}
 friction: {{crosshead: 0.06}}
 inclination: 0 deg
 """
-GAS_ENGINE = """
-{speed: 300 rpm, cycle: four-stroke, stroke: 600 mm, rod: 1400 mm, offset: 20 mm, bore: 400 mm, inclination: 60 deg,
- masses: {piston: 240 kg}, indicator: {head_end: {unit: bar, interpolate: polytropic, clearance: 0.2,
- intake: [[0, 0], [1, 0]], compression: [[1, 0], [0, 9]], expansion: [[0, 26], [1, 2]], exhaust: [[1, 0.1], [0, 0.1]]}},
- friction: {crosshead: 0.05}}
-"""
 
 
 @pytest.fixture(autouse=True)
