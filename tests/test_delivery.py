@@ -12,10 +12,6 @@ from click.testing import CliRunner, Result
 
 import kurbel as api
 from kurbel.cli import kurbel
-from kurbel.designs.answers import answers_in, requested_answers
-from kurbel.designs.binding import Binder
-from kurbel.machine_file.source import decode
-from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
@@ -247,24 +243,6 @@ def test_they_are_in_the_report() -> None:
 # many machines, limits, bad input
 
 
-def test_a_batch_is_its_machines_one_by_one() -> None:
-    text = machine(
-        "three single-acting",
-        5,
-        "pump: {suction_pipe: {length: 5 m, diameter: 80 mm}, delivery_pipe: {length: 9 m, diameter: 50 mm, "
-        "vessel: {volume: 0.2 l, exponent: 1.2}}}\n",
-    )
-    asked = ["flow_mean", "flow_max", "volume_fluctuation", "vessel_swing", "suction_lift_max", "acceleration_head_max"]
-    binder = Binder(decode("<text>", text.encode()), ["speed"], ["60 rpm"])
-    (batch,) = binder.bound([["50 rpm"], ["60 rpm"], ["70 rpm"], ["80 rpm"]]).batches
-    wanted = [one for one in requested_answers(batch.one(0), asked) if one.subject == "whole machine"]
-    together = answers_in(Case(batch.machine, 4), wanted)
-    for place in range(4):
-        alone_values = answers_in(Case(batch.one(place)), wanted)
-        for one, other in zip(together, alone_values):
-            assert np.broadcast_to(one, 4)[place] == pytest.approx(other, rel=1e-12)
-
-
 @pytest.mark.parametrize("written", ["35 °C", "308.15 K", "95 °F", "35 degC"])
 def test_temperatures(written: str) -> None:
     gas = api.loads(ENDS.replace("35 °C", written)).gas
@@ -272,20 +250,30 @@ def test_temperatures(written: str) -> None:
     assert gas.inlet_temperature == pytest.approx(308.15, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("key", "values"),
-    [
-        ("gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45"]),
-        ("gas.molar_mass", ["28 g/mol", "28.5 g/mol", "29 g/mol", "29.5 g/mol"]),
-        ("gas.inlet_temperature", ["10 °C", "15 °C", "20 °C", "25 °C"]),
-    ],
+PIPES = (
+    "pump: {suction_pipe: {length: 5 m, diameter: 80 mm}, delivery_pipe: {length: 9 m, diameter: 50 mm, "
+    "vessel: {volume: 0.2 l, exponent: 1.2}}}\n"
 )
-def test_the_gas_of_many_compressors_is_that_of_each(key: str, values: list[str]) -> None:
+PUMP = machine("three single-acting", 5, PIPES)
+TWO_STAGES = CONFIGS / "compressor-two-stage.yaml"
+FLOWS = "flow_mean flow_max volume_fluctuation vessel_swing suction_lift_max acceleration_head_max"
+GAS = "mass_flow isentropic_power discharge_temperature capacity_normal"
+
+
+@pytest.mark.parametrize(
+    ("file", "key", "values", "columns"),
+    [
+        (PUMP, "speed", ["50 rpm", "60 rpm", "70 rpm", "80 rpm"], FLOWS),
+        (TWO_STAGES, "gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45"], GAS),
+        (TWO_STAGES, "gas.molar_mass", ["28 g/mol", "28.5 g/mol", "29 g/mol", "29.5 g/mol"], GAS),
+        (TWO_STAGES, "gas.inlet_temperature", ["10 °C", "15 °C", "20 °C", "25 °C"], GAS),
+    ],
+    ids=["pump", "exponent", "molar mass", "temperature"],
+)
+def test_many_machines_answer_as_each(file: object, key: str, values: list[str], columns: str) -> None:
     """Arrays of gas constants and exponents were asked whether they are true."""
-    columns = ["mass_flow", "isentropic_power", "discharge_temperature", "capacity_normal"]
-    file = CONFIGS / "compressor-two-stage.yaml"
-    together = api.sweep(file, {key: values}, columns)
+    together = api.sweep(file, {key: values}, columns.split())
     for row, value in enumerate(values):
-        alone = api.sweep(file, {key: [value]}, columns)
+        alone = api.sweep(file, {key: [value]}, columns.split())
         for name in set(together) - {"failure", "keeps"}:
             assert together[name][row] == pytest.approx(alone[name][0], rel=1e-12), name

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import re
@@ -112,15 +110,6 @@ def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engi
     assert min(data) > 1e6 * max(own)
 
 
-def test_csv_has_one_head_for_all_sections(formatted: Callable[..., bytes]) -> None:
-    rows = list(csv.DictReader(io.StringIO(formatted("-f", "csv").decode())))
-    assert {row["table"] for row in rows} == {"numerical_error", "model_error", "data_error", "leaving_out"}
-    assert all(row["scene"] == "engine" for row in rows)
-    numerical = [row for row in rows if row["table"] == "numerical_error"]
-    assert all(float(row["median_ms"]) > 0 and float(row["error"]) >= 0 for row in numerical)
-    assert all(row["cause"] == "" for row in numerical)
-
-
 def test_a_mechanism_without_a_reference_says_so() -> None:
     machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
     result = run("-", "--quick", machine=machine)
@@ -183,12 +172,6 @@ def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatc
     assert "FAILED" in result.stdout
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases[:1])
     assert run("--extremes").exit_code == 0
-
-
-def test_ascii_output(formatted: Callable[..., bytes]) -> None:
-    printed = formatted(charset="ascii")
-    assert b"dE " in printed
-    assert b"?" not in printed
 
 
 IDLE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"

@@ -65,15 +65,6 @@ def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
     assert driven.at(ANGLES).T_inertia == pytest.approx(lossless.at(ANGLES).T_inertia / eta, rel=1e-13, abs=1e-9)
 
 
-def test_inertia_line_of_tolle() -> None:
-    """For a fixed λ the inertia T-line is one curve times G v²/(gR), and its mean is zero."""
-    slow, fast = turning(ENGINE), turning(ENGINE, rpm=150)
-    assert fast.at(ANGLES).T_inertia == pytest.approx(9 * slow.at(ANGLES).T_inertia, rel=1e-12, abs=1e-9)
-    assert fast.M_mean == pytest.approx(slow.M_mean, rel=1e-12)
-    without = turning(replace(ENGINE, masses=None))
-    assert slow.at(ANGLES).T - slow.at(ANGLES).T_inertia == pytest.approx(without.at(ANGLES).T, rel=1e-12, abs=1e-8)
-
-
 LYING = Friction(crosshead=0.1, rings=Rings(3, 0.02, 3e4, 0.08))
 ROD = ConnectingRod(220.0, center_of_gravity=1.3, inertia=90.0)
 
