@@ -88,17 +88,6 @@ def test_first_order_rows(ratio: float, phi: float) -> None:
     )
 
 
-@given(PHI)
-def test_infinite_rod_is_harmonic(phi: float) -> None:
-    report = zusammenstellung((math.inf,), tuple(ROWS), (phi,), "exact")
-    angle = math.radians(phi)
-    expected = {"b": math.cos(angle), "c": math.sin(angle), "x": 1 - math.cos(angle), "psi": 0, "S": 1, "N": 0,
-                "D": math.cos(angle), "T_b": -math.sin(2 * angle) / 2,
-                "x/s": (1 - math.cos(angle)) / 2}  # fmt: skip
-    for name, value in expected.items():
-        assert values(report, math.inf, ROWS[name])[phi] == pytest.approx(value, abs=1e-14)
-
-
 @pytest.mark.parametrize("ratio", ["1.0000000000000002", "1e300", "1.7976931348623157e308"])
 def test_extreme_ratios_stay_finite(ratio: str) -> None:
     content = json.loads(run("--ratio", ratio, "--rows", "b,c,x,psi,S,N,D,T_b,x/s", "-f", "json"))
