@@ -199,6 +199,14 @@ class Pieces:
         found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
         return np.maximum(found, self.first[machine])
 
+    def kept_of(self, others: Pieces) -> tuple[Indices, Indices, Indices]:
+        """Return which of these pieces are among others as they are, which of those these are, and which are new."""
+        row = others.holding(self.machine, self.middle)
+        same = (others.offset[row] == self.offset) & (others.half[row] == self.half)
+        same &= others.right_angle[row] == self.right_angle
+        kept = np.flatnonzero(same)
+        return kept, row[kept], np.flatnonzero(~same)
+
     # integrals, zeros and extremes of samples (nodes, pieces)
 
     def largest(self, values: Array) -> Array:

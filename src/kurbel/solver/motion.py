@@ -103,17 +103,29 @@ class MotionColumns(AtAngles):
         self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
-        self.coordinate = mechanism.coordinate(self.posed)
-        self.way = self.coordinate - mechanism.start
-        self.curvature = mechanism.curvature(self.posed)
         self._of_point = of_point
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @cached_property
+    def coordinate(self) -> Any:
+        """Coordinate of the output in m, of what only swings in radians."""
+        return self.mechanism.coordinate(self.posed)
+
+    @cached_property
+    def way(self) -> Any:
+        """Displacement from the inner dead centre in m, of what only swings in radians."""
+        return self.coordinate - self.mechanism.start
+
+    @cached_property
     def slope(self) -> Any:
         """Slope dx/dφ in m per radian."""
         return self.mechanism.slope(self.posed)
+
+    @cached_property
+    def curvature(self) -> Any:
+        """Curvature d²x/dφ² in m per radian squared."""
+        return self.mechanism.curvature(self.posed)
 
     @cached_property
     def rod_slope(self) -> Any:

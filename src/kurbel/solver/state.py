@@ -19,7 +19,7 @@ In a Scotch yoke P presses the block against the yoke and, R sin φ beside the s
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -112,11 +112,37 @@ class State(MotionColumns):
         """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
-    @property
+    def recut(self, drive: Drive, cut: Pieces, pieces: Pieces) -> State:
+        """Return the state on pieces that were cut again; this one is on them as they were before.
+
+        Of the pieces that are as they were, motion and pressures, which no side of a force changes, are kept.
+        """
+        if cut is pieces:
+            return self
+        kept, source, new = cut.kept_of(pieces)
+        fresh = State.on(drive, cut.taken(new))
+
+        def whole(own: Array, other: Array) -> Array:
+            found = np.empty(cut.degrees.shape)
+            found[:, kept], found[:, new] = own[:, source], other
+            return found
+
+        rod = self.rod_angle and tuple(map(whole, self.rod_angle, fresh.rod_angle))
+        sin, cos = whole(self.angle.sin, fresh.angle.sin), whole(self.angle.cos, fresh.angle.cos)
+        state = State(drive.taken(cut.machine), CrankAngle(cut.degrees, sin, cos, rod), cut.middle)
+        for name, of in _BEFORE_FRICTION.items():
+            if np.shape(own := vars(self).get(name)) == pieces.degrees.shape:
+                vars(state)[name] = whole(own, of(fresh))
+        return state
+
+    @cached_property
     def unrubbed(self) -> State:
         """The same state without friction in pins and journals; this friction is computed from its loads."""
-        friction = self.rubs and self.drive.pin_friction
-        return State(self.drive, self.angle, self.within, rubs=False) if friction else self
+        if not (self.rubs and self.drive.pin_friction):
+            return self
+        state = State(self.drive, self.posed, self.within, rubs=False)
+        vars(state).update({name: one for name, one in vars(self).items() if name in _BEFORE_FRICTION})
+        return state
 
     @property
     def rows(self) -> Mapping[str, Row]:
@@ -591,6 +617,16 @@ class State(MotionColumns):
         "Torque on the shaft",
         lambda state: None if state._output is None else state._free_torque - sum(state.losses.values(), start=0.0),
     )
+
+
+_BEFORE_FRICTION: dict[str, Callable[[State], Any]] = {
+    "coordinate": lambda state: state.coordinate,
+    "slope": lambda state: state.slope,
+    "curvature": lambda state: state.curvature,
+    "P_gas": lambda state: state.P_gas,
+    "across_piston": lambda state: state.across_piston,
+}
+"""What is independent of friction, so that it stays as it is where pieces are cut at the sides of forces."""
 
 
 def on_pin(state: State) -> Vector:
