@@ -17,7 +17,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, shown
+from kurbel.declared.keys import Values
+from kurbel.declared.reading import REFUSED, has_refused, shown
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
@@ -248,13 +249,12 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the shaft line, where other keys could not be read."""
-        shaft: Any = values.get("shaft")
-        cylinders: Any = values.get("cylinders", (values.get("cylinder", REFUSED),))
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+        """Yield what is wrong with the shaft line, where other keys could not be read."""
+        shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        unread = REFUSED in values.values() and isinstance(shaft, tuple) and not unknown
-        return _shaft_faults(shaft, cylinders) if unread else []
+        if has_refused(given.values()) and isinstance(shaft, tuple) and not unknown:
+            yield from map(Rule.of, _shaft_faults(shaft, cylinders))
 
     def rules(self) -> Iterator[Rule]:
         """Yield what must not be of the machine as a whole."""

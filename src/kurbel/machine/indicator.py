@@ -10,7 +10,7 @@ import numpy as np
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, Number, Points, size_faults, unit_name
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Record, Rule, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
@@ -199,12 +199,11 @@ class Card(Record):
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the lines that could be read, where others could not be."""
-        if REFUSED not in values.values():
-            return []
-        lines = {name: value for name, value in values.items() if isinstance(value, list)}
-        return [] if "drawn" in values else _line_faults(lines, 1.0, "")
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        """Yield what is wrong with the lines that could be read, where others could not be."""
+        if has_refused(given.values()) and "drawn" not in given:
+            lines = {name: value for name, value in given.items() if isinstance(value, list)}
+            yield from map(Rule.of, _line_faults(lines, 1.0, ""))
 
     @property
     def flat(self) -> bool:

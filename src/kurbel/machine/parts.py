@@ -38,9 +38,6 @@ class ConnectingRod(Record):
         "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
     )
 
-    def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
-
     @property
     def exact(self) -> bool:
         """Whether the rod is described by centre of gravity and moment of inertia."""
@@ -241,7 +238,6 @@ class Friction(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
         sliding = (self.crosshead, self.rings, self.constant, self.block, self.guides)
         none = not self.of_pins and all(one is None for one in sliding)
         given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', 'journals', 'block' or 'guides'"

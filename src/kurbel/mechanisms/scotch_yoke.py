@@ -69,7 +69,6 @@ class ScotchYoke(Mechanism):
         return yoke_sketch(self.crank, angle)
 
     def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
         yield from finite(self, "crank", "guide_length", "pin_diameter", "pin_length")
 
     @property

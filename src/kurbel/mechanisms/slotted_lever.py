@@ -110,7 +110,6 @@ class SlottedLever(Mechanism):
     def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)
         yield from finite(self, "crank", "frame", "lever")
-        yield from self.contradictions()
         hanging = not (self.slides or forked)
         yield Rule("link", hanging, "needs the end of the lever; give 'lever' too")
         yield from finite(self, "pin_diameter", "pin_length")
