@@ -174,8 +174,8 @@ def explain(error: Any, lines: list[str]) -> Fault:
     mark = error.problem_mark or error.context_mark
     opened = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete
-    here = (mark.line, mark.column) if mark.line < len(lines) else (len(lines) - 1, len(lines[-1]))
-    begin = opened.line, opened.column
+    last = len(lines) - 1, len(lines[-1])
+    here, begin = (min((one.line, one.column), last) for one in (mark, opened))
     before, after = lines[here[0]][: here[1]], lines[here[0]][here[1] :]
     context, problem, sign = error.context or "", error.problem or "", after[:1]
     second, colon = "mapping values" in problem, "could not find expected ':'" in problem
