@@ -22,6 +22,8 @@ import pytest
 from click.testing import CliRunner
 
 import from_declarations  # docs/from_declarations.py
+import notebook  # docs/notebook.py
+import python_reference  # docs/python_reference.py
 import shipped  # docs/shipped.py
 import validation  # docs/validation.py
 from kurbel.cli import kurbel
@@ -137,6 +139,8 @@ def test_the_readme_has_commands() -> None:
 GENERATED = {
     "machines.md": shipped.page,
     "validation.md": validation.page,
+    "notebook.md": notebook.page,
+    "reference/python.md": python_reference.page,
     "reference/keys.md": from_declarations.keys,
     "reference/units.md": from_declarations.units,
     "reference/columns.md": from_declarations.columns,
