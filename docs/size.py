@@ -25,9 +25,9 @@ CONFIGS = Path(__file__).parent.parent / "configs"
 
 _HEAD = f"""# Limits of size
 
-How large traces, sweeps and machines may be, and what they cost. `python docs/size.py` writes this page from the commands
-it shows; times are processor times of one run on one machine ({{processor}}, Python {{python}}), memory is the largest of the
-process. kurbel itself starts with {{start}}.
+How large traces, sweeps and machines may be, and what they cost. Times are processor times of one run on one machine
+({{processor}}, Python {{python}}), memory is the peak of the process; `python docs/size.py` measures them anew.
+`kurbel --version` takes {{start}}.
 
 | what | limit |
 | --- | --: |
@@ -157,9 +157,8 @@ def _sweeps() -> Iterator[str]:
             rows.append((f"`{machine}`", f"`{key}`", f"`{column}`", f"{count:,}", str(spent)))
     yield "## Sweeps\n\n`kurbel sweep MACHINE --vary KEY=uniform(…) --sample N --columns COLUMN -o rows.csv --jobs 1`:"
     yield _table(("machine", "varies", "column", "rows", "time, memory"), rows)
-    yield """Machines of one kind are computed together, at an almost constant memory; a mechanism or command that is computed one
-machine after another takes its time for each row ([one solver](sweeps.md#one-solver)). `--jobs` and `--shard` divide the
-work."""
+    yield """Machines of one kind are computed together; other mechanisms and commands are computed one machine after
+another ([one solver](sweeps.md#one-solver)). `--jobs` and `--shard` divide the work."""
 
 
 def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
