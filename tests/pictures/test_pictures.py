@@ -131,7 +131,7 @@ def test_the_tip_of_the_free_force_is_the_solvers() -> None:
     free = case.balance.at(np.linspace(0.0, 719.0, 500))
     tips = (np.asarray(free.F_x) + 1j * np.asarray(free.F_y)) / 1e3
     assert off_line(panel.curves[0], tips) <= 1e-3 * np.abs(tips).max()
-    (mark,) = panel.marks
+    mark, *_ = panel.marks
     largest = case.balance.F_free_max
     assert (mark.figure.value, mark.figure.at_deg) == (largest.value / 1e3, largest.degrees)
     assert np.hypot(mark.x, mark.y) == pytest.approx(largest.value / 1e3, rel=1e-14)
@@ -148,7 +148,7 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
             direction = np.radians(np.nan_to_num(getattr(columns, f"load_{panel.title.partition(':')[0]}")))
             tips = np.asarray(columns.load) / 1e3 * np.exp(1j * direction)
             assert off_line(panel.curves[0], tips) <= 2e-3 * np.abs(tips).max()
-            (mark,) = panel.marks
+            mark, *_ = panel.marks
             assert mark.figure.value == part.load_max.value / 1e3
             assert np.hypot(mark.x, mark.y) == pytest.approx(part.load_max.value / 1e3, rel=1e-9)
 

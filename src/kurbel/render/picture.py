@@ -8,8 +8,8 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
-from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
-from kurbel.render.text import width
+from kurbel.render.numbers import angle, angle_scale, cell, decimal, in_thousands, single
+from kurbel.render.text import folded, width
 from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
@@ -30,32 +30,41 @@ def symbol(words: Words, look: Look) -> str:
 
 
 def axis_text(axis: Axis, look: Look) -> str:
-    """Return what is written at the end of an axis."""
-    return " in ".join(filter(None, (symbol(axis.name, look), look.unit(axis.unit))))
+    """Return what is written at the end of an axis: words, symbol, unit."""
+    words = look.text(axis.name.words)
+    name = " ".join(filter(None, (words[:1].upper() + words[1:], symbol(axis.name, look))))
+    return " in ".join(filter(None, (name, look.unit(axis.unit))))
+
+
+def legend_text(words: Words, look: Look) -> str:
+    """Return a symbol with its words."""
+    return " ".join(filter(None, (symbol(words, look), look.text(words.words))))
 
 
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     at = "" if figure.at_deg is None else angle(figure.at_deg, look.comma) + look.text("°")
     if figure.value is None:
-        return f"{symbol(figure.name, look)} {at}".rstrip()
+        return f"{symbol(figure.name, look)} {at}".strip()
     number, power = single(figure.value, look.digits, look.comma)
-    parts = symbol(figure.name, look), look.counted(_signed(number, look), power), look.unit(figure.unit)
+    parts = symbol(figure.name, look), look.counted(_printed(number, look), power), look.unit(figure.unit)
     return ", ".join(filter(None, (" ".join(filter(None, parts)), at)))
 
 
 def picture_text(picture: Picture, look: Look) -> str:
     """Return a picture in words: what it shows, and every figure in it."""
-    figures = [mark.figure for panel in picture.panels for mark in panel.marks]
+    figures = [mark.figure for panel in picture.panels for mark in panel.marks if mark.figure.name.symbol]
     figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
 
 
-def _signed(number: str, look: Look) -> str:
-    """Return a number with a minus sign in place of a hyphen."""
-    return f"−{number[1:]}" if number.startswith("-") and look.has("−") else number
+def _printed(number: str, look: Look) -> str:
+    """Return a number with a minus sign in place of a hyphen, and with thin spaces, where the output has them."""
+    if not look.has("−\N{NARROW NO-BREAK SPACE}"):
+        return number
+    return in_thousands(f"−{number[1:]}" if number.startswith("-") else number)
 
 
 # scales
@@ -111,7 +120,7 @@ def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[flo
             texts = [decimal(f"{value:.4g}", look.comma) for value in values]
         else:
             texts = [cell(value, angle_scale(values), look.comma) for value in values]
-        texts = [_signed(text, look) for text in texts]
+        texts = [_printed(text, look) for text in texts]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
@@ -150,6 +159,10 @@ class Label(NamedTuple):
     lead: complex | None = None
 
 
+def _is_number(text: str) -> bool:
+    return text.replace(".", "", 1).isdecimal()
+
+
 class PanelFrame:
     """A panel in a rectangle; places x + iy count rightward and downward from its upper left corner.
 
@@ -167,6 +180,17 @@ class PanelFrame:
             spare = (max(sizes / room) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
+        names = panel.x.names
+        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) - medium.letter if names else 0.0
+        if any(width(name) * medium.letter > between for name in names) and not all(map(_is_number, names)):
+            # names that do not fit below the axis have numbers there, and follow it
+            key = ", ".join(
+                f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
+            )
+            numbers = tuple(str(number) for number, _ in enumerate(names, 1))
+            self.panel = panel._replace(x=panel.x._replace(name=Words(key), names=numbers))
+        self.below = folded(axis_text(self.panel.x, look), int(wide / medium.letter))
+        """What is written below the axis, line by line."""
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
