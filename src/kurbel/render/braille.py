@@ -126,7 +126,7 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
         drawn += [
             (role, frame.place(*piece))
             for piece in (*curve.pieces(), *curve.jumps())
-            if curve.kind not in ("fixed", "beads")
+            if curve.kind not in ("fixed", "beads", "pole")
         ]
     # the lines to compare with first, so that curves are over them
     for role, places in sorted(drawn, key=lambda one: one[0] != "rule"):

@@ -43,7 +43,7 @@ class Markdown:
         """Return a text with everything escaped that Markdown would take for a mark."""
         return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
 
-    sentence = symbol = number = text
+    name = sentence = symbol = number = text
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return title, heads and the line that aligns the columns."""
@@ -74,19 +74,26 @@ class Html:
         return escape(plain)
 
     def symbol(self, plain: str) -> str:
-        """Return a symbol, what follows its underscore below the line.
+        """Return a text in which what follows the underscore of a symbol is below the line.
 
         >>> print(Html().symbol("φ_P=0"), Html().symbol("A_1, A_2"))
         φ<sub>P=0</sub> A<sub>1</sub>, A<sub>2</sub>
         """
-        parts = [escape(one) for one in subscripts(plain)]
-        parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
-        return "".join(parts)
+        return self._lowered(escape(plain))
 
-    def sentence(self, plain: str) -> str:
-        """Return a text in which no unit is parted from its number."""
+    def name(self, plain: str) -> str:
+        """Return a name or a value, in which no unit is parted from its number."""
         text = re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain))
         return in_thousands(measures().sub(r'<span class="n">\g<0></span>', text), "&#8239;")
+
+    def sentence(self, plain: str) -> str:
+        """Return a sentence, in which no unit is parted from its number, and symbols have their indices."""
+        return self._lowered(self.name(plain))
+
+    def _lowered(self, escaped: str) -> str:
+        parts = subscripts(escaped)
+        parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
+        return "".join(parts)
 
     def number(self, plain: str) -> str:
         """Return a number with thin spaces and a minus sign in place of a hyphen, whatever the encoding.
@@ -171,7 +178,7 @@ class Latex:
             for one in _LETTER.findall(plain)
         )
 
-    sentence = text
+    name = sentence = text
 
     def number(self, plain: str) -> str:
         r"""Return a number with thin spaces.
@@ -275,7 +282,7 @@ def written(table: TextTable, out: Writer) -> Iterator[str]:
     """Yield a table row by row."""
     heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
     yield out.table_head(table, out.text(table.caption), heads)
-    doors = {"number": out.number, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    doors = {"number": out.number, "name": out.name, "symbol": out.symbol, "sentence": out.sentence}
     kinds = [doors[one.kind] for one in table.columns]
     for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
         texts = zip(kinds, map(str.strip, row))

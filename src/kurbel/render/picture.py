@@ -14,6 +14,8 @@ from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
+_ROUNDING = 1e-9
+"""Over the size of a curve, the height that is its rounding."""
 _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 _MOST_MARKED = 12
@@ -86,16 +88,20 @@ class AxisScale(NamedTuple):
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
 
-def scale_of(axis: Axis, drawn: list[Array], air: bool) -> AxisScale:
-    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it."""
+def scale_of(axis: Axis, drawn: list[Array], air: bool, around: float = 0.0) -> AxisScale:
+    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it.
+
+    around: what is above and below a level line, if it is not a tenth of its height.
+    """
     every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
     low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
     if axis.log:
         low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
-    elif not high > low:  # a level line is in the middle
-        low, high = low - (0.1 * abs(low) or 1.0), high + (0.1 * abs(high) or 1.0)
+    elif high - low <= _ROUNDING * max(abs(low), abs(high)):  # a level line is in the middle
+        low, high = (end + sign * (around or 0.1 * abs(end) or 1.0) for end, sign in ((low, -1), (high, 1)))
     elif air:
-        low, high = low - _AIR * (high - low), high + _AIR * (high - low)
+        below = 0.0 if low == axis.low else _AIR * (high - low)
+        low, high = low - below, high + _AIR * (high - low)
     return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
 
 
@@ -146,6 +152,8 @@ class Medium(NamedTuple):
 class Label(NamedTuple):
     """A text that names a point x + iy; look: of the curve that it names; led: a line leads to it where it is far.
 
+    spare: it is left out rather than be far, or on a curve.
+
     Once it is placed it is between left and right, below top; lead: the end of that line.
     """
 
@@ -153,6 +161,7 @@ class Label(NamedTuple):
     point: complex
     look: int | None = None
     led: bool = False
+    spare: bool = False
     left: float = 0.0
     right: float = 0.0
     top: float = 0.0
@@ -172,10 +181,13 @@ class PanelFrame:
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
-        x, y = scale_of(panel.x, across, panel.plain), scale_of(panel.y, up, True)
+        spread = max((float(np.nanmax(one) - np.nanmin(one)) for one in (*across, *up) if one.size), default=0.0)
+        around = 0.1 * spread if panel.equal else 0.0
+        x, y = scale_of(panel.x, across, panel.plain, around), scale_of(panel.y, up, True, around)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
-            tall = min(max(wide * sizes[1] / sizes[0], medium.shortest), medium.tallest)
+            least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
+            tall = min(max(wide * sizes[1] / sizes[0], least), medium.tallest)
             room = np.array([wide, tall])
             spare = (max(sizes / room) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
@@ -260,8 +272,10 @@ class PanelFrame:
             farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
             yield Label(symbol(curve.name, look), complex(own[farthest]), number)
 
-        for mark in panel.marks[:_MOST_MARKED]:
-            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=True)
+        named_marks = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
+        for mark in (*named_marks, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
+            led = bool(mark.figure.name.symbol)
+            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=led, spare=not led)
 
         # the figures of shades, or their names alone where not each figure has the room
         written = [(shade, shade.figure, figure_text(shade.figure, look)) for shade in panel.shades if shade.figure]
@@ -294,7 +308,7 @@ class PanelFrame:
         cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * on_curves
         cost = np.where(on_labels > 0, np.inf, cost.round(6))
         row, column = np.unravel_index(cost.argmin(), cost.shape)
-        if np.isinf(cost[row, column]):
+        if np.isinf(cost[row, column]) or (label.spare and cost[row, column] > 2 * tall):
             return None
         taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
         start, height = float(left[column]), float(top[row, 0])

@@ -129,7 +129,7 @@ def _number(value: float, look: Look) -> str:
 def _figure(picture: Picture, look: Look) -> str:
     label = _text(picture.heading, look)
     drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(picture, look)}</div>'
-    caption = f"<b>{label}.</b> {_text(picture.text, look)}"
+    caption = f"<b>{label}.</b> {Html().sentence(look.text(picture.text))}"
     return f"<figure>\n<figcaption>{caption}</figcaption>\n{drawn}\n</figure>\n"
 
 

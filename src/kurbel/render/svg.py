@@ -160,7 +160,9 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
         yield from _around(frame, left, legend)
     for shade in panel.shades:
         low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
-        yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
+        # bars are all that there is to see; areas are behind their curves
+        gain, loss = ("p", "n") if panel.curves else ("c0", "c1")
+        yield _shape(gain if shade.gain else loss, _path(np.append(low, high[::-1])) + "Z")
     resting = _text(0, -5, frame.look.text(panel.title), plain=True) if panel.plain else ""
     moving = ""
     for curve, look in zip(panel.curves, looks_of(panel)):
@@ -229,8 +231,9 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
         elif kind == "dots":
             dots = "".join(_dot(point, shape) for piece in pieces for point in piece)
             outlines.append([(f"j{look}", lines), (f"c{look}", dots)])
-        elif kind in ("joint", "fixed", "beads"):
-            dots = "".join(_dot(point, 0, 1.6 if kind == "beads" else 4.0) for point in pieces[0])
+        elif kind in ("joint", "fixed", "beads", "pole"):
+            radius = {"beads": 1.6, "pole": 3.0}.get(kind, 4.0)
+            dots = "".join(_dot(point, 0, radius) for point in pieces[0])
             outlines.append([("o" if kind == "joint" else "i", dots)])
         elif kind == "arrow":
             tail, tip = pieces[0]

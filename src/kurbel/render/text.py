@@ -26,7 +26,9 @@ TURNING = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A
 """Characters that turn the direction of writing: a name with one could make a line read backward."""
 _TURNING = dict.fromkeys(TURNING, "�")
 _NO_BREAK = "\N{NO-BREAK SPACE}"
-_SUBSCRIPT = re.compile("(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|]+?)(?=,?\\s|,?$|\\|)")
+_SUBSCRIPT = re.compile(
+    "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;]+?)(?=[,.]?\\s|[,.]?$|[|()/;])"
+)
 
 
 @dataclass(frozen=True, eq=False)

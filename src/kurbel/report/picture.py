@@ -41,7 +41,7 @@ class Axis(NamedTuple):
 class Curve(NamedTuple):
     """Points x, y (n,), one nan at a jump, more at a gap; of a moving curve (1 + m, n): at rest, then m in a loop.
 
-    kind: `line`, `faint` (to compare with, such as a mean), `dots` joined by a thin line, `beads`; in mechanisms
+    kind: `line`, `faint` (to compare with, such as a mean), `dots` joined thinly, `beads`, `pole`; of mechanisms
     `guide`, `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
     look: its colour and stroke, where that is not its place among the lines of its panel.
     """

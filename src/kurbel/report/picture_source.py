@@ -1,5 +1,6 @@
 """Where pictures take their curves from: results sampled so finely that no line of points leaves its curve visibly."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -164,14 +165,25 @@ class Source:
         if over == PHI or self.having(over):
             yield from (self.panel(ids, over) for group in groups if (ids := self.having(*group)))
 
-    def locus(self, ids: Sequence[str], tip: Values, name: Words, marks: tuple[Mark, ...], title: str = "") -> Panel:
-        """Return the path of a point (2, n), made from these columns, with one scale for both axes."""
+    def locus(
+        self,
+        ids: Sequence[str],
+        tip: Values,
+        name: Words,
+        marks: tuple[Mark, ...],
+        title: str = "",
+        cycle: float = math.inf,
+    ) -> Panel:
+        """Return the path of a point (2, n), made from these columns, with one scale for both axes and crank angles.
+
+        cycle: degrees after which it repeats, if before the end of the cycle of the machine.
+        """
         samples = self.samples(ids, values=tip)
         curve, axis = samples.curve(name, *samples.values), Axis(Words("F"), "force")
-        angles = np.arange(0.0, samples.degrees[-1], _BEADS)
+        angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
         x, y = tip(angles, angles)
         labelled = [Mark(*place) for place in zip(x[::3].tolist(), y[::3].tolist(), map(_at, angles[::3].tolist()))]
-        curves = (curve, Curve(Words(""), x, y, "beads"))
+        curves = (curve, Curve(Words(""), x, y, "beads"), Curve(Words(""), np.zeros(1), np.zeros(1), "pole"))
         return Panel(axis, axis, curves, marks=(*marks, *labelled), equal=True, title=title)
 
 
@@ -192,6 +204,7 @@ def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # n
 def in_units(panel: Panel, system: str) -> Panel:
     """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
     across, up = panel.places
+    up.append(np.array([end for end in (panel.y.low, panel.y.high) if end is not None]))  # shared by several panels
     if panel.equal:
         across = up = [*across, *up]
     works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
@@ -207,10 +220,14 @@ def in_units(panel: Panel, system: str) -> Panel:
     def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
         return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
+    def scaled(axis: Axis, number: int, unit: str) -> Axis:
+        low, high = (None if end is None else float(to(number, end)) for end in (axis.low, axis.high))
+        return axis._replace(unit=unit, low=low, high=high)
+
     y_unit = f"{units[1]} {panel.y.mark}".rstrip()
     return panel._replace(
-        x=panel.x._replace(unit=units[0]),
-        y=panel.y._replace(unit=y_unit),
+        x=scaled(panel.x, 0, units[0]),
+        y=scaled(panel.y, 1, y_unit),
         curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
         shades=tuple(
             Shade(to(0, x), to(1, low), to(1, high), gain, figure and shown(figure, 2, units[2]))

@@ -94,8 +94,13 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
         return
     parts = source.having("P_start", "P_inertia")
     ids = parts if len(parts) == 2 else ("P",)
-    for how, title in _strokes(source, partial(source.values, ("x", *ids)), source.results.phi_reversal or ()):
-        yield _remaining_force(source, ids, "x", **how)._replace(title=title)
+    strokes = _strokes(source, partial(source.values, ("x", *ids)), source.results.phi_reversal or ())
+    panels = [_remaining_force(source, ids, "x", **how)._replace(title=title) for how, title in strokes]
+    if any(gas.traced for gas in source.results.drive.gas):  # or the noise of the gas exchange would have its own scale
+        heights = np.concatenate([one for panel in panels for one in panel.places[1]])
+        low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+        panels = [panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels]
+    yield from panels
 
 
 def _strokes(source: Source, of: Values, also: Sequence[float] = ()) -> Iterator[tuple[dict[str, Any], str]]:
@@ -352,7 +357,7 @@ def _efforts(source: Source, torques: Sequence[Array]) -> Sampled:
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
     for panel in source.panels(tuple(f"sigma_{part}" for part in PARTS)):
-        called = {f"σ_{index}": part for index, part in PARTS.values()}
+        called = {f"σ_{index}": part.removeprefix("the ") for index, part in PARTS.values()}
         names = [one.name._replace(words=called.get(one.name.symbol, "")) for one in panel.curves]
         curves = tuple(one._replace(name=name) for one, name in zip(panel.curves, names))
         yield panel._replace(curves=curves, y=panel.y._replace(name=Words("", words="combined stress")))
@@ -445,21 +450,22 @@ def campbell(source: Source) -> Iterator[Panel]:
 def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution."""
     results = source.results
-    for ids, id, largest in (
-        (("F_x", "F_y"), "F_free_max", results.F_free_max),
-        (("M_x", "M_y"), "M_free_max", results.M_free_max),
-    ):
-        if source.having(*ids) == ids:
-            tip = partial(source.values, ids)
-            has_mark = largest and largest.value
-            marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if has_mark else ()
-            panel = source.locus(ids, tip, source.words(ids[1]), marks)
-            yield panel._replace(x=source.axis(ids[0]), y=source.axis(ids[1]))
+    each = ("F_x", "F_y", "F_free_max", results.F_free_max), ("M_x", "M_y", "M_free_max", results.M_free_max)
+    known = [one for one in each if source.having(*one[:2]) == one[:2]]
+    # what is balanced is a point, which is shown only where all is
+    for x, y, id, largest in [one for one in known if one[3] and one[3].value] or known[:1]:
+        tip = partial(source.values, (x, y))
+        marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if largest and largest.value else ()
+        panel = source.locus((x, y), tip, source.words(y), marks, cycle=360.0)
+        yield panel._replace(x=source.axis(x), y=source.axis(y))
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
     """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
-    return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
+    words = {"F_x": "along the stroke", "F_y": "across it", "M_x": "along the stroke", "M_y": "across it"}
+    for panel in source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",)):
+        names = [one.name._replace(words=words.get(one.name.symbol, "")) for one in panel.curves]
+        yield panel._replace(curves=tuple(one._replace(name=name) for one, name in zip(panel.curves, names)))
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:
