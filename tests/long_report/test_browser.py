@@ -30,7 +30,7 @@ const beyond = [...document.querySelectorAll('body *')].filter(one => {
 const unseen = [...document.querySelectorAll('#input tr > :nth-child(2)')].filter(one =>
   one.getBoundingClientRect().right > WIDTH + 1).map(one => one.textContent);
 const cut = [...document.querySelectorAll('figure .wide')].filter(one => one.scrollWidth > one.clientWidth + 1).length;
-const across = new Set([...document.querySelectorAll('.pair > figure')].map(one =>
+const across = new Set([...document.querySelectorAll('h2 ~ .pair > figure')].map(one =>
   Math.round(one.getBoundingClientRect().left))).size;
 const letters = Math.min(99, ...[...document.querySelectorAll('.pair text')].map(one =>
   one.getScreenCTM().a * parseFloat(getComputedStyle(one).fontSize)));

@@ -25,7 +25,7 @@ figcaption b{color:var(--ink)}
 .facts{display:grid;grid-template-columns:repeat(4,1fr);gap:.6rem;margin:1rem 0}
 .facts p{background:var(--shade);border-radius:.3rem;margin:0;padding:.5rem .7rem}
 .facts b{font-size:1.35rem;white-space:nowrap}.facts small{font-size:.8rem}
-@media screen and (max-width:52rem){.facts{grid-template-columns:1fr 1fr}}
+@media screen and (max-width:52rem){.facts{grid-template-columns:1fr 1fr}#summary{border:0;padding:0}}
 .notice{margin:.5rem 0}
 .warning{padding:.4rem .8rem;border-left:.3rem solid var(--warn);background:var(--warned)}
 tr.good,tr.bad{color:var(--ink);font-weight:400}
@@ -34,14 +34,14 @@ tr.bad td:last-child{color:var(--bad);font-weight:600}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.3rem;list-style:none;padding:0}
 footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
-figure svg{width:100%;min-width:34rem;height:auto;display:block}
+figure svg{width:100%;min-width:30rem;height:auto;display:block}
 @media print{main{padding:0}figure svg{min-width:0;max-height:23cm}nav{display:none}
 h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
 a{color:inherit;text-decoration:none}}
 """
 _STYLE_OF_PAIRS = """\
 @media screen{main{max-width:96rem}.pair{display:grid;grid-template-columns:1fr 1fr;gap:1.6rem}.pair>*{min-width:0}}
-@media screen and (max-width:74rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}
+@media screen and (max-width:66rem){.pair{grid-template-columns:1fr}}@media print{.pair{break-inside:avoid}}
 """
 """Next to each other only where both pictures have the width below which they scroll."""
 

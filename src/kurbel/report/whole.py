@@ -129,8 +129,8 @@ def _input(case: Case, given: Given) -> Iterator[Grid]:
         rows = tuple((path, value, meaning(path, places)) for path, value in given)
         yield Grid("Given", ("Key", "Value", "Meaning"), rows)
     for part in checked(case).shown_once:
-        if part.title not in ("Limits", "Expected"):
-            listed = tuple((one.what, one.text) for one in part.entries if one.severity != "warning")
+        listed = tuple((one.what, one.text) for one in part.entries if one.severity != "warning")
+        if listed and part.title not in ("Limits", "Expected"):
             yield Grid(part.title, ("", ""), listed)
 
 
