@@ -11,13 +11,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from reference.zusammenstellung_112 import PRINTED as ZUSAMMENSTELLUNG
+
 import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.crank_formulas import first_order_acceleration, first_order_displacement
 from kurbel.solver.friction import redtenbacher_logarithm
 from reference.test_tredgold import PRINTED as TREDGOLD
 from reference.test_tredgold import RATIOS
-from reference.zusammenstellung_112 import PRINTED as ZUSAMMENSTELLUNG
 from worked_examples import FOLDER, SI, TABLE, told
 
 _ROOT = Path(__file__).parent.parent
