@@ -177,7 +177,7 @@ def test_notebooks_show_tables_that_are_escaped() -> None:
     page = case._repr_html_()
     assert "<h3>&lt;b&gt;A&amp;B&lt;/b&gt;</h3>" in page
     assert "<b>" not in page
-    assert '<th scope="row">c_max</th><td class="r">2.563</td><td>m/s</td>' in page  # 2π · 0.4 · 1.0198331
+    assert '<th scope="row">c<sub>max</sub></th><td class="r">2.563</td><td>m/s</td>' in page  # 2π · 0.4 · 1.0198331
     assert "&lt; 10⁻¹⁴</td>" in page
     locked = kurbel.loads((PLAIN % PRESSURE)[:-1] + ", friction: {crosshead: 20}}")
     assert "<p>" in kurbel.solve(locked).cylinders[0]._repr_html_()

@@ -1,6 +1,6 @@
 """Chunks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
 
-import gc
+import asyncio
 import logging
 import os
 import pickle
@@ -154,21 +154,19 @@ def work() -> None:
 def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
         from distributed import Client, TimeoutError
-        from distributed.comm import CommClosedError
+        from distributed.comm import CommClosedError, connect
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
 
+    async def reached() -> None:
+        await (await connect(address, timeout=_ANSWERS_WITHIN)).close()
+
     logging.disable()  # of a lost scheduler it writes tracebacks
-    refused = None
     try:
+        asyncio.run(reached())  # a client that reaches nothing waits 20 s at its end, and writes a traceback
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
-        refused = _first_line(error)
-    if refused is not None:
-        # a client that was not made closes itself when it is collected, and waits for ever if that is within the start
-        # of another one, which holds the same lock
-        gc.collect()
-        raise UsageError(f"--dask {address}: no scheduler responds there ({refused})")
+        raise UsageError(f"--dask {address}: no scheduler responds there ({_first_line(error)})") from None
 
     def workers() -> int:
         return max(len(client.nthreads()), 1)
