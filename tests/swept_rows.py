@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import time
 from pathlib import Path
 
 from click.testing import Result
@@ -39,3 +41,12 @@ def numbers_in(file: Path) -> list[tuple[str, float, str]]:
         return []
     known = [(path, found) for path, found in texts if found and not NO_NUMBERS & {*map(str, path)}]
     return [(dotted(path), float(found[1]), found[2] or "") for path, found in known if float(found[1]) > 0]
+
+
+def until_written(process: subprocess.Popen[str], part: Path, size: int) -> None:
+    """Wait until a sweep that runs has written so many bytes, or has ended; one that writes nothing is killed."""
+    begin = time.monotonic()
+    while process.poll() is None and not (part.exists() and part.stat().st_size > size):
+        if time.monotonic() - begin > 120:
+            process.kill()
+        time.sleep(0.02)
