@@ -84,7 +84,7 @@ def _signature(name: str, thing: Any) -> str:
         else f" -> {_short(inspect.formatannotation(returned))}"
     )
     line = f"{name}({', '.join(arguments)}){end}"
-    if len(line) > 96:
+    if len(line) > 76:
         line = f"{name}(\n" + "".join(f"    {one},\n" for one in arguments) + f"){end}"
     return f"```text\n{line}\n```\n\n"
 

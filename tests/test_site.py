@@ -20,7 +20,7 @@ from kurbel.quantities import every_quantity
 from kurbel.report.keys import every_place
 
 ROOT = Path(__file__).parent.parent
-WIDTHS = (360, 768, 1280)
+WIDTHS = (360, 1000, 1400)
 HARNESS = """<!doctype html><html><body><pre id="found">waiting</pre><script>
 const pages = PAGES, widths = WIDTHS, found = [];
 async function look(page, width) {
