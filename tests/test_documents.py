@@ -132,10 +132,6 @@ def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.failed == 0
 
 
-def test_the_readme_has_commands() -> None:
-    assert len(COMMAND.findall(text_of(README))) >= 4
-
-
 GENERATED = {
     "machines.md": shipped.page,
     "validation.md": validation.page,

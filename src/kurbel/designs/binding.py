@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Maker, too_extreme
+from kurbel.declared.forms.structures import Given, Maker, too_extreme
 from kurbel.declared.forms.values import Number
 from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Path, RuleError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
