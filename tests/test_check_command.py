@@ -354,3 +354,11 @@ def test_check_lists_what_pumps_and_compressors_deliver() -> None:
         assert status == 0
         assert all(one in out for one in listed), out
     assert "Delivery" not in run(engine, "check")[1]
+
+
+def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_print() -> None:
+    result = CliRunner().invoke(kurbel, ["check", "-f", "json", *map(str, CONFIGS.values())])
+    assert result.exit_code == 0, result.output
+    messages = [(Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]]
+    compared = {name for name, message in messages if ", expected " in message}
+    assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}
