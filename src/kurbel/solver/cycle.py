@@ -111,11 +111,17 @@ def _smoothed(
 ) -> tuple[Pieces, State, Samples]:
     """Return the pieces halved until columns are polynomials there, the state and the columns on them."""
 
-    def sample(some: Pieces) -> list[Array]:
-        return _known(some, columns(state if some is pieces else State.on(drive, some)))
+    judged = _known(pieces, columns(state))
 
-    fine, values = refined(pieces, sample)
-    return fine, state.recut(drive, fine, pieces), values
+    def sample(some: Pieces) -> list[Array]:
+        if some is pieces:
+            return [*judged, *state.before_friction]
+        own = State.on(drive, some)
+        return [*_known(some, columns(own)), *own.before_friction]
+
+    fine, values = refined(pieces, sample, len(judged))
+    finer = state if fine is pieces else State.restored(drive, fine, values[len(judged) :])
+    return fine, finer, values[: len(judged)]
 
 
 def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Pieces, State]:
