@@ -32,7 +32,7 @@ from kurbel.errors import NoSolutionError
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
-from kurbel.numerics.pieces import Pieces, joined
+from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import Row, column, value, values_for
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
@@ -111,32 +111,6 @@ class State(MotionColumns):
     def on(cls, drive: Drive, pieces: Pieces) -> State:
         """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
-
-    @property
-    def before_friction(self) -> list[Array]:
-        """Motion and gas forces, which no side of a force changes: what `restored` makes a state of."""
-        motion = [self.angle.sin, self.angle.cos, self.slope, self.curvature, *(self.rod_angle or ())]
-        return [np.broadcast_to(one, self.phi.shape) for one in (*motion, *self.piston_forces)]
-
-    @classmethod
-    def restored(cls, drive: Drive, pieces: Pieces, known: Sequence[Array]) -> State:
-        """Return the state on pieces of which `before_friction` is known, each (nodes, pieces)."""
-        sin, cos, slope, curvature, *rest = known
-        pistons = len(rest) - len(drive.gas)
-        angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
-        state = cls(drive.taken(pieces.machine), angle, pieces.middle)
-        state.slope, state.curvature, state.piston_forces = slope, curvature, rest[pistons:]
-        return state
-
-    def recut(self, drive: Drive, cut: Pieces, pieces: Pieces) -> State:
-        """Return the state on pieces that were cut again; this one is on them as they were before."""
-        if cut is pieces:
-            return self
-        source, new = cut.kept_of(pieces)
-        fresh = cut.taken(new)
-        known = self.before_friction, State.on(drive, fresh).before_friction
-        whole, both = joined([(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])])
-        return State.restored(drive, whole, both)
 
     @cached_property
     def unrubbed(self) -> State:
