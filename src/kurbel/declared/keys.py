@@ -12,7 +12,7 @@ from typing import Any, ClassVar, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Flags
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, Step, refuse, refused
 
@@ -131,7 +131,7 @@ def _broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault
 
 def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     forms = {name: key.form for name, key in keys.items() if name in given}
-    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, Number))
+    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, NumberForm))
     return [Fault((name,), f"{given[name]:g} {wrong}") for name, wrong in found if wrong]
 
 

@@ -1,6 +1,6 @@
 """The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from kurbel.arrays import Array
 from kurbel.declared.forms.values import FILE_PATH, Points, unit_name
 from kurbel.declared.keys import Key
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative
+from kurbel.declared.record import Record, Rule, Values, alternative
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import refused
 from kurbel.machine.measured import (
@@ -70,7 +70,7 @@ class KnownEffort(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if has_refused(given.values()):
             return
         forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]

@@ -1,7 +1,7 @@
 """The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from os.path import basename
 from typing import Any
@@ -10,9 +10,9 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
-from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, Number, Points, unit_name
+from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import Factor, Point, unit_factor
 from kurbel.errors import Fault, RuleError, UnitError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
@@ -28,14 +28,14 @@ RECORDED_SPEED = alternative("speed", "Constant speed at which times were record
 ANGLE_STEP = alternative(
     "angle", "Crank angle from one row to the next, instead of a column of angles", above=0, instead="angle_column"
 )
-SKIP_ROWS = alternative(Number(whole=True, least=0), "Number of lines before the first data", absent="0")
+SKIP_ROWS = alternative(NumberForm(whole=True, least=0), "NumberForm of lines before the first data", absent="0")
 DELIMITER = alternative(
     (*DELIMITERS, *DELIMITERS.values()), "Separator of the columns", absent="comma", also=("separator", "sep")
 )
 DECIMAL = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point")
 
 
-def layout_rules(what: str, given: Mapping[str, Any]) -> Iterator[Rule]:
+def layout_rules(what: str, given: Values) -> Iterator[Rule]:
     """Yield what contradicts in the keys of a layout, of pressures or torques."""
     key = f"{what}_columns" if f"{what}_columns" in given else f"{what}_column"
     columns, own = given.get(key, 2), given.get("angle_column", 1)
@@ -99,7 +99,7 @@ class Measured(Record):
     pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2")
     skip_rows, delimiter, decimal = SKIP_ROWS, DELIMITER, DECIMAL
     angle_zero = alternative(
-        OneOf(Number("angle"), RecordForm(Motored)),
+        OneOf(NumberForm("angle"), RecordForm(Motored)),
         "Angle of the firing or inner dead centre in the file; or a motored trace from which it is found",
         absent="0 deg",
     )
@@ -131,7 +131,7 @@ class Measured(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if "file" in given and not has_refused(given.values()):
             yield from layout_rules("pressure", given)
 

@@ -47,7 +47,7 @@ class Form(ABC):
     shape: ClassVar[type] = str
     """Of the tree: str, list or dict."""
     kind: str = ""
-    number: "Number | None" = None
+    number: "NumberForm | None" = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -116,7 +116,7 @@ def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) ->
 
 
 @dataclass(eq=False)
-class Number(Form):
+class NumberForm(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger; zero: 0 is allowed
@@ -200,7 +200,7 @@ class Number(Form):
     def out_of_bounds(self, value: Any) -> str:
         """Compare a number, or each of many, with the bounds.
 
-        >>> Number("length", least=0.1).out_of_bounds(-0.3)
+        >>> NumberForm("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
         bounds = (
