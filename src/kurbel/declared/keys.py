@@ -67,6 +67,14 @@ def required(keys: Keys) -> list[str]:
     return [name for name, key in keys.items() if key.required and name not in replaced]
 
 
+def without(keys: Keys, name: str) -> str:
+    """Return what holds without a key: that it must be given, it or one of others, or else what `absent` says."""
+    key = keys[name]
+    either = [name, *(other for other, one in keys.items() if one.instead == name)]
+    alone = "must be given" if len(either) == 1 else f"{' or '.join(either)} must be given"
+    return alone if key.required else key.absent
+
+
 class Rule(NamedTuple):
     """What must not be: the entry or path that is wrong, where it is broken, the sentence, and its numbers.
 
