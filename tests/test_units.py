@@ -67,6 +67,10 @@ G = 9.80665  # m/s², standard gravity by definition (3rd CGPM 1901)
         ("1 ft lb", "torque", pytest.approx(0.45359237 * G * 0.3048, rel=1e-15)),
         ("1 mmHg", "pressure", 133.322387415),  # conventional, 13 595.1 kg/m³ under standard gravity
         ("1 inHg", "pressure", 25.4 * 133.322387415),
+        ("76 cm Hg", "pressure", pytest.approx(760 * 133.322387415, rel=1e-15)),
+        ("1 mmH2O", "pressure", G),  # conventional, 1000 kg/m³ under standard gravity
+        ("10 cm H2O", "pressure", 100 * G),
+        ("1 in H2O", "pressure", pytest.approx(25.4 * G, rel=1e-15)),
         ("120 min-1", "speed", 2.0),
         ("120 min⁻¹", "speed", 2.0),
         ("120 rev/min", "speed", 2.0),

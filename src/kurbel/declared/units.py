@@ -112,7 +112,8 @@ _FACTORS: dict[str, Factor] = {
     **{"N": (1, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
     **{"lbf": (_LBF, 1), "long_tonf": (2240 * _LBF, 1), "short_tonf": (2e3 * _LBF, 1)},
     **{"Pa": (1, 1), "bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH)},
-    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "inHg": (25.4 * _MMHG, 1), "mWS": (GRAVITY * 1e3, 1)},
+    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "cmHg": (10 * _MMHG, 1), "inHg": (25.4 * _MMHG, 1)},
+    **{"mmH2O": (GRAVITY, 1), "cmH2O": (10 * GRAVITY, 1), "inH2O": (25.4 * GRAVITY, 1), "mWS": (GRAVITY * 1e3, 1)},
     # torque in N m, energy in J, power in W
     **{"Nm": (1, 1), "J": (1, 1), "W": (1, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
 }
@@ -147,7 +148,7 @@ _LENGTHS = "m, mm, cm, dm, um, km, in, ft"
 _AREAS = "m2, mm2, cm2, dm2, um2, km2, in2, ft2"
 _MASSES = "kg, g, t, lb"
 _FORCES = "N, kN, MN, kgf, kp, tf, lbf"
-_PRESSURES = "Pa, kPa, MPa, GPa, hPa, mbar, bar, at, atm, psi, Torr, mmHg, inHg, mWS"
+_PRESSURES = "Pa, kPa, MPa, GPa, hPa, mbar, bar, at, atm, psi, Torr, mmHg, cmHg, inHg, mmH2O, cmH2O, inH2O, mWS"
 _STRESSES = f"{_FORCES} / {_AREAS}"
 _TORQUES = f"{_FORCES} * {_LENGTHS}"
 
@@ -232,6 +233,7 @@ def _normal(unit: str) -> str:
     for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("³", "3"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
         unit = unit.replace(sign, ours)
     unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit.replace("/(kg K)", "/kg K"))
+    unit = re.sub(r" (?=(H2O|Hg)\b)", "", unit)
     unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 

@@ -115,7 +115,8 @@ def _unit_pattern(kind: str) -> str:
     patterns = []
     for unit in unit_names(kind):
         letters = re.escape(re.sub(r"(?<=[a-z])2", "²", unit)).replace("\\ ", "[ ·*]+").replace("/", "\\s*/\\s*")
-        patterns.append(re.sub("^u(?=m)", "[uµμ]", letters).replace("²", "(?:\\^?2|²)"))
+        letters = re.sub("(?<=m|n)(?=Hg|H2O)", " ?", re.sub("^u(?=m)", "[uµμ]", letters))
+        patterns.append(letters.replace("²", "(?:\\^?2|²)"))
     return f"(?:{'|'.join(patterns)})"
 
 
