@@ -96,7 +96,7 @@ def out_of_size(value: Any, kind: str) -> str:
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
-    smallest, largest, unit, *_ = KINDS[kind]
+    smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
     held = f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
     if not np.all(abs(value) <= largest):
