@@ -21,8 +21,8 @@ class Kind(NamedTuple):
     """A kind of quantity: the sizes of its values in its base, its units, and which of them results are shown in.
 
     smallest: above 0; where it is 0, values are sums in which noise is no fault: a measured pressure may be 1e-17 Pa.
-    units: names, or each of a list times (*) or over (/) each of another, between semicolons. Where metric, technical or
-    imperial is None, that of SI is shown; of several the size of a value decides. written: as a person writes a value.
+    units: names, or each of a list times (*) or over (/) each of another, between semicolons. Where metric, technical
+    or imperial is None, that of SI is shown; of several the size of a value decides. written: as a person writes a value.
     """
 
     smallest: float
@@ -104,9 +104,6 @@ KINDS = {
         "N m s/rad",
         imperial="lbf ft s/rad",
     ),
-    "pressure_velocity": Kind(
-        0, 1e18, "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s", "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"
-    ),
     "volume": Kind(1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"),
     "volume_rise": Kind(0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
     "pressure_rise": Kind(
@@ -118,6 +115,9 @@ KINDS = {
         "at/deg",
         "psi/deg",
         "10 bar/deg",
+    ),
+    "pressure_velocity": Kind(
+        0, 1e18, "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s", "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"
     ),
     "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3"),
     "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
