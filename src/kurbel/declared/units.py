@@ -21,8 +21,8 @@ class Kind(NamedTuple):
     """A kind of quantity: the sizes of its values in its base, its units, and which of them results are shown in.
 
     smallest: above 0; where it is 0, values are sums in which noise is no fault: a measured pressure may be 1e-17 Pa.
-    units: names, or each of a list times (*) or over (/) each of another, between semicolons. Where metric, technical
-    or imperial is None, that of SI is shown; of several the size of a value decides. written: as a person writes a value.
+    units: names, or each of a list times (*) or over (/) each of another, between semicolons. metric, technical,
+    imperial: None for the unit of SI; of several the size of a value decides. written: as a person writes a value.
     """
 
     smallest: float
