@@ -6,7 +6,7 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 import dataclasses
 import re
 from collections.abc import Callable, Iterator, Mapping
-from types import MappingProxyType
+from types import MappingProxyType, NoneType
 from typing import Any, ClassVar, NamedTuple, Union
 
 import numpy as np
@@ -178,7 +178,8 @@ class Record:
 
     def faults(self) -> Iterator[Fault]:
         """Yield what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
-        given = {name: value for name, value in self._entered().items() if value is not None and np.ndim(value) == 0}
+        scalars = ((name, value) for name, value in self._entered().items() if not isinstance(value, (tuple, NoneType)))
+        given = {name: value for name, value in scalars if np.ndim(value) == 0}
         found = [*out_of_bounds(self.KEYS, given)]
         found = found or [rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken]
         yield from found or (Fault((name,), "nan is no number") for name, value in given.items() if value != value)

@@ -60,11 +60,13 @@ class Answer(NamedTuple):
         return number_of(found)
 
 
-def requested_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
+def requested_answers(
+    machine: Machine, names: Sequence[str], with_angles: bool = False, option: str = "--columns"
+) -> tuple[Answer, ...]:
     """Return the key values requested by id or symbol, of every cylinder that has them; without names the usual ones.
 
     Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
-    with_angles: next to each extreme the crank angle at which it occurs.
+    with_angles: next to each extreme the crank angle at which it occurs; option: where the names are from, for errors.
 
     Raises UsageError for a key value that does not exist, or that this machine does not have.
     """
@@ -72,7 +74,9 @@ def requested_answers(machine: Machine, names: Sequence[str], with_angles: bool 
     once: dict[Answer, tuple[Answer, ...]] = {}
     with np.errstate(all="ignore"):
         declared = every_quantity().all_key_values
-        found = (one for name in joined(names, declared) for one in _named(case, name)) if names else _usual(case)
+        found = (
+            (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
+        )
         for one, value in found:
             angle = (one._replace(angle=True),) if with_angles and _stands(value) else ()
             once.setdefault(one._replace(alone=False), (one, *angle))
@@ -94,17 +98,17 @@ def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
                 yield Answer(quantity, command, subject.name), value
 
 
-def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
+def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
     """Return the key values of a name, each with its value for this machine, see `_answer`; pistons: theirs, too."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
-    of_owner = _named(case, own, pistons=True) if not ids and called(own, declared) else ()
+    of_owner = _named(case, own, option, pistons=True) if not ids and called(own, declared) else ()
     if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
         return found
     if not ids or ambiguity(name, ids):
         near = did_you_mean(name, tuple(one.id for one in declared))
-        raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
+        raise UsageError(f"{option}: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
     command = every_quantity().commands_of(ids[0])
     command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
     for word in dict.fromkeys(command):
@@ -116,7 +120,7 @@ def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, A
         ]
         if found:
             return found
-    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check shows why")
+    raise UsageError(f"{option}: this machine has no {ids[0]}; kurbel check shows why")
 
 
 def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:

@@ -106,13 +106,15 @@ def find(
     Raises UsageError for what cannot be read, and NoSolutionError, with what was met, where nothing is found.
     """
     extreme = least or greatest
+    if wrong := next((one for one in equations if "=" not in one), ""):
+        raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
     designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions)
     solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
     findings = designs.findings(solutions, jumps)
     if not solutions:
-        raise NoSolutionError(_nothing(findings))
+        raise NoSolutionError(_nothing(findings, designs.excluded))
     return findings
 
 
@@ -139,6 +141,8 @@ class _Designs:
         heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(self.names, self.answers)]
         self.conditions: list[tuple[str, Condition]] = [(one, read_condition(one, heads, ())) for one in conditions]
         self.limits = tuple(limit_answers(self.binder.machine))
+        self.excluded = 0
+        """Solutions that break a condition."""
         self.computed: list[tuple[tuple[float, ...], Array, str]] = []
         """Of every design its numbers, its key values, and why it fails."""
 
@@ -218,6 +222,7 @@ def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
         return [], []
     key_values, over, against = designs.at(places)
     solutions: list[list[Solution]] = [[], []]
+    designs.excluded = sum(map(bool, against))
     for number, row in enumerate(designs.numbers(places).tolist()):
         if not against[number]:
             notes = (f"breaks {over[number]}",) if over[number] else ()
@@ -268,8 +273,8 @@ def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _nothing(findings: Solutions) -> str:
-    """Return the message that nothing was found, with the values that were met."""
+def _nothing(findings: Solutions, excluded: int) -> str:
+    """Return the message that nothing was found, with the values that were met; excluded: solutions by --where."""
     ranges = " and ".join(
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.in_unit(one.high):.6g} {one.unit}".rstrip()
         for one in findings.varied
@@ -283,8 +288,9 @@ def _nothing(findings: Solutions) -> str:
         f"{one.answer.quantity.id} is {_shown(low, one.answer)} to {_shown(high, one.answer)}"
         for one, (low, high) in zip(findings.wanted, findings.met)
     )
-    jumps = "; it is passed by a jump" if findings.jumps else ""
-    return f"{ranges}: no design has {wanted}: {met}{jumps}"
+    more = "; it is passed by a jump" if findings.jumps else ""
+    more += f"; --where leaves out {excluded} that {'has' if excluded == 1 else 'have'} it" if excluded else ""
+    return f"{ranges}: no design has {wanted}: {met}{more}"
 
 
 def _shown(value: float, answer: Answer) -> str:
@@ -306,7 +312,7 @@ def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tupl
         origin,
         [key for key, *_ in spans],
         ends,
-        lambda machine: [requested_answers(machine, [name]) for name in names],
+        lambda machine: [requested_answers(machine, [name], option="find") for name in names],
     )
     for name, each in zip(names, found):
         if each[0].quantity.listed:

@@ -14,7 +14,7 @@ from kurbel.declared.units import parse_quantity, plain_quantities
 from kurbel.designs.answers import Answer, answers_of, is_slow, requested_answers
 from kurbel.designs.binding import Batch, Binder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
-from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
+from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import case_names
@@ -223,16 +223,18 @@ def begun(
 ) -> tuple[Binder, Found]:
     """Return the binder from the first texts that make a machine, and what `answers` returns of that machine.
 
-    Raises the error of the first texts where none make one.
+    Raises the error of the first texts where none make one, or the first that two texts have.
     """
     failed: list[KurbelError] = []
     for texts in starts:
         try:
             binder = Binder(origin, keys, texts, cases)
             return binder, answers(binder.machine)
-        except (MachineFileError, NoSolutionError) as error:
+        except KurbelError as error:
             failed.append(error)
-    raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
+            if isinstance(error, UsageError) and str(error) in map(str, failed[:-1]):
+                raise  # it is of what is wanted, not of these texts
+    raise UsageError(str(failed[0])) if isinstance(failed[0], MachineFileError) else failed[0]
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
