@@ -5,9 +5,10 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Indices
+from kurbel.arrays import Array, Indices
 from kurbel.declared.reading import shown
-from kurbel.designs.binding import Batch
+from kurbel.declared.unit_systems import SI
+from kurbel.designs.binding import Batch, Binder
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -169,6 +170,15 @@ def answers_of(
                 if row not in found and (rows is None or row in rows):
                     found[row] = _alone(batch.one(place), requested)
     return found
+
+
+def answers_at(binder: Binder, numbers: Array, requested: Sequence[Answer]) -> list[Values]:
+    """Return the key values of the machines with these numbers (n, keys) in SI under the keys of a binder."""
+    units = [SI[kind] for kind in binder.kinds]
+    rows = [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+    bound = binder.bound(rows)
+    found = bound.failures | answers_of(bound.batches, requested)
+    return [found[row] for row in range(len(rows))]
 
 
 def is_slow(machine: Machine, answer: Answer) -> bool:

@@ -12,16 +12,15 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_of, requested_answers
+from kurbel.designs.answers import Answer, answers_at, requested_answers
 from kurbel.designs.binding import Binder
 from kurbel.designs.chosen import Condition, parts_of, read_condition
 from kurbel.designs.plan import read_span
-from kurbel.designs.sweep import Design, Head, begun, limit_answers
+from kurbel.designs.sweep import Design, Head, begun, broken_of, limits_of
 from kurbel.errors import NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
 from kurbel.numerics.search import common_roots, lowest, roots
-from kurbel.report.limits import breaks
 
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
@@ -140,7 +139,7 @@ class _Designs:
         heads = [Head(one.key, SI[one.kind], True, one.kind) for one in self.varied]
         heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(self.names, self.answers)]
         self.conditions: list[tuple[str, Condition]] = [(one, read_condition(one, heads, ())) for one in conditions]
-        self.limits = tuple(limit_answers(self.binder.machine))
+        self.limits = list(limits_of(self.binder.machine))
         self.excluded = 0
         """Solutions that break a condition."""
         self.computed: list[tuple[tuple[float, ...], Array, str]] = []
@@ -156,21 +155,18 @@ class _Designs:
 
         For a design that fails both texts are the reason of the failure.
         """
-        rows = self.numbers(places).tolist()
-        texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
-        bound = self.binder.bound(texts)
-        found = bound.failures | answers_of(bound.batches, (*self.answers, *(one for _, one, _ in self.limits)))
-        count = len(self.answers)
+        numbers, count = self.numbers(places), len(self.answers)
+        rows, found = (
+            numbers.tolist(),
+            answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits))),
+        )
         values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
-        for number, row in enumerate(rows):
-            own = found[number]
+        for number, (row, own) in enumerate(zip(rows, found)):
             if isinstance(own, str):
                 over[number] = against[number] = own
             else:
                 values[number] = [np.nan if one is None else one for one in own[:count]]
-                judged = ((*limit, value) for limit, value in zip(self.limits, own[count:]) if value is not None)
-                broken = [f"limits.{name}" for name, one, bound, value in judged if breaks(one.quantity, bound, value)]
-                over[number] = ", ".join(broken)
+                over[number] = ", ".join(f"limits.{name}" for name in broken_of(self.limits, own[count:]))
                 whole = Design(number, (*row, *own[:count]))
                 against[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
             self.computed.append((tuple(row), values[number], own if isinstance(own, str) else ""))
