@@ -17,7 +17,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, joined
-from kurbel.report.frame import subjects_of, too_large
+from kurbel.report.frame import Subject, subjects_of, too_large
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 
@@ -33,8 +33,10 @@ AT_ONCE = 1000
 _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
 """Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""
 
-Values = Union[Sequence[Any], str]
-"""The key values of a machine, in SI, a number, a tuple or None each; or the reason why it has none."""
+Value = Union[float, tuple[float, ...], None]
+"""A key value in SI: a number, or a list; None where there is none."""
+Values = Union[Sequence[Value], str]
+"""The key values of a machine; or the reason why it has none."""
 
 
 class Answer(NamedTuple):
@@ -84,7 +86,7 @@ def requested_answers(
     return tuple(part for parts in once.values() for part in parts)
 
 
-def _stands(value: Any) -> bool:
+def _stands(value: object) -> bool:
     """Return whether a value occurs at a crank angle, or may do so in other designs."""
     return isinstance(value, (Extreme, KurbelError))
 
@@ -124,7 +126,7 @@ def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tu
     raise UsageError(f"{option}: this machine has no {ids[0]}; kurbel check shows why")
 
 
-def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:
+def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
     """Return the value of a key value, None where there is none; or the error, since other designs may have one."""
     try:
         return None if default and not subject.says(quantity) else subject.answer(quantity)
@@ -132,7 +134,7 @@ def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:
         return error
 
 
-def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
+def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Value]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
     found = answers_in(Case(machine), answers)
     for one, value in zip(answers, found):
@@ -143,7 +145,7 @@ def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
 
 def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
-    known: dict[tuple[str, str], Any] = {}
+    known: dict[tuple[str, str], Subject] = {}
     for command in dict.fromkeys(one.command for one in answers):
         known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
     found = ((one, known.get((one.command, one.subject))) for one in answers)
@@ -208,7 +210,7 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
         half = len(places) // 2
         return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
     fit = np.ones(len(places), dtype=bool)
-    each: list[Sequence[Any]] = []
+    each: list[Sequence[Value]] = []
     for value in columns:
         if isinstance(value, tuple) and value and isinstance(value[0], tuple):  # a list of each machine
             each.append(value)

@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from itertools import chain, pairwise
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, Union
 
 import numpy as np
 
 from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Answer, answers_of, is_slow, requested_answers
+from kurbel.designs.answers import Answer, Value, answers_of, is_slow, requested_answers
 from kurbel.designs.binding import Batch, Binder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, UsageError
@@ -34,6 +34,8 @@ _GOLDEN = (5**0.5 - 1) / 2
 
 
 Found = TypeVar("Found")
+Cell = Union[Value, str]
+"""A value of a row; a text for an input that is a word."""
 
 
 class Spec(NamedTuple):
@@ -77,7 +79,7 @@ class Design(NamedTuple):
     """
 
     number: int
-    values: tuple[Any, ...]
+    values: tuple[Cell, ...]
     keeps: bool | None = None
     broken: str = ""
     failure: str = ""
@@ -184,7 +186,7 @@ class Sweep:
                 rows.append(Design(number + 1, (*inputs, *[None] * len(self.requested)), failure=str(found[row])))
         return rows
 
-    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
+    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Cell, ...]]:
         """Return the values of the inputs in these rows, counted from 0."""
         columns = []
         for head, texts in zip(self.heads, zip(*map(self.plan.texts, rows))):
@@ -194,7 +196,7 @@ class Sweep:
             columns.append([known[text] for text in texts])
         return zip(*columns)
 
-    def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
+    def _judged(self, found: Sequence[Value]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
         broken = next(broken_of(self._limits, found), "")
         known = {limit.name for limit, value in zip(self._limits, found) if value is not None}
@@ -256,7 +258,7 @@ def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
     return found
 
 
-def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
+def _in_unit(column: Sequence[Value], kind: str, unit: str) -> list[Value]:
     """Return values of a kind in a unit; lists as tuples, None for a missing value."""
     if set(map(type, column)) == {float}:  # as most are
         return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
@@ -284,10 +286,10 @@ def limits_of(machine: Machine) -> Iterator[Limit]:
         yield from (Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
 
 
-def broken_of(limits: Sequence[Limit], values: Sequence[Any]) -> Iterator[str]:
+def broken_of(limits: Sequence[Limit], values: Sequence[Value]) -> Iterator[str]:
     """Yield the names of the limits that these values break, one for each limit, None where there is none."""
     for (name, one, bound), value in zip(limits, values):
-        if value is not None and breaks(one.quantity, bound, value):
+        if not (value is None or isinstance(value, tuple)) and breaks(one.quantity, bound, value):
             yield name
 
 

@@ -13,10 +13,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, islice
-from typing import Any, BinaryIO, NamedTuple, NoReturn
+from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Design, Sweep
+from kurbel.designs.sweep import Cell, Design, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -53,7 +53,7 @@ class Titles(NamedTuple):
         heads = [f"{name}_{unit.replace(' ', '')}" if unit else name for name, unit in self.names]
         return [self.row, *heads, *self.last]
 
-    def values(self, row: Design) -> list[Any]:
+    def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
         return [row.number, *row.values, *map(row.text, self.last)]
 
@@ -111,7 +111,7 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
     return f"{above}{rule}\n", lambda row: table_row(cells(row))
 
 
-def _cell(value: Any, look: Look) -> str:
+def _cell(value: Cell, look: Look) -> str:
     """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
         return look.unit(value) if isinstance(value, Unit) else look.text(value)
@@ -299,7 +299,7 @@ def _cells(line: str, titles: Titles, look: Look) -> list[str]:
     return found if len(found) == len(titles.whole) and found[0].isdecimal() else []
 
 
-def _cell_text(value: Any, look: Look) -> str:
+def _cell_text(value: Cell, look: Look) -> str:
     cell = csv_cell(value, look)
     return "" if cell is None else str(cell)
 
