@@ -22,7 +22,7 @@ LETTERS = "*+ox#@"
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of the dots of a character, four down and two across."""
-_ROLES = {"member": "curve0", "arrow": "curve1"}
+_ROLES = {"member": "curve0", "arrow": "curve1", "force": "curve1"}
 """How parts of mechanisms are drawn; others are thin lines."""
 
 

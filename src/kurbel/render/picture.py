@@ -159,7 +159,8 @@ class PanelFrame:
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
-        x, y = scale_of(panel.x, across, panel.plain), scale_of(panel.y, up, True)
+        bare = not panel.bodies  # which leave no air around them
+        x, y = scale_of(panel.x, across, panel.plain and bare), scale_of(panel.y, up, bare)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
             tall = min(max(wide * sizes[1] / sizes[0], medium.shortest), medium.tallest)
@@ -167,6 +168,11 @@ class PanelFrame:
             spare = (max(sizes / room) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
+
+    @property
+    def points_per_unit(self) -> float:
+        """How long one unit of the x-axis is."""
+        return (self.x.end - self.x.start) / (self.x.high - self.x.low)
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
@@ -224,7 +230,7 @@ class PanelFrame:
         for curve in panel.curves:
             if curve.kind == "faint" and curve.name.symbol:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[-1], curve.y[-1])))
-            if curve.kind == "arrow" and curve.name.symbol and named:
+            if curve.kind in ("arrow", "force") and curve.name.symbol and named:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[1], curve.y[1])))
 
         # of several curves each where it is farthest from the others

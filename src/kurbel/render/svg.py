@@ -1,5 +1,6 @@
 """Pictures as SVG: text stays text, colours and strokes are classes, and what moves, moves without a script."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
@@ -7,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import ComplexArray
+from kurbel.arrays import Array, ComplexArray
 from kurbel.render import Look
 from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol, ticks
 from kurbel.render.text import folded, width
-from kurbel.report.picture import Curve, Picture
+from kurbel.report.picture import MOMENTS_PER_TURN, Body, Curve, Picture, Shape
 
 # lengths in points from the upper left corner
 PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0)
@@ -20,8 +21,10 @@ _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
 _BOLD = 8.3
 """Width of a character of a heading."""
-_SECONDS = 6.0
-"""Time that a moving mechanism takes for one cycle."""
+_SECONDS = 5.0
+"""Time that a moving mechanism takes for one turn."""
+_LONGEST_BAR, _NOTE = 110.0, 6.7
+"""Length of the longest bar that shows a scale, and width of a character of a note."""
 _STRAIGHT = 0.1
 """How far a point that is left out may be from the line between its neighbours."""
 _SUBSCRIPT = re.compile("(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|]+?)(?=,?\\s|,?$|\\|)")
@@ -48,6 +51,20 @@ INK, PAPER = ("#1a1a1a", "#e8e8e8"), ("#ffffff", "#15181b")
 FAINT, GRID = ("#5c5c5c", "#a5a5a5"), ("#dcdcdc", "#33383d")
 GAIN, LOSS = ("#b9cfe2", "#2d4a63"), ("#f1dccd", "#59402c")
 """Each in light and in dark."""
+EDGE = ("#2c3843", "#aeb8c1")
+MATERIALS = {
+    "wall": ("#55626e", "#93a0ab"),
+    "web": ("#8593a0", "#3d4852"),
+    "metal": ("#c9d2da", "#5a6772"),
+    "rod": ("#e4e9ed", "#74818c"),
+    "hollow": ("#f6f8f9", "#20262c"),
+    "gas": ("#e0603a", "#e8693f"),
+    "liquid": ("#3f86bd", "#4d9ad3"),
+}
+"""Edges and fillings of parts of machines, in light and in dark."""
+_EDGED = "metal", "rod", "hollow"
+_LINES = {"thin": "", "axis": "7 2.5 1.5 2.5", "guess": "4 3"}
+"""Looks of lines of machines, with their dashes."""
 SHAPES: tuple[tuple[complex, ...], ...] = (
     (),
     (-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j),
@@ -70,11 +87,17 @@ def css(dark: bool = True) -> str:
     for number, stroke in enumerate(STROKES):
         dashes = f";stroke-dasharray:{stroke.dashes}" if stroke.dashes else ""
         always += f".k{number}{{stroke-width:1.6;fill:none{dashes}}}.j{number}{{stroke-width:1.2;fill:none}}"
+    always += f".{',.'.join(_EDGED)}{{stroke-width:.9;stroke-linejoin:round}}.axis{{stroke-width:.6}}"
+    always += ".note{font-size:12px}.strong{font-size:13px;font-weight:600}"
+    for look, dashes in _LINES.items():
+        always += f".{look}{{fill:none;stroke-width:.7{f';stroke-dasharray:{dashes}' if dashes else ''}}}"
     light, at_night = (
         f".s{{background:{PAPER[mode]}}}text{{fill:{INK[mode]}}}.halo{{stroke:{PAPER[mode]}}}.f{{stroke:{FAINT[mode]}}}"
         f".g{{stroke:{GRID[mode]}}}.x,.m,.o,.b,.i{{stroke:{INK[mode]}}}.o{{fill:{PAPER[mode]}}}.b{{fill:{GRID[mode]}}}"
         f".i{{fill:{INK[mode]}}}.p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
         + "".join(f".k{k},.j{k}{{stroke:{one[mode]}}}.c{k}{{fill:{one[mode]}}}" for k, one in enumerate(STROKES))
+        + "".join(f".{look}{{fill:{one[mode]}}}" for look, one in MATERIALS.items())
+        + f".thin,.guess,.{',.'.join(_EDGED)}{{stroke:{EDGE[mode]}}}.axis{{stroke:{FAINT[mode]}}}.note{{fill:{FAINT[mode]}}}"
         for mode in (0, 1)
     )
     if not dark:
@@ -120,6 +143,7 @@ def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
             top, across = below + 4 * (number > 0), 0.0
         left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
         frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
+        under += 18.0 + 15.0 * len(_footnote(frame)) if panel.footnote else 0.0
         inside = "".join(_panel(frame, left, paper))
         items += f'<g transform="translate({across + left:g} {top + above:g})">\n{inside}</g>\n'
         below, across = max(below, top + above + frame.tall + under), across + each
@@ -144,6 +168,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
         yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
     resting = _text(0, -5, frame.look.text(panel.title), plain=True) if panel.plain else ""
     moving = ""
+    yield from (_body(frame, body, paper) for body in panel.bodies)
     for curve, look in zip(panel.curves, looks_of(panel)):
         if curve.x.ndim == 1 or paper:
             yield _curve(frame, [curve.at_moment(0)], look)
@@ -155,6 +180,79 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
     yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
+    for note in panel.notes:
+        at, look = complex(frame.place(note.place.real, note.place.imag)), "strong" if note.strong else "note"
+        yield _text(at.real, at.imag + 4.5, frame.look.text(note.text), look, "middle", plain=True)
+    if panel.footnote:
+        yield from _below(frame)
+
+
+def _body(frame: PanelFrame, body: Body, paper: bool) -> str:
+    """Return shapes that move together, at rest and, unless on paper, also in motion."""
+    places, scale = frame.place(body.place.real, body.place.imag), frame.points_per_unit
+    moving = not paper and any(len(one) > 1 for one in body[1:])
+    # on the page y counts downward, so that angles turn the other way
+    steps = (
+        ("scale", body.stretch, [f"{round(one, 4):g} 1" for one in body.stretch], 1.0),
+        ("rotate", body.turn, [f"{round(-one, 2) + 0.0:g}" for one in body.turn], 0.0),
+        ("translate", places, [f"{_number(one.real)} {_number(one.imag)}" for one in places], 0.0),
+    )
+    found = ""
+    for animated in (True, False) if moving else (False,):
+        drawn = "".join(_part(shape, scale) for shape in body.shapes)
+        for kind, values, texts, nothing in steps:
+            if np.any(values != nothing):
+                moves = _transformed(kind, values, texts) if animated else ""
+                drawn = f'<g transform="{kind}({texts[0]})">{moves}{drawn}</g>'
+        if np.any(body.tint != 1.0):
+            texts = [f"{one:.2f}".lstrip("0") for one in body.tint]
+            moves = _animated("opacity", texts) if animated else ""
+            drawn = f'<g opacity="{texts[0]}">{moves}{drawn}</g>'
+        found += f'<g class="{"moving" if animated else "still"}">{drawn}</g>\n' if moving else f"{drawn}\n"
+    return found
+
+
+def _part(shape: Shape, scale: float) -> str:
+    points, radius = shape.points.conj() * scale, shape.radius * scale
+    if radius:
+        middle = f' cx="{_number(points[0].real)}"' if points[0].real else ""
+        middle += f' cy="{_number(points[0].imag)}"' if points[0].imag else ""
+        return f'<circle class="{shape.look}"{middle} r="{_number(radius)}"/>'
+    return f'<path class="{shape.look}" d="{_path(points)}{"z" if len(points) > 2 else ""}"/>'
+
+
+def _transformed(kind: str, values: Array, texts: Sequence[str]) -> str:
+    """Return the movement of a transformation through its values, the first of which is at rest, and round again."""
+    loop, seconds = list(texts[1:]), (len(values) - 1) / MOMENTS_PER_TURN * _SECONDS
+    if len(set(loop)) < 2:
+        return ""
+    steps, last = np.diff(values[1:]), loop[0]
+    if kind == "rotate":  # what turns on and on ends a turn later
+        last = f"{round(-values[1] - 360.0 * round((values[-1] - values[1]) / 360.0), 2):g}"
+        if np.ptp(steps) < 1e-9:
+            loop = loop[:1]
+    around = ";".join((*loop, last))
+    return (
+        f'<animateTransform attributeName="transform" type="{kind}" dur="{seconds:g}s" repeatCount="indefinite" '
+        f'values="{around}"/>'
+    )
+
+
+def _below(frame: PanelFrame) -> Iterator[str]:
+    """Yield a bar of a round length, and what of the picture is to scale."""
+    unit, scale, look = frame.panel.x.unit, frame.points_per_unit, frame.look
+    power = 10.0 ** math.floor(math.log10(_LONGEST_BAR / scale))
+    length = next(one * power for one in (5.0, 2.0, 1.0) if one * power * scale <= _LONGEST_BAR)
+    top, end = frame.tall + 22.0, length * scale
+    yield _shape("thin", f"M0 {top - 3:g}v6m0-3h{end:.1f}m0-3v6")
+    yield _text(end + 7.0, top + 4.0, f"{length:g} {look.unit(unit)}", "note")
+    for number, line in enumerate(_footnote(frame)):
+        yield _text(frame.wide, top + 4.0 + 15.0 * number, line, "note", "end", plain=True)
+
+
+def _footnote(frame: PanelFrame) -> list[str]:
+    """Return the lines of the footnote, at the right of the bar."""
+    return folded(frame.look.text(frame.panel.footnote), int((frame.wide - 200.0) / _NOTE))
 
 
 def _around(frame: PanelFrame, left: float) -> Iterator[str]:
@@ -188,6 +286,7 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
     kind, shape = moments[0].kind, look if moments[0].look is None else moments[0].look
     outlines: list[list[tuple[str, str]]] = []
     names: list[complex] = []
+    shaft = complex(frame.place(0.0, 0.0))
     for curve in moments:
         pieces = [frame.place(x, y) for x, y in curve.pieces()]
         lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
@@ -200,14 +299,16 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
         elif kind in ("joint", "fixed"):
             dots = "".join(_dot(point, 0, 4.0) for point in pieces[0])
             outlines.append([("o" if kind == "joint" else "i", dots)])
-        elif kind == "arrow":
+        elif kind in ("arrow", "force"):
             tail, tip = pieces[0]
             length = abs(tip - tail)
             along = (tip - tail) / length if length else 0.0
             neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
             side = np.array([tail, neck, neck])
             outlines.append([("c1", _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z")])
-            names.append(tip + 9.0 * along + 3.5j)
+            # a force is named at its end away from the shaft, where nothing else is
+            inward = kind == "force" and abs(tip - shaft) < abs(tail - shaft)
+            names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
         else:
             outlines.append([({"member": "m", "block": "b"}.get(kind, "f"), lines)])
     shapes = "".join(_shape(name, path, [one for _, one in loop]) for (name, path), *loop in zip(*outlines))
@@ -287,8 +388,8 @@ def _animated(attribute: str, values: Sequence[str]) -> str:
     loop = values[1:]
     if len(set(loop)) < 2:
         return ""
-    around = ";".join((*loop, loop[0]))
-    return f'<animate attributeName="{attribute}" dur="{_SECONDS:g}s" repeatCount="indefinite" values="{around}"/>'
+    around, seconds = ";".join((*loop, loop[0])), len(loop) / MOMENTS_PER_TURN * _SECONDS
+    return f'<animate attributeName="{attribute}" dur="{seconds:g}s" repeatCount="indefinite" values="{around}"/>'
 
 
 def _number(value: float) -> str:

@@ -204,4 +204,6 @@ def in_units(panel: Panel, system: str) -> Panel:
             for x, low, high, gain, figure in panel.shades
         ),
         marks=tuple(Mark(float(to(0, x)), float(to(1, y)), shown(of, 1, y_unit)) for x, y, of in panel.marks),
+        bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
+        notes=tuple(one._replace(place=one.place * to(0, 1.0)) for one in panel.notes),
     )

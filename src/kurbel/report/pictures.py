@@ -18,9 +18,9 @@ from kurbel.report.alike import together
 from kurbel.report.constructions import construction, polar_force
 from kurbel.report.crank import equal_bearings
 from kurbel.report.frame import subjects_of
-from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, Values, in_units, level
+from kurbel.report.section import section
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 from kurbel.solver.effort import Term
@@ -422,6 +422,11 @@ def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
     return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
 
 
+def mechanism(source: Source) -> Iterator[Panel]:
+    """The machine in section, gas and liquid tinted by their pressure; of one cylinder also the forces, as arrows."""
+    return section(*source.results, source.angles)
+
+
 def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod."""
     largest = source.results.load_max if "load_max" in source.key_values and source.marks("load", float) else None
@@ -450,7 +455,8 @@ class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
     The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
-    across: panels next to each other.
+    across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
+    case and those that are wanted.
     """
 
     id: str
@@ -458,6 +464,7 @@ class PictureKind(NamedTuple):
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
+    whole: bool = False
 
     @property
     def text(self) -> str:
@@ -487,7 +494,7 @@ PICTURES = (
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
-    PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
+    PictureKind("mechanism", "Mechanism", "motion", mechanism, whole=True),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
@@ -576,6 +583,9 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
             yield Source(bearings[0], options.angles), together([one.name for one in bearings])
     else:
         wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
+        if kind.whole:
+            yield Source((case, wanted), options.angles), options.cylinder or ""
+            return
         for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
             if command == "forces":
                 equal[0].refuse_locking()
