@@ -12,7 +12,7 @@ from kurbel.arrays import Array, ComplexArray
 from kurbel.render import Look
 from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol, ticks
 from kurbel.render.text import folded, width
-from kurbel.report.picture import MOMENTS_PER_TURN, Body, Curve, Picture, Shape
+from kurbel.report.picture import MOMENTS_PER_TURN, Body, Curve, Panel, Picture, Shape
 
 # lengths in points from the upper left corner
 PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0)
@@ -23,6 +23,8 @@ _BOLD = 8.3
 """Width of a character of a heading."""
 _SECONDS = 5.0
 """Time that a moving mechanism takes for one turn."""
+_POSTER = (1150.0, 640.0)
+"""Room for a picture on a sheet, the longer side first."""
 _LONGEST_BAR, _NOTE = 110.0, 6.7
 """Length of the longest bar that shows a scale, and width of a character of a note."""
 _STRAIGHT = 0.1
@@ -54,7 +56,7 @@ GAIN, LOSS = ("#b9cfe2", "#2d4a63"), ("#f1dccd", "#59402c")
 EDGE = ("#2c3843", "#aeb8c1")
 MATERIALS = {
     "wall": ("#55626e", "#93a0ab"),
-    "web": ("#8593a0", "#3d4852"),
+    "web": ("#8593a0", "#465260"),
     "metal": ("#c9d2da", "#5a6772"),
     "rod": ("#e4e9ed", "#74818c"),
     "hollow": ("#f6f8f9", "#20262c"),
@@ -97,7 +99,8 @@ def css(dark: bool = True) -> str:
         f".i{{fill:{INK[mode]}}}.p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
         + "".join(f".k{k},.j{k}{{stroke:{one[mode]}}}.c{k}{{fill:{one[mode]}}}" for k, one in enumerate(STROKES))
         + "".join(f".{look}{{fill:{one[mode]}}}" for look, one in MATERIALS.items())
-        + f".thin,.guess,.{',.'.join(_EDGED)}{{stroke:{EDGE[mode]}}}.axis{{stroke:{FAINT[mode]}}}.note{{fill:{FAINT[mode]}}}"
+        + f".thin,.guess,.{',.'.join(_EDGED)}{{stroke:{EDGE[mode]}}}.axis{{stroke:{FAINT[mode]}}}"
+        + f".note{{fill:{FAINT[mode]}}}"
         for mode in (0, 1)
     )
     if not dark:
@@ -129,6 +132,17 @@ def svg(picture: Picture, look: Look) -> str:
     tall, items = _drawn(picture, look, False)
     head = f'<svg class="s" viewBox="0 0 {WIDTH:g} {tall:g}" role="img">'
     return f"{head}<title>{escape(picture_text(picture, look))}</title>\n{items}</svg>"
+
+
+def poster_svg(panel: Panel, look: Look, wide: bool) -> str:
+    """Return a panel alone, as it is on a sheet of paper, wide or tall, with fine lines and small texts."""
+    room, tallest = _POSTER if wide else _POSTER[::-1]
+    frame = PanelFrame(panel, look, PAPER_SIZES._replace(tallest=tallest), room, tallest)
+    tall = frame.tall + 30.0 + 15.0 * len(_footnote(frame))
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-2 -6 {room + 4:g} {tall + 6:g}" width="{room + 4:g}" '
+        f'height="{tall + 6:g}"><style>{css(False)}</style>{"".join(_panel(frame, 0.0, True))}</svg>'
+    )
 
 
 def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
@@ -166,7 +180,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     for shade in panel.shades:
         low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
         yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
-    resting = _text(0, -5, frame.look.text(panel.title), plain=True) if panel.plain else ""
+    resting = _text(0, -5, frame.look.text(panel.title), "note", plain=True) if panel.plain else ""
     moving = ""
     yield from (_body(frame, body, paper) for body in panel.bodies)
     for curve, look in zip(panel.curves, looks_of(panel)):
@@ -251,8 +265,10 @@ def _below(frame: PanelFrame) -> Iterator[str]:
 
 
 def _footnote(frame: PanelFrame) -> list[str]:
-    """Return the lines of the footnote, at the right of the bar."""
-    return folded(frame.look.text(frame.panel.footnote), int((frame.wide - 200.0) / _NOTE))
+    """Return the lines of the footnote at the right of the bar, about equally long."""
+    text, room = frame.look.text(frame.panel.footnote), int((frame.wide - 190.0) / _NOTE)
+    lines = folded(text, room)
+    return folded(text, min(room, len(text) // len(lines) + 8))
 
 
 def _around(frame: PanelFrame, left: float) -> Iterator[str]:

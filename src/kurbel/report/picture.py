@@ -139,7 +139,9 @@ class Body(NamedTuple):
     tint: Array
 
     @classmethod
-    def of(cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0) -> "Body":
+    def of(
+        cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0
+    ) -> "Body":
         """Return the body of numbers or arrays."""
         place, *others = (np.atleast_1d(one) for one in (np.asarray(place, dtype=complex), turn, stretch, tint))
         return cls(tuple(shapes), place, *(np.asarray(one, dtype=float) for one in others))

@@ -20,7 +20,7 @@ from kurbel.report.crank import equal_bearings
 from kurbel.report.frame import subjects_of
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, Values, in_units, level
-from kurbel.report.section import section
+from kurbel.report.section import mechanism
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 from kurbel.solver.effort import Term
@@ -420,11 +420,6 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
     """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
     return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
-
-
-def mechanism(source: Source) -> Iterator[Panel]:
-    """The machine in section, gas and liquid tinted by their pressure; of one cylinder also the forces, as arrows."""
-    return section(*source.results, source.angles)
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:

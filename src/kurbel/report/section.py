@@ -8,7 +8,7 @@ stroke or the bore by fixed shares.
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from kurbel.machine.parts import Piston
 from kurbel.mechanisms import PIN, SHAFT, Sketch
 from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Curve, Note, Panel, Shape, Words
 from kurbel.report.picture_source import PHI, Source
-from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
 _STILL = 60.0
@@ -37,7 +36,7 @@ _BORE = 0.9  # of the stroke
 _CLEARANCE = 0.05  # of the stroke, between piston and cover in the dead centre
 _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # height of a piston over the bore
 _WALL, _COVER, _GLAND, _ROD = 0.06, 0.1, 0.16, 0.08  # of the bore; the last is the radius of a piston rod
-_PIN, _JOURNAL, _WEIGHT, _WHEEL = 0.2, 0.27, 0.85, 2.2  # radii over the crank radius
+_PIN, _JOURNAL, _WEIGHT, _WHEEL = 0.2, 0.27, 0.95, 2.2  # radii over the crank radius
 _EYE = 1.55  # radius of the eye round a pin over that of the pin
 _PITCH = 1.35  # distance of cylinders in a row over the widest bore
 _SHOE = 0.36  # half the length and height of a crosshead over the crank radius
@@ -88,10 +87,17 @@ class Train:
         }
         shaft = machine.crankshaft
         self.pin = shaft.pin_diameter / 2 if shaft else _PIN * self.mechanism.crank
-        self.journal = shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.mechanism.crank
+        self.journal = (
+            shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.mechanism.crank
+        )
         pistons, masses = self.cylinder.pistons, self.cylinder.masses
         piston_rod = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
         self.crosshead = piston_rod or bool(masses and masses.crosshead) or machine.locomotive is not None
+
+    @property
+    def weight(self) -> float:
+        """Radius of the counterweight over that of the crank, larger where some are given."""
+        return _WEIGHT if self.machine.counterweights or self.cylinder.counterweights else 0.8 * _WEIGHT
 
     @property
     def is_engine(self) -> bool:
@@ -136,7 +142,9 @@ class Train:
                 ends = (ends[0], reach[1]) if outward else (reach[0], ends[1])
         return tuple(found)
 
-    def _barrel(self, piston: Piston | None, number: int, near: float, far: float, start: float, outward: bool) -> Barrel:
+    def _barrel(
+        self, piston: Piston | None, number: int, near: float, far: float, start: float, outward: bool
+    ) -> Barrel:
         """Return a cylinder that begins beyond a place in m; outward: away from the shaft."""
         R, stroke = self.mechanism.crank, self.mechanism.stroke
         bore = piston.bore if piston else _BORE * stroke
@@ -148,7 +156,9 @@ class Train:
         if number == 0 and not self.crosshead:
             height = _TRUNK * bore
             shift, low = 0.08 * height, near - 0.2 * height
-            return Barrel(piston, bore, height, shift, low, far + shift + height / 2 + high_gap, closed, (0.0, 0.0), True)
+            return Barrel(
+                piston, bore, height, shift, low, far + shift + height / 2 + high_gap, closed, (0.0, 0.0), True
+            )
         height = (_DISC if closed[0] else _PLUNGER) * bore
         room = 0.12 * R + (_COVER + _GLAND) * bore
         if outward:
@@ -163,19 +173,18 @@ class Train:
         return Barrel(piston, bore, height, shift, low, high, closed, rods)
 
 
-def section(case: Case, cylinders: Sequence[CylinderForces], angles: Sequence[float] | None) -> Iterator[Panel]:
+def mechanism(source: Source) -> Iterator[Panel]:
     """The machine in section, gas and liquid tinted by their pressure; of one cylinder also the forces, as arrows."""
+    case, cylinders = source.results
     if not cylinders or any(one.drive.mechanism.sketch(CrankAngle.of(0.0)) is None for one in cylinders):
         return
-    turns, alone = case.machine.revolutions, len(cylinders) == 1
-    if angles is None:
-        loop = np.arange(MOMENTS_PER_TURN * turns) * (360.0 / MOMENTS_PER_TURN)
-        shown = [np.append(_rest(cylinders[0], alone), loop)]
-    else:
-        shown = [np.array([float(one)]) for one in angles]
+    shown, alone = [np.array([float(one)]) for one in source.angles or ()], len(cylinders) == 1
+    if source.angles is None:
+        turning = np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * (360.0 / MOMENTS_PER_TURN)
+        shown = [np.append(_rest(cylinders[0], alone), turning)]
     for degrees in shown:
         trains = [Train(case.machine, one, degrees, alone) for one in cylinders]
-        title = f"φ = {round(float(degrees[0]), 2 if angles is None else 6):.9g}°"
+        title = f"φ = {round(float(degrees[0]), 2 if source.angles is None else 6):.9g}°"
         yield _panel(case.machine, trains)._replace(title=title)
 
 
@@ -191,8 +200,10 @@ def _rest(first: CylinderForces, alone: bool) -> float:
 def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     angle, mirrored = _standing(trains), machine.rotation == "under"
     front = list({round(one.angle % 360.0, 6): one for one in reversed(trains)}.values())[::-1]
-    along = [*_wheel(machine, trains[0].mechanism.crank)]
-    for parts in (_web, _engine, _links):  # the first cylinder is in front
+    R = trains[0].mechanism.crank
+    along = [*_wheel(machine, R), Body.of([_disc("axis", R)])]
+    # the first cylinder is in front, and a yoke in front of its crank
+    for parts in (_web, _engine, _links) if trains[0].has_slot else (_engine, _web, _links):
         along += [body.seen(one.angle) for one in reversed(front) for body in parts(one)]
     along = [body.seen(angle, mirrored) for body in along]
 
@@ -200,7 +211,8 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     if row:
         along, notes = _with_side(machine, along, row, level=abs(math.sin(math.radians(angle))) < _LEVEL)
     elif len(trains) > 1:
-        notes = [_number(one, trains.index(one) + 1, angle, mirrored) for one in front]
+        em = max(np.diff(_bounds(along))[[0, 2]]) / _LETTERS
+        notes = [_number(one, trains.index(one) + 1, angle, mirrored, em) for one in front]
     arrows = tuple(_arrows(trains[0], angle, mirrored)) if len(trains) == 1 else ()
     axis, said = Axis(Words(""), "length"), _footnote(machine, trains, row)
     return Panel(axis, axis, arrows, equal=True, plain=True, bodies=tuple(along), notes=tuple(notes), footnote=said)
@@ -214,6 +226,8 @@ def _standing(trains: Sequence[Train]) -> float:
     if not first.is_engine:  # a ram, which moves across the line of the pivots, is level
         return 90.0 if first.sketch.output else 0.0
     banks = sorted({one.angle for one in trains})
+    if banks[-1] - banks[0] > 180.0:  # a radial engine
+        return 90.0
     upright = len(banks) > 1 or not first.crosshead or len(trains) > 2
     return 90.0 - sum(banks) / len(banks) if upright else 0.0
 
@@ -253,7 +267,7 @@ def _with_side(
         side.append(Body.of([box(look, -radius, radius, -last - width, -last)]))
     side = [body.seen(0.0 if level else 90.0) for body in side]
 
-    (left, right, bottom, top), (side_left, side_right, side_bottom, side_top) = map(_bounds, (along, side))
+    (left, right, bottom, top), (side_left, side_right, _, side_top) = map(_bounds, (along, side))
     if level:
         moved = 1j * (bottom - side_top - 0.1 * (top - bottom)) + 0j
     else:
@@ -263,7 +277,10 @@ def _with_side(
     for number, (place, one) in enumerate(row, 1):
         outer, inner = max(barrel.ends(_COVER)[1] for barrel in one.barrels), -1.5 * one.mechanism.crank
         turn = 1.0 if level else 1j
-        for at, text in ((outer + 1.2 * em, str(number)), (inner - 0.8 * em, f"{one.cylinder.crank_position:.4g}°")):
+        for at, text in (
+            (outer + 1.2 * em, str(number)),
+            (inner - 0.8 * em, f"{one.cylinder.crank_position % 360:.4g}°"),
+        ):
             notes.append(Note(text, turn * complex(at, -place) + moved, at > 0))
     return [*along, *(body.seen(0.0, moved=moved) for body in side)], notes
 
@@ -274,11 +291,11 @@ def _bounds(bodies: Sequence[Body]) -> tuple[float, float, float, float]:
     return every.real.min(), every.real.max(), every.imag.min(), every.imag.max()
 
 
-def _number(one: Train, number: int, angle: float, mirrored: bool) -> Note:
+def _number(one: Train, number: int, angle: float, mirrored: bool, em: float) -> Note:
     """Return the number of a cylinder, beyond its head."""
     outer = max(barrel.ends(_COVER)[1] for barrel in one.barrels) if one.is_engine else one.mechanism.crank
     turned = angle + (-one.angle if mirrored else one.angle)
-    return Note(str(number), (outer + 0.25 * one.mechanism.crank) * np.exp(1j * np.radians(turned)), strong=True)
+    return Note(str(number), (outer + 1.3 * em) * np.exp(1j * np.radians(turned)), strong=True)
 
 
 def _footnote(machine: Machine, trains: Sequence[Train], row: Sequence[tuple[float, Train]]) -> str:
@@ -288,21 +305,21 @@ def _footnote(machine: Machine, trains: Sequence[Train], row: Sequence[tuple[flo
         barrel = first.barrels[0]
         scale += ["crank", "stroke"] if math.isinf(first.mechanism.rod_length) else ["crank", "rod", "stroke"]
         scale += ["offset"] if first.mechanism.offset else []
-        (scale if barrel.piston else shares).append("bore" if barrel.piston else f"bore {_BORE:g} of the stroke")
-        shares.append(f"piston {barrel.height / barrel.bore:.2g} of the bore")
+        (scale if barrel.piston else shares).append("bore" if barrel.piston else f"bore ({_BORE:g} strokes)")
+        shares.append(f"piston ({barrel.height / barrel.bore:.2g} bores high)")
     else:
         scale.append("all lengths between pins")
     if len({one.angle for one in trains}) > 1:
         scale.append("bank angles")
     if row:
         given = all(one.cylinder.axial_position == place for place, one in row)
-        (scale if given else shares).append("places along the shaft" if given else "spacing")
+        (scale if given else shares).append("distances along the shaft" if given else "distances of cylinders")
     if machine.locomotive and machine.locomotive.wheel_diameter:
         scale.append("wheel")
     elif machine.flywheel:
         rim = machine.flywheel.rim
-        (scale if rim else shares).append("flywheel" if rim else f"flywheel {_WHEEL:g} of the crank")
-    return f"To scale: {', '.join(scale)}. Not given, by shares: {', '.join((*shares, 'walls, webs and pins'))}."
+        (scale if rim else shares).append("flywheel" if rim else f"flywheel ({_WHEEL:g} cranks)")
+    return f"To scale: {', '.join(scale)}. Not given, by shares: {', '.join((*shares, 'all else'))}."
 
 
 # the forces
@@ -319,27 +336,32 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
         places = train.joints[name]
         return np.concatenate((places[:1], np.tile(places[1:], turns)))[: len(degrees)]
 
-    acting = dict[str, tuple[ComplexArray, ComplexArray, float]]()  # joint, direction, distance of the tail
-    clear = 1.85 * R if train.has_slot or train.has_frame else 1.25 * _SHOE * R + 0.15 * R
-    place = joint(PIN).real + 0j if train.has_slot else joint(sketch.output) if sketch.output else joint(PIN)
+    # joint, direction in which the force counts, and where the arrow is from there, at a distance
+    clear, place = 1.5 * _SHOE * R, joint(sketch.output or PIN)
+    if train.has_slot or train.has_frame:
+        clear, place = 1.95 * R, joint(PIN).real + 0j if train.has_slot else place
+    elif not train.is_engine:
+        clear = 4.8 * train.pin
+    elif not train.crosshead:
+        clear = (0.5 + 2.2 * _WALL) * train.barrels[0].bore
+    acting = dict[str, tuple[ComplexArray, ComplexArray, ComplexArray | None, float]]()
     if sketch.toward:
         toward = np.full(len(degrees), complex(*sketch.toward))
-        acting["P"] = place - 1j * toward * (clear + 0.15 * R), toward, 0.3 * R
+        acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.25 * R
     if sketch.across:
-        acting["N"] = place, np.full(len(degrees), complex(*sketch.across)), clear
-    acting["T"] = joint(PIN), 1j * outward, _EYE * train.pin + 0.12 * R
-    acting["D"] = joint(PIN), -outward, -_EYE * train.pin - 0.12 * R
+        acting["N"] = place, np.full(len(degrees), complex(*sketch.across)), None, clear
+    beyond = _EYE * train.pin + 0.12 * R
+    acting["T"] = joint(PIN), 1j * outward, None, beyond
+    acting["D"] = joint(PIN), -outward, outward, beyond
     ids = source.having(*acting)
     if not ids:
         return
     largest = float(np.abs(source.samples((PHI, *ids)).values[1:]).max()) or 1.0
     for id, force in zip(ids, source.values(ids, degrees)):
-        place, direction, off = acting[id]
-        arrow = direction * force * (_LONGEST * R / largest)
-        if off > 0:
-            tail = place + off * direction * np.where(force < 0, -1.0, 1.0)
-        else:  # outside of the pin, wherever it points
-            tail = place + off * direction - np.where(force > 0, arrow, 0.0)
+        place, direction, side, off = acting[id]
+        arrow, along = direction * force * (_LONGEST * R / largest), direction * np.where(force < 0, -1.0, 1.0)
+        away = along if side is None else side
+        tail = place + off * away - np.where((along * away.conj()).real < 0, arrow, 0.0)
         ends = np.stack((tail, tail + arrow), axis=1)
         ends = (ends.conj() if mirrored else ends) * np.exp(1j * np.radians(angle))
         shown = ends if len(ends) > 1 else ends[0]
@@ -384,7 +406,9 @@ def _engine(train: Train) -> Iterator[Body]:
     if train.crosshead and train.mechanism.guided and not train.has_slot:
         (near, _), (far, _) = train.sketch.guides[0]
         rails = near - 1.4 * _SHOE * R, far + 1.2 * _SHOE * R
-        yield Body.of([box("wall", *rails, *sorted(side * R * at for at in (_SHOE, 1.25 * _SHOE))) for side in (-1, 1)], level)
+        yield Body.of(
+            [box("wall", *rails, *sorted(side * R * at for at in (_SHOE, 1.25 * _SHOE))) for side in (-1, 1)], level
+        )
     yield Body.of(_on_the_rod(train), place)
 
 
@@ -406,7 +430,13 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
             start, turn, length = barrel.low, 0.0, middle - barrel.height / 2 - barrel.low
         else:
             start, turn, length = barrel.high, 180.0, barrel.high - middle - barrel.height / 2
-        yield Body.of([_strip("liquid" if pumped else "gas", 0.0, 1.0, half)], start + 1j * train.mechanism.offset, turn, length, tint)
+        yield Body.of(
+            [_strip("liquid" if pumped else "gas", 0.0, 1.0, half)],
+            start + 1j * train.mechanism.offset,
+            turn,
+            length,
+            tint,
+        )
 
 
 def _walls(barrel: Barrel) -> Iterator[Shape]:
@@ -437,7 +467,7 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
             further = [one.shift for one in train.barrels if one.shift > barrel.shift]
             yield _strip("rod", barrel.shift, min(further, default=tail), outer)
         if barrel.shift < 0:
-            yield _strip("rod", barrel.shift, max(left, 0.0) if train.has_slot else left, outer)
+            yield _strip("rod", barrel.shift, left, outer)
     for barrel in train.barrels:
         yield from _piston(barrel)
     if train.has_slot:
@@ -445,10 +475,8 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
         yield _strip("metal", left, right, 1.6 * R)
         yield _strip("hollow", middle - 0.55 * half, middle + 0.55 * half, 1.35 * R)
     elif train.has_frame:
-        for low, high in ((left, left + 0.5 * R), (right - 2 * _SHOE * R, right)):
-            yield _strip("metal", low, high, 1.8 * R)
-        for side in (-1, 1):
-            yield box("metal", left, right, *sorted((side * 1.55 * R, side * 1.8 * R)))
+        yield _strip("metal", left, right, 1.8 * R)
+        yield _strip("hollow", left + 0.4 * R, right - 2 * _SHOE * R, 1.55 * R)
     elif train.crosshead:
         yield _strip("metal", left, right, _SHOE * R)
 
@@ -465,15 +493,29 @@ def _piston(barrel: Barrel) -> Iterator[Shape]:
 
 
 def _web(train: Train) -> Iterator[Body]:
-    """Yield the web of a crank with its counterweight, turning about the shaft."""
-    R, hub, eye = train.mechanism.crank, 1.45 * train.journal, _EYE * train.pin
-    back = _WEIGHT * R * np.exp(1j * np.radians(np.linspace(140.0, 220.0, 11)))
-    around = R + eye * np.exp(1j * np.radians(np.linspace(-84.0, 84.0, 13)))
-    waist = hub * np.exp(1j * np.radians([-97.0, 97.0]))
-    turn = train.motion
-    journal = _disc("metal", train.journal), _disc("web", 0.15 * train.journal)
-    yield Body.of([Shape("web", np.concatenate((back, waist[:1], around, waist[1:]))), _disc("web", hub), *journal], 0.0, turn)
-    yield Body.of([_disc("axis", R)])
+    """Yield the crank with its counterweight, other members that turn on and on, and the bearings on the frame."""
+    fixed = () if train.is_engine else train.sketch.fixed
+    down = -1j if train.sketch.output == "" else -1.0
+    for name in fixed:
+        foot = down * train.journal * np.array([-0.8j, -2.0 * 1j + 2.6, 2.0 * 1j + 2.6, 0.8j])
+        yield Body.of([Shape("wall", foot)], train.joints[name][0])
+    yield Body.of(_crank(train, train.mechanism.crank), 0.0, train.motion)
+    for start, end in train.sketch.links:
+        if end in fixed and train.mechanism.turns:
+            arm = train.joints[start] - train.joints[end]
+            yield Body.of(_crank(train, float(abs(arm[0]))), train.joints[end][0], _bearing(arm))
+
+
+def _crank(train: Train, R: float) -> Iterator[Shape]:
+    hub, eye = 1.45 * train.journal, _EYE * train.pin
+    tangent = np.arccos((hub - eye) / R) * 1j * np.array([-1, 1])
+    yield Shape("web", np.append(hub * np.exp(tangent), (R + eye * np.exp(tangent))[::-1]))
+    yield _disc("web", eye, complex(R))
+    back = train.weight * R * np.exp(1j * np.radians(np.linspace(142.0, 218.0, 11)))
+    yield Shape("web", np.concatenate((hub * np.exp([1.8j]), back, hub * np.exp([-1.8j]))))
+    yield _disc("web", hub)
+    yield _disc("metal", train.journal)
+    yield _disc("web", 0.15 * train.journal)
 
 
 def _links(train: Train) -> Iterator[Body]:
@@ -490,7 +532,11 @@ def _links(train: Train) -> Iterator[Body]:
             yield Body.of([_strip("rod", 0.0, far, 1.9 * pin), _disc("rod", 1.9 * pin), slot], start, turn)
         elif train.is_engine and link != (SHAFT, PIN):
             yield Body.of(_rod(pin, length), end, turn)
-        elif link != (SHAFT, PIN) and link[1] != sketch.output:
+        elif (
+            link != (SHAFT, PIN)
+            and link[1] != sketch.output
+            and not (link[1] in sketch.fixed and train.mechanism.turns)
+        ):
             yield Body.of(_bar(pin, length), start, turn)
     if sketch.output and not train.is_engine:
         yield from _ram(train)
@@ -509,7 +555,9 @@ def _rod(pin: float, length: float) -> Iterator[Shape]:
     big, small = _EYE * pin, 1.15 * pin
     outline = np.array([-length - 0.8j * pin, -0.6j * pin, 0.6j * pin, -length + 0.8j * pin])
     yield Shape("rod", outline)
-    flute = np.array([-length + big - 0.38j * pin, -small - 0.26j * pin, -small + 0.26j * pin, -length + big + 0.38j * pin])
+    flute = np.array(
+        [-length + big - 0.38j * pin, -small - 0.26j * pin, -small + 0.26j * pin, -length + big + 0.38j * pin]
+    )
     yield Shape("thin", flute)
     yield _disc("rod", big, complex(-length))
     yield _disc("rod", small)
@@ -553,9 +601,11 @@ def _throw(train: Train) -> Iterator[Body]:
     webs = [sorted((side * inner, side * outer)) for side in (-1, 1)]
     high = np.cos(np.radians(train.motion))
     shortest = math.sqrt(train.mechanism.rod_length**2 - (R + abs(train.mechanism.offset)) ** 2)
-    yield Body.of([box("web", -_WEIGHT * R, R, *web) for web in webs], 0.0, 0.0, high)
+    yield Body.of([box("web", -train.weight * R, R, *web) for web in webs], 0.0, 0.0, high)
     yield Body.of([box("web", -hub, hub, *web) for web in webs])
-    yield Body.of([_strip("rod", -shortest, 0.0, 0.55 * inner), _strip("rod", -pin, pin, 0.8 * inner)], train.output.real)
+    yield Body.of(
+        [_strip("rod", -shortest, 0.0, 0.55 * inner), _strip("rod", -pin, pin, 0.8 * inner)], train.output.real
+    )
     pins = [box("web", -eye, eye, *web) for web in webs]
     yield Body.of([_strip("metal", -pin, pin, inner), _strip("rod", -eye, eye, 0.8 * inner), *pins], R * high)
 

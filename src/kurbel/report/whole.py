@@ -9,8 +9,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from kurbel.declared.unit_systems import convert, shown_unit, units_of
+from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.machine import Machine
 from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
@@ -81,7 +82,6 @@ def whole_report(
     """
     stepped(step, 360.0)  # a step that is none is refused at once
     found, places = checked(case), every_place()
-    known = {part.title: part for part in found.sections}
     sections = [Section("summary", "Summary", tuple(_summary(case, found, system)))]
 
     left_out: list[tuple[str, str]] = []
@@ -106,12 +106,15 @@ def whole_report(
         Section("left-out", "Left out", (Grid("", ("Part", "Why"), tuple(left_out)),) if left_out else ()),
         Section("input", "Input as understood", tuple(items)),
     ]
-    about = {one.what: one.text for one in known["Machine"].entries}
-    count = about.get("cylinders", "")
-    cylinders = f"{count} cylinder{'s' * (count != '1')}" if count else ""
-    kind = ", ".join(filter(None, (cylinders, about.get("cycle"), about.get("speed"))))
     sources = (provenance(case.machine),)
-    return Document(case.machine.name, sources, tuple(one for one in sections if one.items), kind)
+    return Document(case.machine.name, sources, tuple(one for one in sections if one.items), subtitle_of(case.machine))
+
+
+def subtitle_of(machine: Machine) -> str:
+    """Return number of cylinders, cycle and speed in a line."""
+    count = len(machine.cylinders)
+    texts = [f"{count} cylinder{'s' * (count > 1)}", machine.cycle] if count else []
+    return ", ".join(texts if machine.speed is None else [*texts, show(machine.speed, "speed", 4)])
 
 
 def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
@@ -119,7 +122,7 @@ def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
     mechanism = next(one for one in PICTURES if one.id == "mechanism")
     for one in _if_any(partial(pictures_if_any, case, mechanism, PictureOptions(system)))[:1]:
         yield one._replace(machine="")
-    if facts := tuple(islice(_facts(case, system), _MOST_FACTS)):
+    if facts := tuple(islice(facts_of(case, system), _MOST_FACTS)):
         yield Facts(facts)
     for part in found.sections:
         if part.title in _VERDICTS:
@@ -132,7 +135,7 @@ def _summary(case: Case, found: Checked, system: str) -> Iterator[Item]:
         yield Grid("Warnings", ("Part", "Warning"), tuple((one.what, one.text) for one in warnings))
 
 
-def _facts(case: Case, system: str) -> Iterator[Fact]:
+def facts_of(case: Case, system: str) -> Iterator[Fact]:
     """Yield the key values that say most, each of the part where its magnitude is largest."""
     for command, ids in _FACTS.items():
         values: dict[str, list[tuple[float, Quantity, object, str]]] = {}
