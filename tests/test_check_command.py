@@ -356,3 +356,18 @@ def test_a_sweep_keeps_limits_of_those_they_name() -> None:
     assert (status, [one["broken"] for one in found]) == (0, [None, None, None, None, "LP.T_max", "LP.T_max"])
     told = of_two(bounds, *asked, "-f", "json", "--set", "limits={}", "--set", "limits.machine.T_max=56 kN")[1]
     assert [json.loads(line)["broken"] for line in told.splitlines()] == [None] * 2 + ["machine.T_max"] * 4
+
+
+def test_check_lists_what_pumps_and_compressors_deliver() -> None:
+    """Of a machine that delivers nothing there is no such section; what its command refuses is the reason here."""
+    names = ("triplex-pump", "compressor-two-stage", "gas-engine")
+    pump, compressor, engine = (CONFIGS[one].read_text(encoding="utf-8") for one in names)
+    for text, listed in (
+        (pump, ("Delivery", "flow, fluctuating volume")),
+        (compressor, ("stages and ends", "0.9657 times")),
+        (pump.replace("volume: 4 l", "volume: 0.01 l").partition("limits:")[0], ("would empty",)),
+    ):
+        status, out, _ = run(text, "check")
+        assert status == 0
+        assert all(one in out for one in listed), out
+    assert "Delivery" not in run(engine, "check")[1]

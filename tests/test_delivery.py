@@ -167,6 +167,35 @@ def test_each_piston_and_chamber() -> None:
     assert (first["flow_head"][:2] == 0).all()  # the outstroke shrinks the crank end
 
 
+@pytest.mark.parametrize("ratio", [0.6, -0.6])
+@pytest.mark.parametrize("second", ["", DOUBLE])
+def test_a_pump_that_a_lever_drives(ratio: float, second: str) -> None:
+    """Its piston moves by so many crosshead displacements; what its chambers lose, they deliver, less the slip."""
+    steam = "{constant: {expansion: 9 bar, compression: 0 bar}}"
+    file = (
+        "speed: 60 rpm\ncrank: 150 mm\nrod: 700 mm\noffset: 40 mm\nbore: 250 mm\npump: {slip: 0.1}\n"
+        f"indicator: {{head_end: {steam}, crank_end: mirrored}}\n"
+        f"tandem: [{{bore: 120 mm, crank_end_rod: 50 mm, lever_ratio: {ratio}, indicator: {{{SINGLE}{second}}}}}]\n"
+    )
+    delivery = api.solve(api.loads(file)).delivery
+    head, crank = math.pi / 4 * 0.12**2, math.pi / 4 * (0.12**2 - 0.05**2) * bool(second)
+
+    degrees = np.linspace(0.0, 360.0, 2_000_001)
+    aside = 0.15 * np.sin(np.radians(degrees)) - 0.04
+    moved = ratio * -(0.15 * np.cos(np.radians(degrees)) + np.sqrt(0.7**2 - aside**2))  # towards the crank
+    steps = np.diff(moved)
+    rate = 0.9 * np.where(steps < 0, -head * steps, crank * steps)
+    delivered = np.append(0.0, np.cumsum(rate))
+    assert delivery.pump
+    assert delivery.pump["flow_mean"].value == pytest.approx(delivered[-1], rel=1e-12)  # in a turn of 1 s
+    own = np.ptp(delivered - delivered[-1] * degrees / 360)
+    assert delivery.pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
+    flow = delivery.pump.columns([50.0, 130.0, 240.0, 330.0])["flow"]
+    places = np.array([50.0, 130.0, 240.0, 330.0]) / 360 * 2_000_000
+    around = (rate[places.astype(int) - 1] + rate[places.astype(int)]) / 2 * 2_000_000
+    assert flow == pytest.approx(around, rel=1e-5, abs=1e-9)
+
+
 # compressors
 
 ENDS = """\

@@ -11,7 +11,6 @@ attribute is computed on first use. The rows of a class are printed in the order
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any, Generic, NamedTuple, TypeVar, overload
@@ -279,7 +278,7 @@ def key_value(
     """
 
     def made(function: Callable[[Any], V]) -> Computed[V]:
-        text = " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+        text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
         return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
 
     return made

@@ -134,6 +134,20 @@ def test_better_needs_both_error_and_time() -> None:
             "work, T, friction work",
             "pins that rub",
         ),
+        (
+            SMOOTH.replace(
+                "flywheel:",
+                "friction: {rings: {count: 3, height: 8 mm, pressure: gas, coefficient: 0.1}}, flywheel:",
+            ),
+            "work, T, friction work",
+            "rings that the gas presses",
+        ),
+        (
+            "{mechanism: scotch-yoke, stroke: 120 mm, speed: 60 rpm, bore: 90 mm, guide_length: 260 mm, indicator: "
+            "{head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}, friction: {block: 0.1, guides: 0.1}}",
+            "ΔE",
+            "a yoke that rubs",
+        ),
         ("{speed: 60 rpm, effort: {unit: N m, points: [[0, 1], [360, 1]]}}", "ΔE", "a given turning effort"),
     ],
 )

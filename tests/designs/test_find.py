@@ -1,16 +1,19 @@
 """`kurbel find`: values planted, published, or known by a law are found again."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from kurbel.arrays import Array
 from kurbel.cli import kurbel
 from kurbel.designs.find import Solutions, find
 from kurbel.errors import UsageError
 from kurbel.machine_file.source import decode, read
+from kurbel.numerics.search import lowest
 from kurbel.render.findings import picture
 
 CONFIGS = Path(__file__).parents[2] / "configs"
@@ -166,3 +169,33 @@ def test_a_key_varied_twice_is_refused() -> None:
     origin = decode("<text>", b"{stroke: 1 m, rod_ratio: 5, speed: 60 rpm}")
     with pytest.raises(UsageError, match="this key is varied twice"):
         find(origin, ["speed=50:99 rpm", " speed =40:60 rpm"], ["c_m = 3 m/s", "b_max = 9 m/s2"])
+
+
+def banana(steep: float) -> Callable[[Array], Array]:
+    """Rosenbrock's valley over [−2, 2]², lifted to 1; its lowest place is (1, 1)."""
+    return lambda at: 1 + (3 - 4 * at[:, 0]) ** 2 + steep * (4 * at[:, 1] - 2 - (4 * at[:, 0] - 2) ** 2) ** 2
+
+
+@pytest.mark.parametrize(
+    ("function", "place"),
+    [
+        (banana(1e2), (0.75, 0.75)),
+        (banana(1e6), (0.75, 0.75)),
+        (
+            lambda at: 1 + (at[:, 0] - 0.3) ** 2 + 1e4 * (at[:, 1] - np.sin(3 * at[:, 0]) ** 2) ** 2,
+            (0.3, np.sin(0.9) ** 2),
+        ),
+        (lambda at: 1 + (at[:, 0] - 0.37) ** 2 + 30 * abs(at[:, 1] - np.sin(2 * at[:, 0])), (0.37, np.sin(0.74))),
+        (lambda at: 1 + abs(at[:, 0] - 0.41) + 3 * abs(at[:, 1] - 0.7 * at[:, 0]), (0.41, 0.287)),
+        (lambda at: 1 + at[:, 0] + (at[:, 1] - 0.2) ** 2, (0.0, 0.2)),
+        (lambda at: np.where(at.sum(axis=1) < 1, 1 + ((at - 1) ** 2).sum(axis=1), np.nan), (0.5, 0.5)),
+    ],
+)
+def test_the_lowest_place_of_narrow_curved_valleys(
+    function: Callable[[Array], Array], place: tuple[float, ...]
+) -> None:
+    """Smooth, with a kink along the valley, at an edge, and at the end of what counts."""
+    found, value = lowest(function, 2)
+    expected = 1.5 if place == (0.5, 0.5) else 1.0
+    assert value == pytest.approx(expected, rel=1e-11)
+    assert found == pytest.approx(np.array(place), abs=2e-6)

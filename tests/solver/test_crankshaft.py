@@ -47,7 +47,7 @@ forces = st.floats(-1e6, 1e6)
 @given(forces, forces, forces, forces, st.floats(-0.15, 2.0))
 def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
     """Reactions from six equations of a rigid body, web B from what hangs on it on the side of the flywheel."""
-    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     a, b, e, r = 0.4, 0.42, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft; unknown: A and B on the shaft (x, y), the couple about z
     pin = np.array([T, -D, 0.0]), np.array([0.0, r, a])
@@ -200,7 +200,7 @@ def test_refused(changed: dict[str, Any], message: str) -> None:
 def test_no_section_of_the_pin_is_strained_more_than_its_places(
     D: float, T: float, G_D: float, G_T: float, f: float, along: float
 ) -> None:
-    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     u = 0.11 * along
     before, beyond = (float(np.hypot(*moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u)))
     worst = max(place.normal[0] for place in places(found) if place.part == "pin")
@@ -273,7 +273,7 @@ def test_khurmi_32_5() -> None:
     H_1 = 155.4 kN, V_1 = 15 kN, at the flywheel M_H = 12.3 and M_V = 3.525, together 12.8 kN m.
     """
     lengths = {"web_distance": 0.12, "web_thickness": 0.07, "pin_length": 0.11, "a": 0.239, "b": 0.709}
-    own = shaft(**OVERHUNG | lengths | {"journal_length": None, "flywheel_position": -0.235})
+    own = shaft(**OVERHUNG | lengths | {"journal_length": None, "flywheel_position": -0.235, "flywheel_mass": 1.0})
     load = 2.1e6 * math.pi / 4 * 0.25**2
     found = FreeBody(own, 0.3, Vector(np.array([load]), np.zeros(1)), Vector(np.zeros(1), np.array([-30e3])))
     assert load == pytest.approx(103e3, rel=1e-3)
@@ -289,7 +289,7 @@ def test_khurmi_32_5() -> None:
 @given(forces, forces, forces, forces, st.floats(-0.75, 2.0))
 def test_overhung_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
     """Reactions from the equations of a rigid body; every section from what lies on the side of the pin alone."""
-    found = body(D, T, (G_D, G_T), **OVERHUNG, flywheel_position=f)
+    found = body(D, T, (G_D, G_T), **OVERHUNG | {"flywheel_position": f, "flywheel_mass": 1.0, "journal_length": None})
     a, b, e, r = 0.4, 1.2, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft from the pin; unknown: A and B on the shaft (x, y)
     loads = [(np.array([T, -D, 0.0]), np.array([0.0, r, 0.0])), (np.array([G_T, -G_D, 0.0]), np.array([0, 0, b + f]))]

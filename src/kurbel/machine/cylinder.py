@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.declared.record import Record, Rule, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
@@ -48,7 +48,7 @@ def counterweights() -> Any:
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Cylinder(Record):
     """One cylinder with its crank mechanism and everything that hangs on the same rod.
 
@@ -71,15 +71,13 @@ class Cylinder(Record):
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
         absent="none",
-        key=("like"),
     )
-    _piston = alternative(Inline(Piston), "The cylinder's own piston", key="piston")
+    _piston = alternative(Inline(Piston), "The cylinder's own piston")
     _tandem = alternative(
         [RecordForm(TandemPiston, inline_too=True)],
         "Further pistons on the same rod, such as a pump, or driven by a rocker; their two-stroke cards run twice in "
         "720°",
         absent="none",
-        key="tandem",
     )
     pistons: tuple[Piston, ...] = ()
     masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")

@@ -7,14 +7,13 @@ the stroke volume. Exponents are those of p V^n.
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
 from kurbel.declared.forms.values import Number
 from kurbel.declared.reading import REFUSED, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field, record
 
 CLEARANCE = Number(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
@@ -96,7 +95,7 @@ class _TwoStroke(Record):
         yield from _above_vacuum(lift, **{key: vars(self)[key] for key in self.KEYS if key in both})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Steam(_TwoStroke):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
 
@@ -148,7 +147,7 @@ class Steam(_TwoStroke):
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Compressor(_TwoStroke):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
@@ -197,7 +196,6 @@ _RATIO = alternative(
     required=True,
     example="8",
     gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
-    key="compression_ratio",
 )
 
 
@@ -274,7 +272,7 @@ class _Engine(Record):
             yield Rule((), low, below, {"peak": self.peak, "end": end})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume.
 
@@ -284,7 +282,7 @@ class Otto(_Engine):
 
     intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     peak: float = _pressure("Largest pressure, after combustion", required=True)
-    _ratio = _RATIO
+    _compression_ratio = _RATIO
     clearance: float = _clearance()
     exhaust: float | None = _exhaust()
     exponent: float = _compression_exponent()
@@ -292,7 +290,7 @@ class Otto(_Engine):
     diagram_factor: float = _diagram_factor()
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off.
 
@@ -302,7 +300,7 @@ class Diesel(_Engine):
 
     intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1, required=True)
-    _ratio = _RATIO
+    _compression_ratio = _RATIO
     clearance: float = _clearance()
     exhaust: float | None = _exhaust()
     peak: float | None = _pressure(

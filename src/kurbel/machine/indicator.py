@@ -10,8 +10,8 @@ import numpy as np
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, Number, Points, size_faults, unit_name
-from kurbel.declared.reading import REFUSED
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.reading import has_refused
+from kurbel.declared.record import Record, Rule, alternative, field, record
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
@@ -50,7 +50,7 @@ class Rectangle:
             yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Drawn(Record):
     """The paper of a card: its length, and the scale of the spring in m/Pa.
 
@@ -111,7 +111,7 @@ def _line_of(name: str, text: str) -> Any:
     return alternative(_POINTS, text, key=name)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -124,21 +124,18 @@ class Card(Record):
         "Unit of the pressures; or give `drawn`",
         required=True,
         example="bar",
-        key="unit",
     )
     _drawn = alternative(
         Drawn,
         "The paper of the card: all points are then millimetres, or inches where its length is, from the card's own "
         "dead centre and from the atmospheric line",
         instead="unit",
-        key="drawn",
     )
     _area = alternative(
         "area",
         "Area by planimeter, instead of the lines of a drawn card",
         least=0,
         needs="drawn",
-        key="area",
     )
     _mean_height = alternative(
         "length",
@@ -146,7 +143,6 @@ class Card(Record):
         least=0,
         instead="area",
         needs="drawn",
-        key="mean_height",
     )
     _expansion = _line_of("expansion", "Line while the burnt or admitted gas expands")
     _compression = _line_of("compression", "Line while the chamber is compressed or empties")
@@ -199,12 +195,11 @@ class Card(Record):
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the lines that could be read, where others could not be."""
-        if REFUSED not in values.values():
-            return []
-        lines = {name: value for name, value in values.items() if isinstance(value, list)}
-        return [] if "drawn" in values else _line_faults(lines, 1.0, "")
+    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+        """Yield what is wrong with the lines that could be read, where others could not be."""
+        if has_refused(given.values()) and "drawn" not in given:
+            lines = {name: value for name, value in given.items() if isinstance(value, list)}
+            yield from map(Rule.of, _line_faults(lines, 1.0, ""))
 
     @property
     def flat(self) -> bool:
@@ -265,7 +260,7 @@ def _order_faults(name: str, points: list[Point], whole: float, unit: str) -> li
     return []
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Constant(Record):
     """Constant pressure on each stroke: an ideal pump."""
 
@@ -308,7 +303,7 @@ def _loaded(chamber: Any) -> Any:
     return replace(chamber, unloaded=False) if unloaded else chamber
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Indicator(Record):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 
@@ -321,7 +316,6 @@ class Indicator(Record):
         "limited",
         absent="gauge",
         gives=lambda given: {"absolute": given["pressures"] == "absolute"},
-        key="pressures",
     )
     head_end: Chamber | None = field(
         OneOf(_ONE_PRESSURE, _CHAMBER),

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from os.path import basename
 from typing import Any
 
@@ -13,7 +12,7 @@ from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
 from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, Number, Points, unit_name
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field, record
 from kurbel.declared.units import Factor, Point, unit_factor
 from kurbel.errors import Fault, RuleError, UnitError, refuse, refused
 from kurbel.machine.ideal_cards import CLEARANCE
@@ -69,7 +68,7 @@ class Pegging(Record):
         return KnownLevel(angle, pressure)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 

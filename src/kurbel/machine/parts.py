@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, Form, Number
-from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.declared.record import Record, Rule, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.machine.pumped import Gas
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class ConnectingRod(Record):
     """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
@@ -37,9 +36,6 @@ class ConnectingRod(Record):
     inertia: float | None = field(
         "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
     )
-
-    def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
 
     @property
     def exact(self) -> bool:
@@ -94,7 +90,7 @@ def _part(text: str, key: str) -> Any:
     return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum, key=key)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Masses(Record):
     """Moving masses in kg: what reciprocates besides the connecting rod, the connecting rod, and what turns.
 
@@ -104,13 +100,12 @@ class Masses(Record):
     `piston` is a list.
     """
 
-    _sum_given = alternative(
+    _reciprocating = alternative(
         "mass",
         "Total reciprocating mass, including its share of the connecting rod; instead of the parts",
         "m",
         least=0,
         gives=_sum,
-        key="reciprocating",
     )
     _piston = _part("Piston, or a list of pistons", "piston")
     _piston_rod = _part("Piston rod", "piston_rod")
@@ -122,7 +117,6 @@ class Masses(Record):
         instead="reciprocating",
         also=("con_rod", "conrod"),
         gives=_rod,
-        key="connecting_rod",
     )
 
     parts: float = 0.0
@@ -159,7 +153,7 @@ class Masses(Record):
         return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
@@ -168,7 +162,7 @@ class GasOnRings(Record):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Rings(Record):
     """Piston rings."""
 
@@ -184,7 +178,7 @@ class Rings(Record):
     coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Guide(Record):
     """The shoe with which a crosshead presses on its guide."""
 
@@ -200,7 +194,7 @@ _PINS: dict[str, tuple[str, str]] = {
 """Where pins and journals rub: the keys of their diameters here, and in `crankshaft`."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
@@ -241,7 +235,6 @@ class Friction(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
         sliding = (self.crosshead, self.rings, self.constant, self.block, self.guides)
         none = not self.of_pins and all(one is None for one in sliding)
         given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', 'journals', 'block' or 'guides'"
@@ -272,7 +265,7 @@ class Friction(Record):
                 yield Fault((here,), f"'{there}' in 'crankshaft' gives the same; leave one of them out")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class RamForce(Record):
     """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
@@ -288,7 +281,7 @@ class RamForce(Record):
         yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
@@ -306,7 +299,7 @@ class Moment(RamForce):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
@@ -341,7 +334,7 @@ class RodPoint(Record):
         yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -401,7 +394,7 @@ class Piston(Record):
             yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class TandemPiston(Piston):
     """A further piston on the same rod, or driven from the crosshead by a rocker."""
 

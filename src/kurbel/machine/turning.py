@@ -9,7 +9,7 @@ from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import Number, Points, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import Reading, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field, record
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
@@ -23,12 +23,12 @@ _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
     mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
-    _outer = alternative(
+    _outer_diameter = alternative(
         "length",
         "Outer diameter of the rim",
         "D_a",
@@ -39,15 +39,13 @@ class Rim(Record):
             "mean_diameter": (given["outer_diameter"] + given["inner_diameter"]) / 2,
             "depth": (given["outer_diameter"] - given["inner_diameter"]) / 2,
         },
-        key="outer_diameter",
     )
-    _inner = alternative(
+    _inner_diameter = alternative(
         "length",
         "Inner diameter of the rim, 0 of a disc",
         "D_i",
         least=0,
         needs="outer_diameter",
-        key="inner_diameter",
     )
     depth: float = field(
         "length",
@@ -122,7 +120,7 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
@@ -134,7 +132,6 @@ class Flywheel(Record):
         least=0,
         instead="inertia",
         gives=lambda given: {"inertia": given["gd2"] / 4},
-        key="gd2",
     )
     _mass = alternative(
         "mass",
@@ -144,16 +141,14 @@ class Flywheel(Record):
         instead="inertia",
         needs="radius_of_gyration",
         gives=lambda given: {"inertia": given["mass"] * given["radius_of_gyration"] ** 2},
-        key="mass",
     )
-    _gyration = alternative(
+    _radius_of_gyration = alternative(
         "length",
         "Radius of gyration",
         "k",
         above=0,
         instead="gd2",  # beside `mass`, which is instead of `inertia`
         needs="mass",
-        key="radius_of_gyration",
     )
     fluctuation: float | None = field(
         "ratio",
@@ -171,7 +166,6 @@ class Flywheel(Record):
         gives=lambda given: (
             {"rim": given["rim"]} | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
         ),
-        key="rim",
     )
     rim: Rim | None = None
 
@@ -314,7 +308,7 @@ MEAN_TORQUE = _MeanTorque()
 HARMONICS = Points("order", "cos", "sin", least=1)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Load(Record):
     """The resistance at the shaft, in exactly one of four forms.
 
@@ -326,21 +320,19 @@ class Load(Record):
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(unit_name("torque"), "Unit of the torques", key="unit")
+    _unit = alternative(unit_name("torque"), "Unit of the torques")
     _points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump",
         "M",
         needs="unit",
         gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
-        key="points",
     )
     _mean = alternative(
         MEAN_TORQUE,
         "Mean torque, added to the harmonics, in the unit",
         "M_m",
         needs="harmonics",
-        key="mean",
     )
     _harmonics = alternative(
         HARMONICS,
@@ -348,7 +340,6 @@ class Load(Record):
         needs="unit",
         instead="points",
         gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
-        key="harmonics",
     )
     diagram: Effort | Harmonics | None = None
 
@@ -381,7 +372,7 @@ class Load(Record):
         return self.diagram.cycle_fault(cycle, turns) if self.diagram else ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 

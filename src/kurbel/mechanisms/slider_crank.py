@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Rule, alternative, field
+from kurbel.declared.record import Rule, alternative, field, record
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 
@@ -58,7 +57,7 @@ ROD_OFFERS = (
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 

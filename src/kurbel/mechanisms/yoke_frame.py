@@ -6,11 +6,10 @@ slider-crank; the side force N of the rod finds no guide and bends the piston ro
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import Offer, finite, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.arithmetic import some
@@ -62,7 +61,7 @@ def _fibre(state: Any, side: float) -> Any:
     return None if along is None or across is None or arm is None else along + across * arm * side
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

@@ -199,6 +199,14 @@ class Pieces:
         found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
         return np.maximum(found, self.first[machine])
 
+    def kept_of(self, others: Pieces) -> tuple[Indices, Indices, Indices]:
+        """Return which of these pieces are among others as they are, which of those these are, and which are new."""
+        row = others.holding(self.machine, self.middle)
+        same = (others.offset[row] == self.offset) & (others.half[row] == self.half)
+        same &= others.right_angle[row] == self.right_angle
+        kept = np.flatnonzero(same)
+        return kept, row[kept], np.flatnonzero(~same)
+
     # integrals, zeros and extremes of samples (nodes, pieces)
 
     def largest(self, values: Array) -> Array:
@@ -282,38 +290,45 @@ class Pieces:
         low, high = ranges = _ranges(values)
         largest = np.maximum.reduceat(np.maximum(high, -low), self.first, axis=-1)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self.highest(values, ranges, size, sign) for sign in (1.0, -1.0))
+        (high, high_at), (low, low_at) = self.highest(values, ranges, size, (1.0, -1.0))
         # relative to values of the other sign: a zero at a dead centre whose angle is no float, for example
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return SampledExtremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def highest(self, values: Samples, ranges: Array, size: Array, sign: float = 1.0) -> tuple[Array, Array]:
-        """Return the largest values times a sign, and the angles of the first summits there, each (q, machines).
+    def highest(
+        self, values: Samples, ranges: Array, size: Array, signs: Sequence[float] = (1.0,)
+    ) -> list[tuple[Array, Array]]:
+        """Return for each sign the largest values times it, and the angles of the first summits there, (q, machines).
 
         values: each (nodes, pieces); ranges: see `_ranges`; size: (q, machines), of the terms whose sums they are.
         """
-        bottoms, tops = sign * ranges[:: int(sign)]
-        best = np.maximum.reduceat(tops, self.first, axis=-1)
+        slack = _REPEATED * size
+        tops = [sign * ranges[int(sign > 0)] for sign in signs]
+        best = [np.maximum.reduceat(top, self.first, axis=-1) for top in tops]
         # a polynomial exceeds its samples by less than they differ
-        which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
-        samples = sign * np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
+        over = ranges[1] - ranges[0]
+        may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
+        which, piece = _where(np.logical_or.reduce(may))
+        samples = np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
+        straight = _STRAIGHT * size[which, self.machine[piece]]
         # where all samples are equal but for rounding, it alone turns
-        bent = np.flatnonzero(np.ptp(samples, axis=0) > _STRAIGHT * size[which, self.machine[piece]])
+        bent = np.flatnonzero(over[which, piece] > straight)
         rows, places, turning = _turning_points(samples[:, bent], self.rule)
         inside = np.abs(places) < _INSIDE
         rows, places, turning = bent[rows[inside]], places[inside], turning[inside]
-        top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
-        turning = np.where(
-            turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)
-        )
+        # by the rounding of a straight line nothing exceeds its ends
+        low, high = ranges[:, which[rows], piece[rows]]
+        beyond = (turning > high + straight[rows]) | (turning < low - straight[rows])
+        turning = np.where(beyond, turning, np.clip(turning, low, high))
         value = np.concatenate((samples[0], samples[-1], turning))
-        ends = self.low[piece], self.high[piece], self._at(piece[rows], places)
-        quantity, owner = (
-            np.concatenate((which, which, which[rows])),
-            self.machine[np.concatenate((piece, piece, piece[rows]))],
-        )
-        np.maximum.at(best, (quantity, owner), value)
-        return best, _first_summits(quantity, owner, np.concatenate(ends), value, best, _REPEATED * size)
+        degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
+        quantity = np.concatenate((which, which, which[rows]))
+        owner = self.machine[np.concatenate((piece, piece, piece[rows]))]
+        for sign, one in zip(signs, best):
+            np.maximum.at(one, (quantity, owner), sign * value)
+        return [
+            (one, _first_summits(quantity, owner, degrees, sign * value, one, slack)) for sign, one in zip(signs, best)
+        ]
 
     def _at(self, rows: Indices, places: Array) -> Array:
         """Return the angles in degrees at places in [−1, 1] of these pieces."""
@@ -373,7 +388,7 @@ def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Sa
     """
     fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
     ranges = _ranges(values)
-    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))
+    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))[0]
 
 
 def _ranges(values: Samples) -> Array:

@@ -28,11 +28,16 @@ _LEFT = 1e-7
 """Of the spread of the samples: if more is left at a change of sign, the function jumps there."""
 _PARTS = 16
 """Into which an interval is divided at whose one end there is no value."""
-_CANDIDATES, _BOX = 4, 17
-"""Lowest places of a first grid round which boxes shrink, and places of a box to a side."""
-
-_CLOSE = 1e-11
-"""Half the side of a box that is small enough."""
+_CANDIDATES, _MOST_GRIDS = 4, 150
+"""Lowest places of a first grid round which others shrink, and so many of these at most."""
+_REACH = 1.6
+"""Half the side of a grid over the standard deviation of the lowest places of the one before."""
+_THIN = 1e-6
+"""Width of a grid over its length, at least."""
+_CLOSE = 1e-12
+"""Half the side of a grid that is small enough."""
+_EQUAL = 1e-14
+"""Relative difference of values that are equal but for rounding."""
 
 Function = Callable[[Array], Array]
 
@@ -173,8 +178,9 @@ def _slopes(functions: Function, places: Array) -> tuple[Array, Array]:
 def lowest(function: Function, sides: int) -> tuple[Array, float]:
     """Return the place (sides,) of the lowest value of a function over an interval or a square, and that value.
 
-    A value is inf or nan where it does not count; so is the value returned where none counts. Boxes shrink round the
-    lowest places of a grid; a box moves on while its lowest place is on its edge.
+    A value is inf or nan where it does not count; so is the value returned where none counts. Grids shrink round the
+    lowest places of a first one; each spreads as the lowest places of the one before do, along a narrow valley too,
+    and stays as large while its lowest place is on its edge.
     """
     side = np.linspace(0.0, 1.0, _PLACES if sides == 1 else _FINE_SIDE)
     grid = np.stack(np.meshgrid(*[side] * sides, indexing="ij"), axis=-1)
@@ -186,22 +192,35 @@ def lowest(function: Function, sides: int) -> tuple[Array, float]:
     if not len(centres):
         return np.full(sides, np.nan), np.inf
 
-    reach: Array = np.full(len(centres), side[1])
-    offsets = np.array([*product(np.linspace(-1.0, 1.0, _BOX if sides == 1 else 9), repeat=sides)])
+    count, few = (17, 4) if sides == 1 else (9, 16)
+    offsets = np.array([*product(np.linspace(-1.0, 1.0, count), repeat=sides)])
+    axes: Array = np.tile(np.eye(sides) * side[1], (len(centres), 1, 1))  # of each grid, as rows
     values: Array = np.full(len(centres), np.inf)
-    for _ in range(60):
-        places = np.clip(centres[:, None] + reach[:, None, None] * offsets, 0.0, 1.0)
+    for _ in range(_MOST_GRIDS):
+        places = np.clip(centres[:, None] + offsets @ axes, 0.0, 1.0)
         cost = _cost(function, places.reshape(-1, sides)).reshape(len(centres), -1)
-        best = np.argmin(cost, axis=1)
-        edge = (np.abs(offsets[best]) == 1).any(axis=1) & (cost[range(len(best)), best] < values)
-        centres, values = places[range(len(best)), best], cost[range(len(best)), best]
-        reach = np.where(edge, reach, reach * 3 / (_BOX if sides == 1 else 9))
-        if reach.max() < _CLOSE:
+        order = np.argsort(cost, axis=1, kind="stable")[:, :few]
+        low, near = (np.take_along_axis(cost, order, axis=1), np.take_along_axis(places, order[..., None], axis=1))
+        lower = low[:, 0] < values
+        edge = (np.abs(offsets[order[:, 0]]) == 1).any(axis=1) & lower
+        centres, values = np.where(lower[:, None], near[:, 0], centres), np.where(lower, low[:, 0], values)
+        kept, share = np.where(edge, 1.0, 0.0), np.where(lower, 1.0, 0.7)
+        axes = kept[:, None, None] * axes + share[:, None, None] * _spread(near, low, centres)
+        alike = low[:, -1] - values <= _EQUAL * np.abs(values)
+        if (alike | (np.abs(axes).max(axis=(1, 2)) < _CLOSE)).all():
             break
         rivals = values <= values.min() + np.ptp(np.where(np.isfinite(cost), cost, values[:, None]), axis=1)
-        centres, values, reach = centres[rivals], values[rivals], reach[rivals]
+        centres, values, axes = centres[rivals], values[rivals], axes[rivals]
     first = int(np.argmin(values))
     return centres[first], float(values[first])
+
+
+def _spread(near: Array, low: Array, centres: Array) -> Array:
+    """Return the axes (n, sides, sides) of grids that spread as places (n, m, sides) do about the lowest ones."""
+    apart = np.where(np.isfinite(low)[..., None], near - centres[:, None], 0.0)
+    squares, directions = np.linalg.eigh(np.swapaxes(apart, 1, 2) @ apart / near.shape[1])
+    sizes = _REACH * np.sqrt(np.maximum(squares, 0.0))
+    return np.asarray(np.maximum(sizes, _THIN * sizes[:, -1:])[..., None] * np.swapaxes(directions, 1, 2))
 
 
 def _cost(function: Function, places: Array) -> Array:

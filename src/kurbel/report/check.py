@@ -10,6 +10,7 @@ from kurbel.machine import Cylinder, Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
 from kurbel.report.alike import grouped, together
+from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.frame import provenance
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.limits import Entry, Unjudged, judged
@@ -77,6 +78,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         Topic("Crankshaft", tuple(_crankshaft_entries(case))),
         Topic("Balance", tuple(_balance_entries(case))),
         Topic("Shaft line", tuple(_shaft_entries(case))),
+        Topic("Delivery", tuple(_delivery_entries(case))),
         Topic("Limits", tuple(figures["limits"])),
         Topic("Expected", tuple(figures["expect"])),
     )
@@ -209,6 +211,25 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
     forced = "" if found.obstacle else ", torques and stresses"
     yield Entry("computed", f"natural frequencies, critical speeds{forced}")
     yield from _left_out(torsion_left_out(found), path)
+
+
+def _delivery_entries(case: Case) -> Iterator[Entry]:
+    """Yield what kurbel delivery has of a machine with pumps or compressors, or why it refuses it."""
+    try:
+        found = case.delivery
+    except KurbelError:  # nothing is delivered
+        return
+    try:
+        warnings = list(delivery_warnings(found))
+    except KurbelError as error:
+        yield Entry("left out", str(error), "info", ("pump",))
+        return
+    for text in warnings:
+        yield Entry("delivery", text, "warning")
+    pump = ["flow" * (case.machine.speed is not None), "fluctuating volume"] if found.pump else []
+    stages = ["stages and ends of compressors"] if found.stages else []
+    yield Entry("computed", ", ".join(filter(None, [*pump, *stages])))
+    yield from _left_out(delivery_left_out(found))
 
 
 # for programs: each finding with its place in the machine file

@@ -53,8 +53,8 @@ def delivery_report(case: Case, frame: Frame) -> Report:
     ]
     whole = subjects.pop() if found.pump else Subject("whole machine")
     if frame.prose:
-        warnings = (*of_machine(case), *_delivery_warnings(found))
-        whole = replace(whole, left_out=_delivery_left_out(found), warnings=warnings)
+        warnings = (*of_machine(case), *delivery_warnings(found))
+        whole = replace(whole, left_out=delivery_left_out(found), warnings=warnings)
     return report_on(frame, case.machine, "Delivery", subjects, whole, _delivery_notes(found))
 
 
@@ -79,7 +79,8 @@ def _delivery_notes(found: MachineDelivery) -> Iterator[str]:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
 
 
-def _delivery_left_out(found: MachineDelivery) -> list[LeftOut]:
+def delivery_left_out(found: MachineDelivery) -> list[LeftOut]:
+    """Return what flows, capacities and powers of pumps and compressors leave out."""
     machine, drawn = found.machine, any(one.suction is None for one in found.stages)
     gases = [piston.gas or machine.gas for cylinder in machine.cylinders for piston in cylinder.pistons]
     constants = [one for one in (*gases, machine.gas) if one]
@@ -106,7 +107,7 @@ def _delivery_left_out(found: MachineDelivery) -> list[LeftOut]:
     )
 
 
-def _delivery_warnings(found: MachineDelivery) -> Iterator[str]:
+def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
     """Yield stages in series whose mass flows differ, vessels that are small, and a lift that is too high."""
     known = [one for one in found.stages if one.suction is not None]
     for one, after in pairwise(known):

@@ -14,7 +14,7 @@ import numpy as np
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.ideal_cards import Steam
+from kurbel.machine.ideal_cards import Diesel, Otto, Steam
 from kurbel.machine.indicator import Card
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
@@ -299,21 +299,50 @@ def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts"
 
 
 _USUAL_RATIO = 4.0, 5.0
+_STILL = 1.2
+"""Over the exhaust pressure: so far it may rise before compression has begun."""
 
 
 def rod_ratio_notes(case: Case) -> Iterator[str]:
-    """Yield L/R of steam engines and pumps beyond those that the book has (R Zusammenstellung 112)."""
+    """Yield L/R of machines beyond the 4 to 5 of the books for their kind (R Zusammenstellung 112, Blau)."""
+    least, most = _USUAL_RATIO
     for forces in case.cylinders:
-        cylinder = forces.drive.cylinder
-        chambers = [one for piston in cylinder.pistons for one in piston.chambers.values()]
-        steam = any(isinstance(one, Steam) for one in chambers)
-        pump = (forces.work or 0.0) < 0 and all(isinstance(one, Card) and one.flat for one in chambers)
-        least, most = _USUAL_RATIO
-        if (steam or pump) and cylinder.mechanism.has_rod and 0 < cylinder.mechanism.lam < math.inf:
-            ratio = 1 / cylinder.mechanism.lam
-            if not least - 1e-9 <= ratio <= most + 1e-9:
-                kind = "steam engines" if steam else "pumps"
-                yield f"{cylinder.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
+        mechanism = forces.drive.mechanism
+        # Redtenbacher has 6 for locomotives
+        if case.machine.locomotive or not mechanism.has_rod or not 0 < mechanism.lam < math.inf:
+            continue
+        ratio = 1 / mechanism.lam
+        if not least - 1e-9 <= ratio <= most + 1e-9 and (kind := _kind_of(forces)):
+            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
+
+
+def _kind_of(forces: CylinderForces) -> str:
+    """Return the kind of machine, if it is one that the books on L/R have; '' for compressors and trunk pistons."""
+    pistons, ambient = forces.drive.cylinder.pistons, forces.drive.machine.ambient
+    chambers = [one for piston in pistons for one in piston.chambers.values()]
+    lifts = [0.0 if one.indicator and one.indicator.absolute else ambient for one in pistons for _ in one.chambers]
+    if any(isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
+        return "steam engines"
+    if (forces.work or 0.0) < 0:
+        return "pumps" if all(isinstance(one, Card) and one.flat for one in chambers) else ""
+    crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
+    burns = any(isinstance(one, (Otto, Diesel)) or forces.drive.cycle > 360 for one in chambers)
+    return "gas engines with a crosshead" if crosshead and burns else ""
+
+
+def _drawn_by_steam(card: object, lift: float) -> bool:
+    """Return whether a drawn card is that of a steam engine; lift: what makes its pressures absolute.
+
+    Pressure is held while steam is admitted, over the first twentieth of the stroke at least, and then falls. Half the
+    way back the cylinder still exhausts, where an engine that burns has compressed for long.
+    """
+    if not isinstance(card, Card) or len(card.lines) != 2 or card.flat:
+        return False
+    outward, back = card.lines
+    held, released = np.interp([0.05, 1.0], outward.fractions, outward.pressures) + lift
+    halfway = np.interp(0.5, back.fractions[::-1], back.pressures[::-1]) + lift
+    exhaust, most = back.pressures[0] + lift, max(outward.pressures) + lift
+    return bool(max(0.85 * most, released, _STILL * exhaust) < held and halfway < _STILL * exhaust)
 
 
 # results of the whole machine

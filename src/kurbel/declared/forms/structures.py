@@ -14,7 +14,7 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, Number
-from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
+from kurbel.declared.keys import TOO_EXTREME, Key, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
@@ -258,8 +258,7 @@ class Maker:
             if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
                 return form.born(values)
             # what is there contradicts the rest whether it could be read or not
-            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(values))
-            return self.reading.refuse(path, RuleError(*faults))
+            return self.reading.refuse(path, RuleError(*form.record.faults_of_keys(values)))
         except RuleError as error:
             return self.reading.refuse(path, form.flattened(error, given.mapping))
 
