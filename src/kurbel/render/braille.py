@@ -123,9 +123,9 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
     panel = frame.panel.at_moment(0)
     drawn = []
     for body in panel.bodies:
-        for look, lines in body.outlines():
-            if look in _OUTLINED:
-                drawn.append((_OUTLINED[look], frame.place(lines[0].real, lines[0].imag)))
+        for of, lines in body.outlines():
+            if of in _OUTLINED:
+                drawn.append((_OUTLINED[of], frame.place(lines[0].real, lines[0].imag)))
     for curve, look in zip(panel.curves, looks_of(panel)):
         role = f"curve{look}" if curve.kind in ("line", "dots") else _ROLES.get(curve.kind, "rule")
         drawn += [(role, frame.place(*piece)) for piece in (*curve.pieces(), *curve.jumps()) if curve.kind != "fixed"]

@@ -25,8 +25,10 @@ _SECONDS = 5.0
 """Time that a moving mechanism takes for one turn."""
 _POSTER = (1150.0, 640.0)
 """Room for a picture on a sheet, the longer side first."""
-_LONGEST_BAR, _NOTE = 110.0, 6.7
+_LONGEST_BAR, _NOTE = 110.0, 7.0
 """Length of the longest bar that shows a scale, and width of a character of a note."""
+_SHORTEST = 2.0
+"""Length of an arrow below which it has no name, where it does not move."""
 _STRAIGHT = 0.1
 """How far a point that is left out may be from the line between its neighbours."""
 _SUBSCRIPT = re.compile("(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|]+?)(?=,?\\s|,?$|\\|)")
@@ -79,8 +81,11 @@ SHAPES: tuple[tuple[complex, ...], ...] = (
 """Corners of the figures that mark points, over their radius; none of a circle. Seven of them and six colours."""
 
 
-def css(dark: bool = True) -> str:
-    """Return the style sheet of pictures; dark: also for dark screens, and for readers who want nothing to move."""
+def css(dark: bool = True, machines: bool = True) -> str:
+    """Return the style sheet of pictures; dark: also for dark screens, and for readers who want nothing to move.
+
+    machines: also of machines in section.
+    """
     always = (
         'text{font-family:system-ui,"DejaVu Sans",sans-serif;font-size:10px}.h{font-size:13px;font-weight:600}'
         ".m{stroke-width:4;stroke-linecap:round}.f,.g,.x{stroke-width:1}.o,.b,.i{stroke-width:1.2}"
@@ -89,18 +94,12 @@ def css(dark: bool = True) -> str:
     for number, stroke in enumerate(STROKES):
         dashes = f";stroke-dasharray:{stroke.dashes}" if stroke.dashes else ""
         always += f".k{number}{{stroke-width:1.6;fill:none{dashes}}}.j{number}{{stroke-width:1.2;fill:none}}"
-    always += f".{',.'.join(_EDGED)}{{stroke-width:.9;stroke-linejoin:round}}.axis{{stroke-width:.6}}"
-    always += ".note{font-size:12px}.strong{font-size:13px;font-weight:600}"
-    for look, dashes in _LINES.items():
-        always += f".{look}{{fill:none;stroke-width:.7{f';stroke-dasharray:{dashes}' if dashes else ''}}}"
     light, at_night = (
         f".s{{background:{PAPER[mode]}}}text{{fill:{INK[mode]}}}.halo{{stroke:{PAPER[mode]}}}.f{{stroke:{FAINT[mode]}}}"
         f".g{{stroke:{GRID[mode]}}}.x,.m,.o,.b,.i{{stroke:{INK[mode]}}}.o{{fill:{PAPER[mode]}}}.b{{fill:{GRID[mode]}}}"
         f".i{{fill:{INK[mode]}}}.p{{fill:{GAIN[mode]}}}.n{{fill:{LOSS[mode]}}}"
         + "".join(f".k{k},.j{k}{{stroke:{one[mode]}}}.c{k}{{fill:{one[mode]}}}" for k, one in enumerate(STROKES))
-        + "".join(f".{look}{{fill:{one[mode]}}}" for look, one in MATERIALS.items())
-        + f".thin,.guess,.{',.'.join(_EDGED)}{{stroke:{EDGE[mode]}}}.axis{{stroke:{FAINT[mode]}}}"
-        + f".note{{fill:{FAINT[mode]}}}"
+        + (_machine_css(mode) if machines else "")
         for mode in (0, 1)
     )
     if not dark:
@@ -112,10 +111,25 @@ def css(dark: bool = True) -> str:
     )
 
 
+def _machine_css(mode: int) -> str:
+    """Return the style sheet of parts of machines in light or in dark."""
+    filled = "".join(f".{look}{{fill:{one[mode]}}}" for look, one in MATERIALS.items())
+    colours = f".thin,.guess,.{',.'.join(_EDGED)}{{stroke:{EDGE[mode]}}}.axis{{stroke:{FAINT[mode]}}}"
+    colours += f".note{{fill:{FAINT[mode]}}}"
+    if mode:
+        return filled + colours
+    strokes = f".{',.'.join(_EDGED)}{{stroke-width:.9;stroke-linejoin:round}}"
+    for look, dashes in _LINES.items():
+        strokes += f".{look}{{fill:none;stroke-width:.7{f';stroke-dasharray:{dashes}' if dashes else ''}}}"
+    texts = ".note{font-size:12.5px}.strong,.force{font-size:13px}.strong{font-weight:600}"
+    return f"{strokes}{texts}@media(max-width:520px){{.mark{{font-size:17px}}}}{filled}{colours}"
+
+
 def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> str:
     """Return a file with pictures one below the other; paper: as what can neither be dark nor move."""
-    height, parts, texts = 0.0, "", []
+    height, parts, texts, machines = 0.0, "", list[str](), False
     for picture in pictures:
+        machines |= any(panel.bodies for panel in picture.panels)
         tall, items = _drawn(picture, look, paper)
         texts.append(picture_text(picture, look))
         parts += f'<g transform="translate(0 {height:g})">\n{items}</g>\n'
@@ -123,7 +137,7 @@ def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> st
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="s" viewBox="0 0 {WIDTH:g} {height:g}" width="{WIDTH:g}" '
         f'height="{height:g}" role="img">\n<title>{escape(" ".join(texts))}</title>\n'
-        f"<style>{css(not paper)}</style>\n{parts}</svg>\n"
+        f"<style>{css(not paper, machines)}</style>\n{parts}</svg>\n"
     )
 
 
@@ -195,8 +209,8 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
     for note in panel.notes:
-        at, look = complex(frame.place(note.place.real, note.place.imag)), "strong" if note.strong else "note"
-        yield _text(at.real, at.imag + 4.5, frame.look.text(note.text), look, "middle", plain=True)
+        at, of = complex(frame.place(note.place.real, note.place.imag)), "mark strong" if note.strong else "mark note"
+        yield _text(at.real, at.imag + 4.5, frame.look.text(note.text), of, "middle", plain=True)
     if panel.footnote:
         yield from _below(frame)
 
@@ -235,14 +249,14 @@ def _part(shape: Shape, scale: float) -> str:
     return f'<path class="{shape.look}" d="{_path(points)}{"z" if len(points) > 2 else ""}"/>'
 
 
-def _transformed(kind: str, values: Array, texts: Sequence[str]) -> str:
+def _transformed(kind: str, values: Array | ComplexArray, texts: Sequence[str]) -> str:
     """Return the movement of a transformation through its values, the first of which is at rest, and round again."""
     loop, seconds = list(texts[1:]), (len(values) - 1) / MOMENTS_PER_TURN * _SECONDS
     if len(set(loop)) < 2:
         return ""
     steps, last = np.diff(values[1:]), loop[0]
     if kind == "rotate":  # what turns on and on ends a turn later
-        last = f"{round(-values[1] - 360.0 * round((values[-1] - values[1]) / 360.0), 2):g}"
+        last = f"{round(float(-values[1].real) - 360.0 * round(float((values[-1] - values[1]).real) / 360.0), 2):g}"
         if np.ptp(steps) < 1e-9:
             loop = loop[:1]
     around = ";".join((*loop, last))
@@ -302,7 +316,7 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
     kind, shape = moments[0].kind, look if moments[0].look is None else moments[0].look
     outlines: list[list[tuple[str, str]]] = []
     names: list[complex] = []
-    shaft = complex(frame.place(0.0, 0.0))
+    shaft, vanishing = complex(frame.place(0.0, 0.0)), False
     for curve in moments:
         pieces = [frame.place(x, y) for x, y in curve.pieces()]
         lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
@@ -325,13 +339,13 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
             # a force is named at its end away from the shaft, where nothing else is
             inward = kind == "force" and abs(tip - shaft) < abs(tail - shaft)
             names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
+            vanishing = length < _SHORTEST
         else:
             outlines.append([({"member": "m", "block": "b"}.get(kind, "f"), lines)])
     shapes = "".join(_shape(name, path, [one for _, one in loop]) for (name, path), *loop in zip(*outlines))
-    if names:
-        shapes += _text(
-            names[0].real, names[0].imag, symbol(moments[0].name, frame.look), "halo", "middle", False, names
-        )
+    if names and (len(names) > 1 or not vanishing):
+        at, name, of = names[0], symbol(moments[0].name, frame.look), "halo force" if kind == "force" else "halo"
+        shapes += _text(at.real, at.imag, name, of, "middle", False, names)
     return shapes
 
 

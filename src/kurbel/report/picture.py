@@ -171,10 +171,11 @@ class Body(NamedTuple):
 
 
 class Note(NamedTuple):
-    """A text at a place x + iy, on its middle; strong: as a heading."""
+    """A text with its middle at a place x + iy; half: half of its width; strong: as a heading."""
 
     text: str
     place: complex
+    half: float
     strong: bool = False
 
 
@@ -203,8 +204,8 @@ class Panel(NamedTuple):
         across = [curve.x for curve in self.curves] + [shade.x for shade in self.shades]
         up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
         marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
-        drawn = [line.ravel() for body in self.bodies for _, line in body.outlines()]
-        drawn.append(np.array([note.place for note in self.notes], dtype=complex))
+        drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
+        drawn += [note.place + note.half * np.array([-1.0, 1.0]) for note in self.notes]
         across += [one.real for one in drawn]
         up += [one.imag for one in drawn]
         return [*across, marked[:, 0]], [*up, marked[:, 1]]

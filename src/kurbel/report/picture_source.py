@@ -194,9 +194,9 @@ def in_units(panel: Panel, system: str) -> Panel:
     def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
         return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
-    y_unit = f"{units[1]} {panel.y.mark}".rstrip()
+    y_unit, reach = f"{units[1]} {panel.y.mark}".rstrip(), {"low": panel.x.low, "high": panel.x.high}
     return panel._replace(
-        x=panel.x._replace(unit=units[0]),
+        x=panel.x._replace(unit=units[0], **{end: to(0, at) for end, at in reach.items() if at is not None}),
         y=panel.y._replace(unit=y_unit),
         curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
         shades=tuple(
@@ -205,5 +205,5 @@ def in_units(panel: Panel, system: str) -> Panel:
         ),
         marks=tuple(Mark(float(to(0, x)), float(to(1, y)), shown(of, 1, y_unit)) for x, y, of in panel.marks),
         bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
-        notes=tuple(one._replace(place=one.place * to(0, 1.0)) for one in panel.notes),
+        notes=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.notes),
     )

@@ -26,8 +26,8 @@ _STILL = 60.0
 _LONGEST = 1.1
 """Length of the arrow of the largest force over the crank radius."""
 _MOST_IN_A_ROW = 16
-_LETTERS = 50
-"""Letters of a note that fit across a picture."""
+_LETTERS = 50.0, 33.0
+"""How many letters a picture is wide and high."""
 _LEVEL = 0.1
 """Sine of the inclination below which a machine is a horizontal one."""
 
@@ -211,11 +211,24 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     if row:
         along, notes = _with_side(machine, along, row, level=abs(math.sin(math.radians(angle))) < _LEVEL)
     elif len(trains) > 1:
-        em = max(np.diff(_bounds(along))[[0, 2]]) / _LETTERS
+        left, right, bottom, top = _bounds(along)
+        em = _em(right - left, top - bottom)
         notes = [_number(one, trains.index(one) + 1, angle, mirrored, em) for one in front]
     arrows = tuple(_arrows(trains[0], angle, mirrored)) if len(trains) == 1 else ()
     axis, said = Axis(Words(""), "length"), _footnote(machine, trains, row)
-    return Panel(axis, axis, arrows, equal=True, plain=True, bodies=tuple(along), notes=tuple(notes), footnote=said)
+    if arrows:  # which need room for their names
+        ends = np.concatenate([one.x.ravel() for one in arrows])
+        axis = axis._replace(low=ends.min() - 0.4 * R, high=ends.max() + 0.4 * R)
+    return Panel(
+        axis,
+        axis._replace(low=None, high=None),
+        arrows,
+        equal=True,
+        plain=True,
+        bodies=tuple(along),
+        notes=tuple(notes),
+        footnote=said,
+    )
 
 
 def _standing(trains: Sequence[Train]) -> float:
@@ -257,22 +270,23 @@ def _with_side(
     In the frame of the view from the side the shaft runs along −y, in that of the page down or to the right.
     """
     places, pitch = [place for place, _ in row], float(min(np.diff([place for place, _ in row])))
+    bore = min(barrel.bore for _, one in row for barrel in one.barrels[:1])
     first, last = row[0][1], max(places) + 0.5 * pitch
     side = [Body.of([box("metal", -first.journal, first.journal, -last, 0.5 * pitch - min(places))])]
     for place, one in row:
-        side += [body.seen(0.0, moved=complex(0.0, -place)) for body in (*_engine(one), *_throw(one))]
+        side += [body.seen(0.0, moved=complex(0.0, -place)) for body in (*_engine(one), *_throw(one, bore))]
     if machine.flywheel:
         radius, width = _wheel_radius(machine, first.mechanism.crank), 0.25 * pitch
         look = "metal" if machine.flywheel.rim else "guess"
         side.append(Body.of([box(look, -radius, radius, -last - width, -last)]))
     side = [body.seen(0.0 if level else 90.0) for body in side]
 
-    (left, right, bottom, top), (side_left, side_right, _, side_top) = map(_bounds, (along, side))
+    (left, right, bottom, top), (side_left, side_right, side_bottom, side_top) = map(_bounds, (along, side))
     if level:
         moved = 1j * (bottom - side_top - 0.1 * (top - bottom)) + 0j
     else:
         moved = complex(right - side_left + 0.06 * (side_right - side_left), 0.0)
-    em = max(max(right, side_right + moved.real) - left, top - bottom) / _LETTERS
+    em = _em(max(right, side_right + moved.real) - left, top - min(bottom, side_bottom + moved.imag))
     notes = []
     for number, (place, one) in enumerate(row, 1):
         outer, inner = max(barrel.ends(_COVER)[1] for barrel in one.barrels), -1.5 * one.mechanism.crank
@@ -281,7 +295,7 @@ def _with_side(
             (outer + 1.2 * em, str(number)),
             (inner - 0.8 * em, f"{one.cylinder.crank_position % 360:.4g}°"),
         ):
-            notes.append(Note(text, turn * complex(at, -place) + moved, at > 0))
+            notes.append(Note(text, turn * complex(at, -place) + moved, 0.4 * em * len(text), at > 0))
     return [*along, *(body.seen(0.0, moved=moved) for body in side)], notes
 
 
@@ -291,11 +305,16 @@ def _bounds(bodies: Sequence[Body]) -> tuple[float, float, float, float]:
     return every.real.min(), every.real.max(), every.imag.min(), every.imag.max()
 
 
+def _em(wide: float, tall: float) -> float:
+    """Return about the height in m of a letter in a picture of this size."""
+    return max(wide / _LETTERS[0], tall / _LETTERS[1])
+
+
 def _number(one: Train, number: int, angle: float, mirrored: bool, em: float) -> Note:
     """Return the number of a cylinder, beyond its head."""
     outer = max(barrel.ends(_COVER)[1] for barrel in one.barrels) if one.is_engine else one.mechanism.crank
     turned = angle + (-one.angle if mirrored else one.angle)
-    return Note(str(number), (outer + 1.3 * em) * np.exp(1j * np.radians(turned)), strong=True)
+    return Note(str(number), (outer + 1.6 * em) * np.exp(1j * np.radians(turned)), em, strong=True)
 
 
 def _footnote(machine: Machine, trains: Sequence[Train], row: Sequence[tuple[float, Train]]) -> str:
@@ -319,7 +338,7 @@ def _footnote(machine: Machine, trains: Sequence[Train], row: Sequence[tuple[flo
     elif machine.flywheel:
         rim = machine.flywheel.rim
         (scale if rim else shares).append("flywheel" if rim else f"flywheel ({_WHEEL:g} cranks)")
-    return f"To scale: {', '.join(scale)}. Not given, by shares: {', '.join((*shares, 'all else'))}."
+    return f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
 
 
 # the forces
@@ -333,13 +352,13 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
     turns = -(-len(degrees) // max(len(train.motion) - 1, 1))
 
     def joint(name: str) -> ComplexArray:
-        places = train.joints[name]
+        places: ComplexArray = train.joints[name]
         return np.concatenate((places[:1], np.tile(places[1:], turns)))[: len(degrees)]
 
     # joint, direction in which the force counts, and where the arrow is from there, at a distance
     clear, place = 1.5 * _SHOE * R, joint(sketch.output or PIN)
     if train.has_slot or train.has_frame:
-        clear, place = 1.95 * R, joint(PIN).real + 0j if train.has_slot else place
+        clear, place = 1.95 * R, joint(PIN).real.astype(complex) if train.has_slot else place
     elif not train.is_engine:
         clear = 4.8 * train.pin
     elif not train.crosshead:
@@ -508,8 +527,9 @@ def _web(train: Train) -> Iterator[Body]:
 
 def _crank(train: Train, R: float) -> Iterator[Shape]:
     hub, eye = 1.45 * train.journal, _EYE * train.pin
-    tangent = np.arccos((hub - eye) / R) * 1j * np.array([-1, 1])
-    yield Shape("web", np.append(hub * np.exp(tangent), (R + eye * np.exp(tangent))[::-1]))
+    tangent: ComplexArray = np.arccos((hub - eye) / R) * np.array([-1j, 1j])
+    arm: ComplexArray = np.concatenate((hub * np.exp(tangent), (R + eye * np.exp(tangent))[::-1]))
+    yield Shape("web", arm)
     yield _disc("web", eye, complex(R))
     back = train.weight * R * np.exp(1j * np.radians(np.linspace(142.0, 218.0, 11)))
     yield Shape("web", np.concatenate((hub * np.exp([1.8j]), back, hub * np.exp([-1.8j]))))
@@ -593,10 +613,12 @@ def _ram(train: Train) -> Iterator[Body]:
     )
 
 
-def _throw(train: Train) -> Iterator[Body]:
-    """Yield a throw of the crank with its rod from the side, the shaft along y: it seems as long as its cosine."""
+def _throw(train: Train, bore: float) -> Iterator[Body]:
+    """Yield a throw of the crank with its rod from the side, the shaft along y: it seems as long as its cosine.
+
+    bore: in m, of the narrowest cylinder of the row, by which the width of rods and webs is drawn.
+    """
     R, pin, eye, hub = train.mechanism.crank, train.pin, _EYE * train.pin, 1.45 * train.journal
-    bore = min(barrel.bore for barrel in train.barrels[:1])
     inner, outer = 0.2 * bore, 0.34 * bore
     webs = [sorted((side * inner, side * outer)) for side in (-1, 1)]
     high = np.cos(np.radians(train.motion))
