@@ -205,7 +205,7 @@ class Panel(NamedTuple):
         up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
         marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
         drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
-        drawn += [note.place + note.half * np.array([-1.0, 1.0]) for note in self.notes]
+        drawn += [np.array([note.place - note.half, note.place + note.half]) for note in self.notes]
         across += [one.real for one in drawn]
         up += [one.imag for one in drawn]
         return [*across, marked[:, 0]], [*up, marked[:, 1]]
