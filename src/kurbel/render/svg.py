@@ -343,7 +343,9 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
         else:
             outlines.append([({"member": "m", "block": "b"}.get(kind, "f"), lines)])
     shapes = "".join(_shape(name, path, [one for _, one in loop]) for (name, path), *loop in zip(*outlines))
-    if names and (len(names) > 1 or not vanishing):
+    if vanishing and len(names) == 1:
+        return ""
+    if names:
         at, name, of = names[0], symbol(moments[0].name, frame.look), "halo force" if kind == "force" else "halo"
         shapes += _text(at.real, at.imag, name, of, "middle", False, names)
     return shapes

@@ -194,10 +194,14 @@ def in_units(panel: Panel, system: str) -> Panel:
     def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
         return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
-    y_unit, reach = f"{units[1]} {panel.y.mark}".rstrip(), {"low": panel.x.low, "high": panel.x.high}
+    def reaching(number: int, axis: Axis) -> Axis:
+        low, high = (None if end is None else float(to(number, end)) for end in (axis.low, axis.high))
+        return axis._replace(low=low, high=high)
+
+    y_unit = f"{units[1]} {panel.y.mark}".rstrip()
     return panel._replace(
-        x=panel.x._replace(unit=units[0], **{end: to(0, at) for end, at in reach.items() if at is not None}),
-        y=panel.y._replace(unit=y_unit),
+        x=reaching(0, panel.x)._replace(unit=units[0]),
+        y=reaching(1, panel.y)._replace(unit=y_unit),
         curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
         shades=tuple(
             Shade(to(0, x), to(1, low), to(1, high), gain, figure and shown(figure, 2, units[2]))

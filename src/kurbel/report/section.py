@@ -67,7 +67,7 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     bodies = [body.seen(angle, mirrored) for body in bodies]
 
     row, texts, arrows = _row(trains), list[_Text](), tuple[Curve, ...]()
-    axis = Axis(Words(""), "length")
+    x = y = Axis(Words(""), "length")
     if row:
         side, texts = _from_the_side(machine, row, _bounds(bodies), level=abs(math.sin(math.radians(angle))) < _LEVEL)
         bodies += side
@@ -77,13 +77,15 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
             texts.append((str(trains.index(one) + 1), outward * one.outer_end, 1.6 * outward))
     else:
         arrows = tuple(_arrows(trains[0], angle, mirrored))
-        ends = [end for one in arrows for end in (one.x.min() - 0.4 * R, one.x.max() + 0.4 * R)]  # room for names
-        axis = axis._replace(low=min(ends, default=None), high=max(ends, default=None))
+        x, y = (  # with room for their names
+            one._replace(low=min(map(np.min, ends)) - 0.4 * R, high=max(map(np.max, ends)) + 0.4 * R) if ends else one
+            for one, ends in ((x, [one.x for one in arrows]), (y, [one.y for one in arrows]))
+        )
     left, right, bottom, top = _bounds(bodies)
     em = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1])
     notes = tuple(Note(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts)
-    along, said = axis._replace(low=None, high=None), _footnote(machine, trains, row)
-    return Panel(axis, along, arrows, equal=True, plain=True, bodies=tuple(bodies), notes=notes, footnote=said)
+    said = _footnote(machine, trains, row)
+    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), notes=notes, footnote=said)
 
 
 def _standing(trains: Sequence[Train]) -> float:
@@ -219,9 +221,19 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
         acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.25 * R
     if sketch.across:
         acting["N"] = place, np.full(len(degrees), complex(*sketch.across)), None, clear
-    beyond = EYE * train.pin + 0.12 * R
-    acting["T"] = joint(PIN), 1j * outward, None, beyond
-    acting["D"] = joint(PIN), -outward, outward, beyond
+    # on that side of the pin, or of the shaft, from which the rod does not come; T and D are 0 where that changes
+    pin, tangent, off_pin = joint(PIN), 1j * outward, EYE * train.pin + 0.12 * R
+    coupled = [joint(end) - pin for start, end in sketch.links if start == PIN]
+    rod = coupled[0] if coupled else -outward
+    acting["T"] = (
+        pin,
+        tangent,
+        np.where((tangent * rod.conj()).real > 0, -tangent, tangent) if coupled else None,
+        off_pin,
+    )
+    behind = (outward * rod.conj()).real > 0
+    start = np.where(behind, -(train.weight + 0.12) * R * outward, pin + off_pin * outward)
+    acting["D"] = start, -outward, np.where(behind, -outward, outward), 0.0
     ids = source.having(*acting)
     if not ids:
         return
