@@ -140,7 +140,7 @@ def plot(
         file_name = None
     if size is not None:
         from kurbel.render.poster import check_poster, draw_poster
-        from kurbel.report.whole import facts_of, subtitle_of
+        from kurbel.report.summary import facts_of, subtitle_of, tiles
 
         size = check_poster(size, file_name)
         if set(names) - {"mechanism"} or listed:
@@ -157,7 +157,7 @@ def plot(
     look = Look(comma=decimal == "comma", digits=digits, width=width)
     drawn = pictures(case, names, options)
     if size is not None and file_name is not None:
-        facts = tuple(facts_of(case, options.system))
+        facts = tiles(facts_of(case).values(), options.system)
         return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
     draw(drawn, look, file_name)
 

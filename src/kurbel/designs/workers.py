@@ -1,5 +1,6 @@
 """Chunks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
 
+import asyncio
 import logging
 import os
 import pickle
@@ -153,12 +154,16 @@ def work() -> None:
 def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
         from distributed import Client, TimeoutError
-        from distributed.comm import CommClosedError
+        from distributed.comm import CommClosedError, connect
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
 
+    async def reached() -> None:
+        await (await connect(address, timeout=_ANSWERS_WITHIN)).close()
+
     logging.disable()  # of a lost scheduler it writes tracebacks
     try:
+        asyncio.run(reached())  # a client that reaches nothing waits 20 s at its end, and writes a traceback
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
         raise UsageError(f"--dask {address}: no scheduler responds there ({_first_line(error)})") from None

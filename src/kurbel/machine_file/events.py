@@ -174,15 +174,15 @@ def explain(error: Any, lines: list[str]) -> Fault:
     mark = error.problem_mark or error.context_mark
     opened = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete
-    here = (mark.line, mark.column) if mark.line < len(lines) else (len(lines) - 1, len(lines[-1]))
-    begin = opened.line, opened.column
+    last = len(lines) - 1, len(lines[-1])
+    here, begin = (min((one.line, one.column), last) for one in (mark, opened))
     before, after = lines[here[0]][: here[1]], lines[here[0]][here[1] :]
     context, problem, sign = error.context or "", error.problem or "", after[:1]
     second, colon = "mapping values" in problem, "could not find expected ':'" in problem
     # a key without a space after its colon is in or just above these lines
     above = range(here[0], max(begin[0] - 2, -1), -1) if second or colon else ()
     glued, key, value = next(((n, *found[0]) for n in above if (found := _GLUED.findall(lines[n]))), (-1, "", ""))
-    lone, _, rest = lines[begin[0]].strip().partition(" ")
+    lone, _, rest = [*lines, ""][begin[0]].strip().partition(" ")
     bracket = "]" if "sequence" in context else "}"
     no_start = "cannot start any token" in problem or "node content" in problem
     table = (

@@ -1,7 +1,6 @@
 """A machine in section as a sheet to hang: its picture, its name, one line of sizes, and a few key values."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -10,9 +9,11 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.drawing import check_file
+from kurbel.render.numbers import DIGITS, single
 from kurbel.render.output import opened
-from kurbel.render.svg import poster_svg, subscripts
-from kurbel.report.picture import Fact, Picture
+from kurbel.render.svg import poster_svg
+from kurbel.render.text import subscripts
+from kurbel.report.picture import Facts, Picture
 
 SIZES = ("A0", "A1", "A2", "A3", "A4", "A5")
 _MOST_FACTS = 6
@@ -59,7 +60,7 @@ def check_poster(size: str, file_name: str | None) -> str:
     return named
 
 
-def draw_poster(picture: Picture, line: str, facts: Sequence[Fact], look: Look, file_name: str, size: str) -> None:
+def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str) -> None:
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
     import typst
 
@@ -76,11 +77,11 @@ def draw_poster(picture: Picture, line: str, facts: Sequence[Fact], look: Look, 
         "facts": [
             {
                 "title": look.text(one.title),
-                "value": look.text(one.value),
+                "value": look.counted(*single(one.value, look.digits or DIGITS, look.comma)),
                 "unit": look.unit(one.unit),
                 "symbol": subscripts(look.text(one.symbol)),
             }
-            for one in facts[:_MOST_FACTS]
+            for one in facts.facts[:_MOST_FACTS]
         ],
     }
     inputs = {"words": json.dumps(words), "svg": poster_svg(panel, look, wide)}

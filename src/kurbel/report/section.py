@@ -33,7 +33,7 @@ _Text = tuple[str, complex, complex]
 
 
 def mechanism(source: Source) -> Iterator[Panel]:
-    """The machine in section, gas and liquid tinted by their pressure; of one cylinder also the forces, as arrows."""
+    """The machine in section; gas and liquid are tinted by their pressure, forces on a single cylinder are arrows."""
     case, drawn = source.results
     if not drawn or any(one.drive.mechanism.sketch(CrankAngle.of(0.0)) is None for one in drawn):
         return
