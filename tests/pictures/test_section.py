@@ -95,7 +95,7 @@ def test_every_cylinder_is_at_its_own_crank_angle() -> None:
 
 @pytest.mark.parametrize(("rotation", "sense"), [("over", 1), ("under", -1)])
 def test_the_sense_of_rotation(rotation: str, sense: int) -> None:
-    text = f"{{rotation: {rotation}, inclination: 0 deg, speed: 50 rpm, crank: 400 mm, rod: 2 m, masses: {{piston: 9 kg}}}}"
+    text = f"{{rotation: {rotation}, inclination: 0 deg, crank: 400 mm, rod: 2 m, masses: {{piston: 9 kg}}}}"
     ((rod, eye),) = rods(panel_of(Case(loads(text)), 30.0))
     assert placed(rod, eye) == pytest.approx(0.4 * np.exp(sense * 1j * math.radians(30)), abs=1e-12)
 

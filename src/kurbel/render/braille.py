@@ -104,7 +104,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     if panel.plain:
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
         yield from rows[used[0] : used[-1] + 1]
-        yield from (line(one, "unit") for one in folded(look.text(panel.footnote), wide))
+        yield from (line(one, "unit") for one in folded(look.text(panel.footnote), wide) if one)
         return
     at = {int(place // 2): text for place, text in up}
     for number, row in enumerate(rows):

@@ -627,7 +627,7 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     else:
         if kind.whole:
             wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
-            yield Source((case, wanted), options.angles), options.cylinder or ""
+            yield Source((case, wanted), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
             return
         for one in case.cylinders if command == "forces" else ():
             if options.cylinder in (None, one.drive.name):
