@@ -55,7 +55,8 @@ class Canvas:
             self._roles[row][column] = role
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
-        """Write a text over what is drawn."""
+        """Write a text over what is drawn, in the last row if it is below that."""
+        row = min(row, len(self._letters) - 1)
         for letter in text:
             wide = width(letter)
             if not wide:  # a mark on the letter before it, as the dots of θ̈

@@ -239,20 +239,22 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
 def _body(frame: PanelFrame, body: Body, paper: bool) -> str:
     """Return shapes that move together, at rest and, unless on paper, also in motion."""
     places, scale = frame.place(body.place.real, body.place.imag), frame.points_per_unit
-    moving = not paper and any(len(one) > 1 for one in body[1:])
+    moving, moved = not paper and any(len(one) > 1 for one in body[1:]), places - places[0]
     # on the page y counts downward, so that angles turn the other way
     steps = (
         ("scale", body.stretch, [f"{round(one, 4):g} 1" for one in body.stretch], 1.0),
         ("rotate", body.turn, [f"{round(-one, 2) + 0.0:g}" for one in body.turn], 0.0),
-        ("translate", places, [f"{_number(one.real)} {_number(one.imag)}" for one in places], 0.0),
+        # from where it rests, which has fewer digits
+        ("translate", moved, [f"{_number(one.real)} {_number(one.imag)}" for one in moved], 0.0),
     )
     found = ""
     for animated in (True, False) if moving else (False,):
         drawn = "".join(_part(shape, scale) for shape in body.shapes)
         for kind, values, texts, nothing in steps:
-            if np.any(values != nothing):
+            if np.any((values if animated else values[:1]) != nothing):
                 moves = _transformed(kind, values, texts) if animated else ""
                 drawn = f'<g transform="{kind}({texts[0]})">{moves}{drawn}</g>'
+        drawn = f'<g transform="translate({_number(places[0].real)} {_number(places[0].imag)})">{drawn}</g>'
         if np.any(body.tint != 1.0):
             texts = [f"{one:.2f}".lstrip("0") for one in body.tint]
             moves = _animated("opacity", texts) if animated else ""
@@ -370,7 +372,8 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
             along = (tip - tail) / length if length else 0.0
             neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
             side = np.array([tail, neck, neck])
-            outlines.append([("c1", _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z")])
+            outline = _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z"
+            outlines.append([("c0" if kind == "force" else "c1", outline)])
             # a force is named at its end away from the shaft, where nothing else is
             inward = kind == "force" and abs(tip - shaft) < abs(tail - shaft)
             names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)

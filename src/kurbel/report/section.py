@@ -84,7 +84,7 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     left, right, bottom, top = _bounds(bodies)
     em = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1])
     notes = tuple(Note(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts)
-    said = _footnote(machine, trains, row)
+    said = _footnote(machine, trains, row, len(front))
     return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), notes=notes, footnote=said)
 
 
@@ -125,15 +125,15 @@ def _from_the_side(machine: Machine, row: _Row, along: Sequence[float], level: b
     along: left, right, bottom and top of that view. In the frame of this one the shaft runs along −y, on the page down
     or to the right.
     """
-    places, first = [place for place, _ in row], row[0][1]
+    places, first, R = [place for place, _ in row], row[0][1], row[0][1].mechanism.crank
     pitch, bore = float(min(np.diff(places))), min(one.barrels[0].bore for _, one in row)
     end = -max(places) - 0.5 * pitch
     side = [Body.of([box("metal", -first.journal, first.journal, end, 0.5 * pitch - min(places))])]
     for place, one in row:
         side += [body.seen(0.0, moved=-1j * place) for body in (*cylinders(one), *throw(one, bore))]
-    if machine.flywheel:
-        radius = _wheel_radius(machine, first.mechanism.crank)
-        side.append(Body.of([box("metal" if machine.flywheel.rim else "guess", -radius, radius, end - pitch / 4, end)]))
+    if _has_wheel(machine):
+        radius, look = _wheel_radius(machine, R), "metal" if machine.flywheel and machine.flywheel.rim else "guess"
+        side.append(Body.of([box(look, -radius, radius, end - pitch / 4, end)]))
     turn = 1.0 if level else 1j
     side = [body.seen(0.0 if level else 90.0) for body in side]
 
@@ -153,6 +153,10 @@ def _bounds(bodies: Sequence[Body]) -> tuple[float, float, float, float]:
     return every.real.min(), every.real.max(), every.imag.min(), every.imag.max()
 
 
+def _has_wheel(machine: Machine) -> bool:
+    return bool(machine.flywheel or (machine.crankshaft and machine.crankshaft.flywheel_mass))
+
+
 def _wheel_radius(machine: Machine, crank: float) -> float:
     rim = machine.flywheel.rim if machine.flywheel else None
     return (rim.mean_diameter + rim.depth) / 2 if rim else _WHEEL * crank
@@ -163,14 +167,14 @@ def _wheel(machine: Machine, crank: float) -> Iterator[Body]:
     if machine.locomotive and machine.locomotive.wheel_diameter:
         radius = machine.locomotive.wheel_diameter / 2
         yield Body.of([disc("thin", radius), disc("thin", 0.93 * radius)])
-    elif machine.flywheel:
-        radius, rim = _wheel_radius(machine, crank), machine.flywheel.rim
+    elif _has_wheel(machine):
+        radius, rim = _wheel_radius(machine, crank), machine.flywheel and machine.flywheel.rim
         inner = radius - (rim.depth or 0.08 * radius) if rim else 0.88 * radius
         yield Body.of([disc("thin" if rim else "guess", one) for one in (radius, inner) if one > 0])
 
 
-def _footnote(machine: Machine, trains: Sequence[Train], row: _Row) -> str:
-    """Return what is to scale, and by which shares the rest is drawn."""
+def _footnote(machine: Machine, trains: Sequence[Train], row: _Row, front: int) -> str:
+    """Return what is to scale, and by which shares the rest is drawn; front: cylinders that are not behind others."""
     first, scale, shares = trains[0], list[str](), list[str]()
     if first.is_engine:
         barrel = first.barrels[0]
@@ -187,10 +191,14 @@ def _footnote(machine: Machine, trains: Sequence[Train], row: _Row) -> str:
         (scale if given else shares).append("distances along the shaft" if given else "distances of cylinders")
     if machine.locomotive and machine.locomotive.wheel_diameter:
         scale.append("wheel")
-    elif machine.flywheel:
-        rim = machine.flywheel.rim
+    elif _has_wheel(machine):
+        rim = machine.flywheel and machine.flywheel.rim
         (scale if rim else shares).append("flywheel" if rim else f"flywheel ({_WHEEL:g} cranks)")
-    return f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
+    count, pistons = len(trains), [piston for one in trains for piston in one.cylinder.pistons]
+    hidden = [] if row or front == count else [f"{count - front} of {count} cylinders, behind the others"]
+    hidden += ["pistons by a lever"] if any(one.lever_ratio != 1 for one in pistons) else []
+    said = f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
+    return f"{said} Not drawn: {', '.join(hidden)}." if hidden else said
 
 
 # the forces

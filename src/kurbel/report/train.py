@@ -79,7 +79,8 @@ class Train:
         )
         pistons, masses = self.cylinder.pistons, self.cylinder.masses
         piston_rod = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-        self.crosshead = piston_rod or bool(masses and masses.crosshead) or machine.locomotive is not None
+        self.crosshead = bool(piston_rod or (masses and masses.crosshead) or machine.locomotive)
+        self.crosshead |= self.has_slot or self.has_frame
 
     @property
     def weight(self) -> float:
