@@ -224,7 +224,9 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
         else:
             moving += _curve(frame, [curve.at_moment(moment) for moment in range(len(curve.x))], look)
             resting += _curve(frame, [curve.at_moment(0)], look)
-    yield f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n' if moving else resting
+    if moving or (not paper and any(body.moves for body in panel.bodies)):
+        resting = f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n'
+    yield resting
     labels = frame.labels(named=False)
     yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
     yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
@@ -239,7 +241,7 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
 def _body(frame: PanelFrame, body: Body, paper: bool) -> str:
     """Return shapes that move together, at rest and, unless on paper, also in motion."""
     places, scale = frame.place(body.place.real, body.place.imag), frame.points_per_unit
-    moving, moved = not paper and any(len(one) > 1 for one in body[1:]), places - places[0]
+    moving, moved = not paper and body.moves, places - places[0]
     # on the page y counts downward, so that angles turn the other way
     steps = (
         ("scale", body.stretch, [f"{round(one, 4):g} 1" for one in body.stretch], 1.0),
@@ -352,7 +354,7 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
     kind, shape = moments[0].kind, look if moments[0].look is None else moments[0].look
     outlines: list[list[tuple[str, str]]] = []
     names: list[complex] = []
-    shaft, vanishing = complex(frame.place(0.0, 0.0)), False
+    vanishing = False
     for curve in moments:
         pieces = [frame.place(x, y) for x, y in curve.pieces()]
         lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
@@ -375,7 +377,7 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
             outline = _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z"
             outlines.append([("c0" if kind == "force" else "c1", outline)])
             # a force is named at its end away from the shaft, where nothing else is
-            inward = kind == "force" and abs(tip - shaft) < abs(tail - shaft)
+            inward = kind == "force" and abs(tip - frame.place(0.0, 0.0)) < abs(tail - frame.place(0.0, 0.0))
             names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
             vanishing = length < _SHORTEST
         else:

@@ -148,6 +148,11 @@ class Body(NamedTuple):
         place, *others = (np.atleast_1d(one) for one in (np.asarray(place, dtype=complex), turn, stretch, tint))
         return cls(tuple(shapes), place, *(np.asarray(one, dtype=float) for one in others))
 
+    @property
+    def moves(self) -> bool:
+        """Whether anything of it changes."""
+        return any(len(one) > 1 for one in self[1:])
+
     def seen(self, turned: float, mirrored: bool = False, moved: complex = 0.0) -> "Body":
         """Return the body mirrored about the x-axis, turned by degrees about the origin, and moved."""
         shapes, place, turn = self.shapes, self.place, self.turn

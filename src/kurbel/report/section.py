@@ -18,6 +18,8 @@ _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""
 _LONGEST = 1.1
 """Length of the arrow of the largest force over the crank radius."""
+_VANISHING = 0.005
+"""Of the largest force; one that is never more has no arrow."""
 _MOST_IN_A_ROW = 16
 _PITCH, _LEAST, _MOST = 1.35, 1.2, 4.5
 """Distance of cylinders in a row over the widest bore; between which bounds that of the file is drawn."""
@@ -247,6 +249,8 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
         return
     largest = float(np.abs(source.samples((PHI, *ids)).values[1:]).max()) or 1.0
     for id, force in zip(ids, source.values(ids, degrees)):
+        if np.abs(force).max() < _VANISHING * largest and len(force) > 1:
+            continue
         place, direction, side, off = acting[id]
         arrow, along = direction * force * (_LONGEST * R / largest), direction * np.where(force < 0, -1.0, 1.0)
         away = along if side is None else side

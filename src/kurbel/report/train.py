@@ -243,20 +243,23 @@ def _walls(barrel: Barrel) -> Iterator[Shape]:
     yield from _both("wall", *ends, half, half + wall)
     for inner, cover, gland, rod in zip((barrel.low, barrel.high), ends, barrel.ends(COVER + _GLAND), barrel.rods):
         if cover != inner:
-            yield from _both("wall", cover, inner, rod, half + 1.7 * wall)
+            flange = half + 1.7 * wall
+            yield from _both("wall", cover, inner, rod, flange) if rod else [_strip("wall", cover, inner, flange)]
             yield from _both("wall", cover, gland, rod, rod + 1.6 * wall) if rod else ()
 
 
 def _on_the_rod(train: Train) -> Iterator[Shape]:
     """Yield pistons, piston rods, and crosshead, yoke or frame, from the output of the mechanism."""
     R, (left, right) = train.mechanism.crank, train.head
+    start = min(0.0, right)
     for barrel in train.barrels:
         inner, outer = barrel.rods
-        yield from [_strip("rod", min(0.0, right), barrel.shift, inner)] if inner else ()
+        yield from [_strip("rod", start, barrel.shift, inner)] if inner else ()
         tail = left
         if barrel.shift > 0:  # through the head, to the next piston or out of its stuffing box
             further = [one.shift for one in train.barrels if one.shift > barrel.shift]
             tail = min(further, default=barrel.ends(COVER + 1.6 * _GLAND)[1] - train.sketch.guides[0][0][0])
+            start = barrel.shift
         yield from [_strip("rod", barrel.shift, tail, outer)] if outer else ()
     for barrel in train.barrels:
         yield from _piston(barrel)
@@ -324,7 +327,8 @@ def members(train: Train) -> Iterator[Body]:
     for joint, (first, last) in sketch.blocks:
         block = _strip("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)
         yield Body.of([block], joints[joint], _directions(joints[last] - joints[first]))
-    for name in (PIN,) if train.has_slot else [one for one in joints if one != SHAFT]:
+    hidden = (SHAFT, sketch.output if train.forked else "")
+    for name in (PIN,) if train.has_slot else [one for one in joints if one not in hidden]:
         radius = train.journal if name in sketch.fixed else pin if name == PIN else 0.72 * pin
         moves = bool((joints[name] != joints[name][0]).any())
         yield Body.of([disc("metal", radius), disc("web", 0.15 * radius)], joints[name] if moves else joints[name][0])
