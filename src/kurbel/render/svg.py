@@ -220,10 +220,10 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
     yield from (_body(frame, body, paper) for body in panel.bodies)
     for curve, look in zip(panel.curves, looks_of(panel)):
         if curve.x.ndim == 1 or paper:
-            yield _curve(frame, [curve.at_moment(0)], look)
-        else:
-            moving += _curve(frame, [curve.at_moment(moment) for moment in range(len(curve.x))], look)
-            resting += _curve(frame, [curve.at_moment(0)], look)
+            yield _curve(frame, curve.at_moment(0), look)
+        else:  # forces alone move
+            moving += _arrow(frame, [curve.at_moment(moment) for moment in range(len(curve.x))])
+            resting += _arrow(frame, [curve.at_moment(0)])
     if moving or (not paper and any(body.moves for body in panel.bodies)):
         resting = f'<g class="moving">{moving}</g>\n<g class="still">{resting}</g>\n'
     yield resting
@@ -349,46 +349,43 @@ def _around(frame: PanelFrame, left: float, legend: Sequence[Entry]) -> Iterator
         )
 
 
-def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
-    """Return a curve, or a force with its name, through all moments of its movement, or at its only one."""
-    kind, shape = moments[0].kind, look if moments[0].look is None else moments[0].look
-    outlines: list[list[tuple[str, str]]] = []
-    names: list[complex] = []
-    vanishing = False
+def _curve(frame: PanelFrame, curve: Curve, look: int) -> str:
+    """Return a curve that does not move."""
+    kind, shape = curve.kind, look if curve.look is None else curve.look
+    if kind in ("arrow", "force"):
+        return _arrow(frame, [curve])
+    pieces = [frame.place(x, y) for x, y in curve.pieces()]
+    lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
+    if kind == "line":
+        jumps = "".join(_path(frame.place(x, y)) for x, y in curve.jumps())
+        return _shape(f"k{look}", lines) + (_shape(f"j{look}", jumps) if jumps else "")
+    if kind == "dots":
+        dots = "".join(_dot(point, shape) for piece in pieces for point in piece)
+        return _shape(f"j{look}", lines) + _shape(f"c{look}", dots)
+    if kind in ("joint", "fixed", "beads", "pole"):
+        radius = {"beads": 1.6, "pole": 3.0}.get(kind, 4.0)
+        return _shape("o" if kind == "joint" else "i", "".join(_dot(point, 0, radius) for point in pieces[0]))
+    return _shape({"member": "m", "block": "b"}.get(kind, "f"), lines)
+
+
+def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:
+    """Return an arrow with its name, through all moments of its movement, or at its only one."""
+    force, paths, names = moments[0].kind == "force", list[str](), list[complex]()
     for curve in moments:
-        pieces = [frame.place(x, y) for x, y in curve.pieces()]
-        lines = "".join(map(_path, map(thinned, pieces) if kind in ("line", "faint") else pieces))
-        if kind == "line":
-            jumps = "".join(_path(frame.place(x, y)) for x, y in curve.jumps())
-            outlines.append([(f"k{look}", lines), (f"j{look}", jumps)] if jumps else [(f"k{look}", lines)])
-        elif kind == "dots":
-            dots = "".join(_dot(point, shape) for piece in pieces for point in piece)
-            outlines.append([(f"j{look}", lines), (f"c{look}", dots)])
-        elif kind in ("joint", "fixed", "beads", "pole"):
-            radius = {"beads": 1.6, "pole": 3.0}.get(kind, 4.0)
-            dots = "".join(_dot(point, 0, radius) for point in pieces[0])
-            outlines.append([("o" if kind == "joint" else "i", dots)])
-        elif kind in ("arrow", "force"):
-            tail, tip = pieces[0]
-            length = abs(tip - tail)
-            along = (tip - tail) / length if length else 0.0
-            neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
-            side = np.array([tail, neck, neck])
-            outline = _path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z"
-            outlines.append([("c0" if kind == "force" else "c1", outline)])
-            # a force is named at its end away from the shaft, where nothing else is
-            inward = kind == "force" and abs(tip - frame.place(0.0, 0.0)) < abs(tail - frame.place(0.0, 0.0))
-            names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
-            vanishing = length < _SHORTEST
-        else:
-            outlines.append([({"member": "m", "block": "b"}.get(kind, "f"), lines)])
-    shapes = "".join(_shape(name, path, [one for _, one in loop]) for (name, path), *loop in zip(*outlines))
-    if vanishing and len(names) == 1:
-        return ""
-    if names:
-        at, name, of = names[0], symbol(moments[0].name, frame.look), "halo force" if kind == "force" else "halo"
-        shapes += _text(at.real, at.imag, name, of, "middle", False, names)
-    return shapes
+        tail, tip = frame.place(curve.x, curve.y).tolist()
+        length = abs(tip - tail)
+        if len(moments) == 1 and length < _SHORTEST:
+            return ""
+        along = (tip - tail) / length if length else 0.0
+        neck, half = tip - min(9.0, length) * along, np.array([0.8, 0.8, 3.6]) * 1j * along
+        side = np.array([tail, neck, neck])
+        paths.append(_path(np.concatenate((side + half, [tip], (side - half)[::-1]))) + "Z")
+        # a force is named at its end away from the shaft, where nothing else is
+        inward = force and np.hypot(curve.x[0], curve.y[0]) > np.hypot(curve.x[1], curve.y[1])
+        names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
+    name, look = symbol(moments[0].name, frame.look), "halo force" if force else "halo"
+    text = _text(names[0].real, names[0].imag, name, look, "middle", False, names)
+    return _shape("c0" if force else "c1", paths[0], paths[1:]) + text
 
 
 def thinned(places: ComplexArray) -> ComplexArray:
