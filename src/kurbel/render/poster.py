@@ -64,7 +64,9 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
     import typst
 
-    look, panel = replace(look, encoding="utf-8"), picture.panels[0]._replace(curves=(), title="")
+    look, panel = replace(look, encoding="utf-8"), picture.panels[0]
+    x, y = (axis._replace(low=None, high=None) for axis in (panel.x, panel.y))  # no room for forces, which are left out
+    panel = panel._replace(x=x, y=y, curves=(), title="")
     across, up = (np.concatenate(one) for one in panel.places)
     wide = bool(np.ptp(across) > 0.95 * np.ptp(up))
     title = look.text(picture.machine)
