@@ -3,6 +3,7 @@
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import NamedTuple, Union
 
@@ -127,6 +128,11 @@ class Panel(NamedTuple):
         up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
         marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
         return [*across, marked[:, 0]], [*up, marked[:, 1]]
+
+    def called(self, words: Mapping[str, str]) -> "Panel":
+        """Return the panel with other words for curves, by their symbols."""
+        names = [one.name._replace(words=words.get(one.name.symbol, one.name.words)) for one in self.curves]
+        return self._replace(curves=tuple(one._replace(name=name) for one, name in zip(self.curves, names)))
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""
