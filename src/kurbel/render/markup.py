@@ -109,9 +109,10 @@ class Html:
             f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
             for one, (symbol, unit) in zip(table.columns, heads)
         )
+        titled = f"<caption>{in_thousands(caption, '&#8239;')}</caption>" if caption else ""
         return (
             f'<div class="wide" tabindex="0" role="region" aria-label="{caption or "values over the crank angle"}">'
-            f"<table>{f'<caption>{caption}</caption>' if caption else ''}\n"
+            f"<table>{titled}\n"
             f"<thead><tr>{''.join(cells)}</tr></thead>\n<tbody>\n"
         )
 

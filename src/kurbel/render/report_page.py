@@ -115,7 +115,7 @@ def _written(tables: Iterable[TextTable]) -> Iterator[str]:
 def _fact(one: Fact, look: Look) -> str:
     """Return a key value as a tile: what it is, its value, its symbol with its place."""
     out = Html()
-    unit = f" <small>{out.text(look.unit(one.unit))}</small>" if one.unit else ""
+    unit = f"{' ' * (one.unit != 'deg')}<small>{out.text(look.unit(one.unit))}</small>" if one.unit else ""
     at = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}°"
     place = " ".join(filter(None, (look.text(one.where), at)))
     value = f"<small>{_text(one.title, look)}</small><br><b>{out.number(_number(one.value, look))}</b>{unit}"

@@ -368,7 +368,7 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     for one in case.cylinders if command == "forces" else ():
         if options.cylinder in (None, one.drive.name):
             one.refuse_locking()
-    for equal in equal_parts(case, command):
+    for equal in equal_parts(case, "forces" if kind.id == "mechanism" else command):
         wanted = [one for one in equal if bearings or options.cylinder in (None, one.name)]
         if wanted:
             several = bearings or len(case.cylinders) > 1

@@ -161,7 +161,8 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     found: dict[str, Found] = {}
     for id in dict.fromkeys(wanted):
         one = _largest(id, commands[id], subjects[commands[id]])
-        if one and (ids or (one.number and len(found) < _MOST_FACTS)):
+        numbers = {0.0, *(abs(other.number) for other in found.values())}  # none twice
+        if one and (ids or (abs(one.number) not in numbers and len(found) < _MOST_FACTS)):
             found[id] = one._replace(title="Largest ram force") if id == "P_peak" and kind == "ram" else one
     return found
 

@@ -10,6 +10,7 @@ import numpy as np
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, shown_once, together
 from kurbel.report.balance import balance_report
@@ -23,7 +24,7 @@ from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAng
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
 from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Report, stepped
+from kurbel.report.tables import Part, Report, stepped
 from kurbel.report.turning import flywheel_report, harmonics_report, torsion_report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
@@ -77,7 +78,7 @@ def whole_report(
             left_out[command.title, str(error).removeprefix(f"{machine.name}: ")] = []
             continue
         else:
-            items.append(Answers(report))
+            items.append(Answers(_without_motion(report) if word == "forces" else report))
             tables += [OverAngle(report, command.title)] if any(part.columns for part in report.all_parts) else []
             for part in report.all_parts:
                 for reason in part.left_out:
@@ -98,6 +99,17 @@ def whole_report(
     first = (*_mechanism(case, system), *summary(case, cases, system, warnings))
     sections = [one for one in sections if one.items]
     return Document(machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),))
+
+
+def _without_motion(report: Report) -> Report:
+    """Return the report on forces without the key values that the section on motion has."""
+    declared = every_quantity()
+
+    def of_forces(part: Part) -> Part:
+        found = (one for one in part.key_values if declared.commands_of(one.id)[0] == "forces")
+        return part._replace(key_values=tuple(found))
+
+    return report._replace(parts=tuple(map(of_forces, report.parts)))
 
 
 def _angles(case: Case, command: Command, step: float) -> Sequence[float]:
