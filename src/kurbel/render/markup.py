@@ -15,6 +15,7 @@ from kurbel.render.text_tables import (
     MARK,
     TextColumn,
     TextTable,
+    headed,
     key_value_table,
     part_name,
     place_table,
@@ -242,8 +243,9 @@ def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
-        if part.key_values:
-            yield from written(key_value_table(f"Key values{of}", part.key_values, look), out)
+        for heading, key_values in headed(part.key_values).items():
+            caption = f"Key values{of}{f', {heading.lower()}' if heading else ''}"
+            yield from written(key_value_table(caption, key_values, look), out) if key_values else ()
         left_out = [f"{one.what}: {one.why}" for one in part.left_out]
         yield from listed(f"Left out{of}", left_out, look, out)
         yield from listed(f"Warnings{of}", part.warnings, look, out)
@@ -273,10 +275,10 @@ def of_places(report: Report, look: Look, across: int | None) -> Iterator[TextTa
 def _parts_of(
     found: Iterable[tuple[str, Sequence[TextColumn], Sequence[TextColumn], bool]], across: int | None
 ) -> Iterator[TextTable]:
-    for caption, names, columns, headed in found:
+    for caption, names, columns, named in found:
         most = across or max(len(columns), 1)
         for start in range(0, max(len(columns), 1), most):
-            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if headed else 0)
+            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if named else 0)
 
 
 def written(table: TextTable, out: Writer) -> Iterator[str]:

@@ -17,7 +17,7 @@ from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
-from kurbel.quantity import value
+from kurbel.quantity import Heading, value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
 
 
@@ -155,6 +155,7 @@ class Motion(Results):
 
     command = "motion"
 
+    _motion = Heading("Motion")
     stroke = value("s", "length", "Stroke")
     phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
     phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
