@@ -1,5 +1,6 @@
 """The long report as one page of HTML: a first page, answers with pictures and tables, and the input last."""
 
+import re
 from collections.abc import Iterable, Iterator
 from html import escape
 
@@ -13,6 +14,8 @@ from kurbel.render.text_tables import TextTable, key_value_table, part_name, pla
 from kurbel.report.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
+_CLOSE = 5
+"""Digits of a value next to its bound."""
 _STYLE = """\
 main{max-width:61rem;padding:1.5rem 1rem}
 h1{font-size:1.9rem;line-height:1.2;margin:0 0 .2rem}
@@ -144,10 +147,16 @@ def _text_table(grid: Grid, look: Look) -> TextTable:
 
 def _shown(cell: Shown, head: str, look: Look) -> str:
     if isinstance(cell, tuple):
-        return f"{_number(cell[0], look)} {look.unit(cell[1])}".replace(" °", "°").strip()
+        number = look.counted(*single(cell[0], look.digits or _CLOSE, look.comma))
+        return f"{number} {_powers(look.unit(cell[1]))}".replace(" °", "°").strip()
     if isinstance(cell, float):
         return _number(cell, look)
-    return look.unit(cell) if head == "Unit" else sentence_text(cell, look)
+    return look.unit(cell) if head == "Unit" else _powers(cell) if head == "Bound" else sentence_text(cell, look)
+
+
+def _powers(unit: str) -> str:
+    """Return a unit as a file has it, `cm2`, with its powers above the line, and a minus sign in place of a hyphen."""
+    return re.sub(r"(?<=[a-z])[23]\b", lambda power: "²³"[int(power[0]) - 2], re.sub(r"^-", "−", unit))
 
 
 def _text(text: str, look: Look) -> str:
