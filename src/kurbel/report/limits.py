@@ -25,8 +25,7 @@ class Entry(NamedTuple):
     """One line of a section of a check.
 
     severity: `error` of a limit that is broken or a figure that is off, `warning`, `info`, or '' of a plain statement;
-    path: of what it is about in the machine file. Of a verdict also the quantity, its value with unit, the bound, and whose
-    it is.
+    path: of what it is about in the machine file. Of a verdict also quantity, value with unit, bound, and whose it is.
     """
 
     what: str
