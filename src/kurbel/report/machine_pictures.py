@@ -17,6 +17,8 @@ from kurbel.solver.stress import PARTS
 _MOST_NUMBERED = 24
 _HIGHEST = 12
 """Order up to which bars are drawn: beyond it they are too small to be seen."""
+_LEAST_BARS = 6
+"""How many there is room for at least, so that one alone is no block."""
 _MODES = 4
 _FASTEST, _MOST_ORDERS = 1.25, 8
 """Of a Campbell diagram: its highest speed over the working speed, and how many orders it has."""
@@ -134,21 +136,23 @@ def torque_orders(source: Source) -> Iterator[Panel]:
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
     gas, whole = (np.abs(one.amplitudes)[drawn] for one in (found.gas, found.whole))
     orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
-    yield _bars(orders, [whole], name, "torque", "all")
-    if found.inertia is not None:
-        inertia = np.abs(found.inertia.amplitudes)[drawn]
+    inertia = np.abs(found.inertia.amplitudes)[drawn] if found.inertia else np.zeros(0)
+    both = gas.any() and inertia.any()  # one alone is all
+    yield _bars(orders, [whole], name, "torque", "all" if both else "")
+    if both:
         yield _bars(orders, [gas, inertia], name, "torque", "left: gas, weight, friction; right: inertia")
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
     """The circles of each order, with the rotation and against it."""
-    if source.having("F_x"):
-        omega, free = source.results.omega, source.results.free
-        for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
-            if vector is not None and free.orders:
-                sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
-                title = "left: circles with the rotation, right: against it"
-                yield _bars(free.orders, sizes, Words(name, words="radius"), kind, title)
+    omega, free, panels = source.results.omega, source.results.free, list[Panel]()
+    for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
+        if source.having("F_x") and vector is not None and free.orders:
+            sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
+            title = "left: circles with the rotation, right: against it"
+            panels.append(_bars(free.orders, sizes, Words(name, words="radius"), kind, title))
+    # what is balanced has nothing to show, unless all is
+    yield from [one for one in panels if any(shade.high.any() for shade in one.shades)] or panels[:1]
 
 
 def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: str, title: str) -> Panel:
@@ -160,7 +164,7 @@ def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: st
             left = place - 0.38 + number * wide
             shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x = Axis(Words("n", words="order"), low=-0.6, high=len(names) - 0.4, names=names)
+    x = Axis(Words("n", words="order"), low=-0.6, high=max(len(names), _LEAST_BARS) - 0.4, names=names)
     return Panel(x, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
 
 
