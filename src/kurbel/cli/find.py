@@ -5,7 +5,9 @@ from typing import Any
 import click
 
 from kurbel.cli.options import (
+    complete_key_values,
     complete_override,
+    key_value_option,
     machine_file,
     number_options,
     output_option,
@@ -15,7 +17,7 @@ from kurbel.cli.options import (
 
 @click.command()
 @machine_file
-@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1)
+@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_key_values)
 @click.option(
     "--vary",
     multiple=True,
@@ -24,9 +26,9 @@ from kurbel.cli.options import (
     shell_complete=complete_override,
     help="The key whose value is sought, and its range: rod_ratio=3:6, 'stroke=700:900 mm'; two with two equations.",
 )
-@click.option("--least", metavar="ID", help="Minimise this key value within the limits of FILE.")
-@click.option("--greatest", metavar="ID", help="Maximise this key value within the limits of FILE.")
-@click.option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
+@key_value_option("--least", metavar="ID", help="Minimise this key value within the limits of FILE.")
+@key_value_option("--greatest", metavar="ID", help="Maximise this key value within the limits of FILE.")
+@key_value_option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
 @click.option("--plot", is_flag=True, help="Draw the key value over the key, in the terminal or with -o to a file.")
 @click.option("--write", is_flag=True, help="Print FILE with the values found in it, and nothing else.")
 @click.option("--take", type=click.IntRange(1), metavar="N", help="With --write, the solution of this number.")

@@ -50,6 +50,9 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
+        if name == "help":
+            of = f"{args[1]} " if args[1:] and args[1] in COMMANDS else ""
+            raise click.UsageError(f"no command 'help'; write 'kurbel {of}--help'", ctx)
         meant = did_you_mean(name, tuple(COMMANDS))
         way_out = "; 'kurbel forces FILE' computes a machine, 'kurbel --help' and 'kurbel COMMAND --help' explain"
         raise click.UsageError(f"no command '{name}'{meant or way_out}", ctx)

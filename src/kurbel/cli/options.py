@@ -135,11 +135,14 @@ def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
     return every_place()
 
 
-def _columns(ctx: click.Context, begun: str) -> Iterable[str]:
-    """Return the columns of the command that may follow those named already."""
-    before, comma, _ = begun.rpartition(",")
-    known = _quantities().columns(ctx.info_name or "")
-    return [before + comma + one for one in known if one not in before.split(",")]
+def _listed(ids: Callable[[str], Iterable[str]]) -> Callable[..., list[str]]:
+    """Return what completes a list of ids of a command, by its word, by those that are not named already."""
+
+    def following(ctx: click.Context, begun: str) -> Iterable[str]:
+        before, comma, _ = begun.rpartition(",")
+        return [before + comma + one for one in ids(ctx.info_name or "") if one not in before.split(",")]
+
+    return completing(following)
 
 
 def _names(ctx: click.Context, of: str) -> list[str]:
@@ -157,6 +160,8 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     return (*(one.id for one in PICTURES), "all")
 
 
+complete_columns = _listed(lambda command: _quantities().columns(command))
+complete_key_values = _listed(lambda _: dict.fromkeys(one.id for one in _quantities().all_key_values))
 complete_key = completing(_keys)
 complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
 complete_cylinder = completing(lambda ctx, _: _names(ctx, "cylinders"))
@@ -186,6 +191,11 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
         return command
 
     return decorate
+
+
+def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
+    """Return an option that is completed by ids of key values."""
+    return click.option(*names, shell_complete=complete_key_values, **how)
 
 
 case_option = click.option(
@@ -231,7 +241,7 @@ columns_option = click.option(
     type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
-    shell_complete=completing(_columns),
+    shell_complete=complete_columns,
 )
 cylinder_option = click.option(
     "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder

@@ -153,8 +153,9 @@ def plot(
     "--format",
     "-f",
     "format",
-    type=click.Choice(["table", "json"]),
-    help="json: every finding with its place. By the suffix of --output, or table, if not given.",
+    type=click.Choice(["table", "json", "junit"]),
+    help="json: every finding with its place; junit: XML that CI services read. By the suffix of --output, or table, "
+    "if not given.",
 )
 @output_option
 @width_option
@@ -170,13 +171,11 @@ def check(
 
     Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
     compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
-    message and severity. Of several files all are checked; the exit status is the gravest one.
+    message and severity; as junit each is a test. Of several files all are checked; the exit status is the gravest one.
     """
     from kurbel.cli.checking import check_files
 
-    written = format_of(format, file_name)
-    if written not in ("table", "json"):
-        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
+    written = format_of(format, file_name, {".json": "json", ".xml": "junit"})
     return check_files(files, case_name, overrides, written, file_name, width)
 
 

@@ -6,6 +6,7 @@ import click
 
 from kurbel.cli.options import (
     complete_override,
+    key_value_option,
     machine_file,
     number_options,
     output_option,
@@ -33,18 +34,23 @@ _what_varies = stacked(
     click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
 )
 _what_is_told = stacked(
-    click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    key_value_option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
-    click.option(
+    key_value_option(
         "--where",
         "conditions",
         multiple=True,
         metavar="CONDITION",
         help="Only rows with 'c_max < 5 m/s' or 'keeps = yes'.",
     ),
-    click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
+    key_value_option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
+    key_value_option(
+        "--pareto",
+        type=words,
+        metavar="ID,ID",
+        help="Only rows that no other betters; -ID: more is better.",
+    ),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
