@@ -49,6 +49,7 @@ TEACHING = {
 """Shipped machine -> the picture that teaches most of it."""
 BEST = {
     "bearing-loads": "gas-engine",
+    "campbell": "torsional-damper",
     "card-volume": "compressor",
     "effort": "waterworks-two-cranks",
     "flow": "triplex-pump",

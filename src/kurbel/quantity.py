@@ -11,6 +11,7 @@ attribute is computed on first use. The rows of a class are printed in the order
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any, Generic, NamedTuple, TypeVar, overload
@@ -28,6 +29,7 @@ GREEK = {
 }  # fmt: skip
 """Sign of a symbol -> what stands for it where the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
+_FIRST_WORDS = re.compile(r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)")
 _ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "max": ("Largest", lambda extremes: extremes.largest),
     "min": ("Smallest", lambda extremes: extremes.smallest),
@@ -72,6 +74,16 @@ class Quantity(NamedTuple):
     mark: str = ""
     group: str = ""
     heading: str = ""
+
+    @property
+    def short(self) -> str:
+        """Two or three words for axes and legends: what it is called, or the first words of its sentence.
+
+        >>> Quantity("M", "M", "torque", "Torque on the shaft").short
+        'torque'
+        """
+        first = _FIRST_WORDS.match(self.text)
+        return self.called or (first.group().strip() if first else self.text).lower()
 
     @property
     def bounded_below(self) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from good_machines import DEMO, DIESEL, EFFORT, EQUAL, FULL, GAS_ENGINE, LIKE_ONE
+from good_machines import ALL, DEMO
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import load, loads
@@ -31,7 +31,7 @@ def test_the_flat_machine_of_the_contract() -> None:
 
 
 def test_several_cylinders_with_everything() -> None:
-    machine = loads(FULL)
+    machine = loads(ALL["full"])
     high, low = machine.cylinders
     assert [high.name, low.name] == ["HP", "LP"]
     assert (high.mechanism.crank, low.mechanism.rod, low.crank_position) == (0.4, math.inf, 90)
@@ -50,14 +50,14 @@ def test_several_cylinders_with_everything() -> None:
 
 
 def test_engines_and_diagrams() -> None:
-    otto = loads(GAS_ENGINE).cylinders[0].pistons[0].indicator.head_end
+    otto = loads(ALL["gas_engine"]).cylinders[0].pistons[0].indicator.head_end
     # c = 1/(ε − 1), ε = 5
     assert (otto.clearance, otto.exponent, otto.expansion_exponent) == (0.25, 1.4, 1.4)
-    machine = loads(DIESEL)
+    machine = loads(ALL["diesel"])
     diesel, diagram = machine.cylinders[0].pistons[0].indicator.head_end, machine.load.diagram
     assert (diesel.peak, diesel.expansion_exponent) == (45e5, 1.35)
     assert (diagram.angles, diagram.torques) == ((0, 90, 90, 720), (100, 100, 500, 100))
-    machine = loads(EFFORT)
+    machine = loads(ALL["effort"])
     assert (machine.cylinders, machine.load) == ((), None)
     assert machine.effort.torques[1] == 300 * 9.80665
 
@@ -109,9 +109,9 @@ def test_a_value_of_any_depth_is_set() -> None:
 
 def test_what_is_like_the_changed_one_changes_with_it() -> None:
     for key in ("cylinders.0.crank", "cylinders[0].crank"):
-        assert [one.mechanism.crank for one in loads(LIKE_ONE, "m", [f"{key}=150 mm"]).cylinders] == [0.15, 0.15]
+        assert [one.mechanism.crank for one in loads(ALL["like_one"], "m", [f"{key}=150 mm"]).cylinders] == [0.15, 0.15]
     changed = ["cylinders.count=2", "cylinders.firing_order=1-2", "cylinders.each.bore=1 m"]
-    found = [(one.pistons[0].bore, one.crank_position) for one in loads(EQUAL, "m", changed).cylinders]
+    found = [(one.pistons[0].bore, one.crank_position) for one in loads(ALL["equal_cylinders"], "m", changed).cylinders]
     assert found == [(1, 0), (1, 360)]
 
 

@@ -71,7 +71,8 @@ KINDS = {
 }
 """A value may be 0, and of either sign. An angle of 1e6° is known to 1e-10°; beyond, nothing of it would be left."""
 
-Point = tuple[float, float]
+Point = tuple[float, ...]
+"""Numbers of a diagram: two, or three."""
 
 MOST_POINTS = 500_000
 """Points or samples of one diagram."""

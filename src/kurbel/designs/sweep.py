@@ -160,8 +160,8 @@ class Sweep:
 
     def chunk(self, company: range, wanted: range) -> list[Design]:
         """Return the wanted rows of a chunk, counted from 0."""
-        bound = self._binder.bound([self.plan.texts(row) for row in company])
         own = range(wanted.start - company.start, wanted.stop - company.start)
+        bound = self._binder.bound([self.plan.texts(row) for row in company], own)
         found = bound.failures | answers_of(bound.batches, (*self.requested, *(one for _, one, _ in self._limits)), own)
         answered = {row: each for row in own if not isinstance(each := found[row], str)}
         columns = zip(zip(*answered.values()), self.requested, self._units)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import Number, Points, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Reading, has_refused
+from kurbel.declared.reading import Node, Reading, has_refused
 from kurbel.declared.record import Record, Rule, alternative, field, record
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
@@ -293,11 +293,11 @@ class _MeanTorque(OneOf):
         super().__init__(Number("torque"), Number("ratio"))
         self.number = None
 
-    def kind_as_written(self, text: Any) -> str:
+    def kind_as_written(self, text: Node | None) -> str:
         """Return `ratio` of a bare number, else `torque`."""
         return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read it as what it looks like."""
         bare = self.kind_as_written(value) == "ratio"
         found = self.forms[bare].read(reading, value, path)

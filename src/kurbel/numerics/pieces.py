@@ -141,6 +141,13 @@ class Pieces:
         some = self.taken(rows)
         return some.parted(np.full(len(some.half), 2))
 
+    def by_crank(self, later: Number) -> Pieces:
+        """Return these pieces by the angles of a crank that lags by so many degrees, a number or (machines,)."""
+        behind = self.of(later)
+        right_angle = 90.0 * np.rint((self.middle - behind) / 90.0)
+        # differences of right angles are exact
+        return replace(self, right_angle=right_angle, offset=(self.right_angle - right_angle - behind) + self.offset)
+
     def parted(self, parts: Indices) -> Pieces:
         """Return every piece cut into so many equal parts, (pieces,), in order."""
         row = np.repeat(np.arange(len(parts)), parts)

@@ -46,8 +46,8 @@ _ROWS = (
         "Bearing forces and stresses of the crankshaft.",
         _STALLS,
         "Strength of the crankshaft",
-        first="P_dc safety_pin_min safety_web_A_min safety_web_B_min safety_journal_A_min safety_journal_B_min A_max "
-        "B_max p_pin_max p_journal_A_max p_journal_B_max",
+        first="P_dc safety_pin_min safety_web_A_min safety_web_B_min safety_journal_A_min safety_journal_B_min "
+        "A_max B_max p_pin_max p_journal_A_max p_journal_B_max",
     ),
     Command(
         "bearings",
