@@ -1,8 +1,7 @@
 """Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
-import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from typing import Any, NamedTuple, TypeVar
 
@@ -19,7 +18,6 @@ from kurbel.report.tables import Report
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-Item = TypeVar("Item")
 _MOST_STEPS = 10_000
 
 
@@ -373,12 +371,3 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 Spreads = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""
-
-
-def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
-    """Yield what is computed one by one, with a bar on the terminal; how: it looks, see `click.progressbar`."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    with click.progressbar(items, file=sys.stderr, label=label, **how) as bar:
-        yield from bar

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import click
 from click.core import ParameterSource
 
-from kurbel.cli.options import Output, Spreads, with_bar
+from kurbel.cli.group import Progress
+from kurbel.cli.options import Output, Spreads
 from kurbel.errors import UsageError
 from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
@@ -124,8 +124,10 @@ class Request:
         if case and spreads is not None and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            bar = partial(with_bar, label="drawn machines")
-            report = with_uncertainty(report, case, spreads, self.units, bar)
+            progress = Progress(self.command)
+            report = with_uncertainty(
+                report, case, spreads, self.units, lambda items: progress.counted(items, "machines", len(items))
+            )
         context = click.get_current_context()
         names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
         given = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)

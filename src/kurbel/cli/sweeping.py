@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import click
 
-from kurbel.cli.group import to_stderr
-from kurbel.cli.options import format_of, with_bar
+from kurbel.cli.group import Progress, to_stderr
+from kurbel.cli.options import format_of
 from kurbel.designs.chosen import read_aim, read_condition, summary, summary_heads, unbettered
 from kurbel.designs.plan import MOST_ROWS, shard
 from kurbel.designs.sweep import Design, Spec, Sweep
@@ -96,7 +96,7 @@ def run(wanted: SweepOptions) -> None:
         found: Iterable[Design] = computed
         # else the rows themselves go to the terminal
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
-            found = with_bar(found, "designs", length=len(rows), update_min_steps=100)
+            found = Progress("sweep").counted(found, "designs", len(rows))
         chosen: Iterable[Any] = (row for row in found if all(one.holds(row) for one in conditions))
         chosen = unbettered(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen

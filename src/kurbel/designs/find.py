@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import groupby, product
 from typing import NamedTuple
 
@@ -96,6 +96,7 @@ def find(
     least: str = "",
     greatest: str = "",
     conditions: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
 ) -> Solutions:
     """Return the values of keys of a machine file that give wanted key values, or an extreme one.
 
@@ -108,7 +109,7 @@ def find(
     extreme = least or greatest
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions)
+    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions, progress)
     solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
     findings = designs.findings(solutions, jumps)
     if not solutions:
@@ -120,8 +121,15 @@ class _Designs:
     """Designs of a file by their places (n, keys), from 0 to 1 in each range, and all that was computed of them."""
 
     def __init__(
-        self, origin: Origin, vary: Sequence[str], wanted: Sequence[str], aim: str, conditions: Sequence[str]
+        self,
+        origin: Origin,
+        vary: Sequence[str],
+        wanted: Sequence[str],
+        aim: str,
+        conditions: Sequence[str],
+        progress: Callable[[str], None] | None = None,
     ) -> None:
+        self.progress = progress
         spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         if len({path_of(key) for key in keys}) < len(keys):
@@ -152,6 +160,8 @@ class _Designs:
 
         For a design that fails both texts are the reason of the failure.
         """
+        if self.progress:
+            self.progress(f"{len(self.computed)} designs computed")
         rows = self.numbers(places).tolist()
         texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
         bound = self.binder.bound(texts)
