@@ -80,11 +80,13 @@ def run(wanted: SweepOptions) -> None:
     conditions = [read_condition(one, sweep.heads, sweep.texts) for one in wanted.conditions]
     aims = [read_aim(one, sweep.heads, "--pareto") for one in wanted.pareto or ()]
     order = read_aim(wanted.sort, sweep.heads, "--sort") if wanted.sort else None
+    for_people = written in ("table", "markdown")
     if wanted.summary:
         titles = Titles(summary_heads(sweep.heads), row="column")
     else:
         types = sweep.types() if written == "parquet" else ()
-        titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts, types=types)
+        heads = sweep.shown if for_people else [(one.id, place) for place, one in enumerate(sweep.heads)]
+        titles = Titles(tuple((name, sweep.heads[place].unit) for name, place in heads), sweep.texts, types=types)
     look = Look(written, comma=wanted.decimal == "comma", digits=wanted.digits)
     headed, kept = rows.start == 0, Kept()
     if wanted.resume:
@@ -100,7 +102,10 @@ def run(wanted: SweepOptions) -> None:
         chosen: Iterable[Any] = (row for row in found if all(one.holds(row) for one in conditions))
         chosen = unbettered(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen
-        chosen = summary(chosen, sweep.heads) if wanted.summary else chosen
+        if wanted.summary:
+            chosen = summary(chosen, sweep.heads)
+        elif for_people:
+            chosen = (row._replace(values=tuple(row.values[place] for _, place in sweep.shown)) for row in chosen)
 
         def early(left: str) -> None:
             resumable = named and written in _LINES and in_order
