@@ -79,7 +79,7 @@ def motion(request: "Request") -> None:
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(request: "Request", cases: bool, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
+def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
@@ -88,8 +88,6 @@ def forces(request: "Request", cases: bool, cycle: int | None, each_cycle: bool,
     """
     from kurbel.report.crank import forces_report
 
-    if cases:
-        return request.print_cases()
     case = request.case(cycle)
     if not each_cycle:
         request.print(forces_report, case=case, parts=len(case.cylinders), spreads=spreads)
@@ -135,7 +133,7 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
 @click.command()
 @machine_table
 @cases_option
-def bearings(request: "Request", cases: bool) -> None:
+def bearings(request: "Request") -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
     The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
@@ -145,8 +143,6 @@ def bearings(request: "Request", cases: bool) -> None:
     """
     from kurbel.report.crank import bearings_report
 
-    if cases:
-        return request.print_cases()
     request.print(bearings_report)
 
 
@@ -202,7 +198,6 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 )
 def torsion(
     request: "Request",
-    cases: bool,
     orders: tuple[float, ...] | None,
     speeds: tuple[float, ...] | None,
     modes: int,
@@ -218,8 +213,6 @@ def torsion(
     """
     from kurbel.report.turning import Wanted, torsion_report
 
-    if cases:
-        return request.print_cases()
     if mode is not None and at is not None:
         raise click.UsageError(
             "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
@@ -230,7 +223,7 @@ def torsion(
 @click.command()
 @machine_table
 @cases_option
-def delivery(request: "Request", cases: bool) -> None:
+def delivery(request: "Request") -> None:
     """Print what the pumps and compressors of FILE deliver.
 
     Of pumps the flow over the crank angle, its mean, how much it swings, and what air vessels and pipes make of it;
@@ -239,6 +232,4 @@ def delivery(request: "Request", cases: bool) -> None:
     """
     from kurbel.report.delivery import delivery_report
 
-    if cases:
-        return request.print_cases()
     request.print(delivery_report)

@@ -252,7 +252,7 @@ part_options = stacked(
         "everything",
         is_flag=True,
         expose_value=False,
-        help="Everything, on a low terminal, too, not a first selection.",
+        help="On a low terminal, print everything instead of a first selection.",
     ),
 )
 units_option = click.option(

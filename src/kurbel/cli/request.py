@@ -47,7 +47,8 @@ def cases_of(machine: Machine) -> list[Case]:
 class Request:
     """What a command that prints a table for a machine is called with, by the names of the options.
 
-    units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle.
+    units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle;
+    cases: a row for each load case instead of all else.
     """
 
     command: str
@@ -64,6 +65,7 @@ class Request:
     where: str | None = None
     over: str | None = None
     compare: bool = False
+    cases: bool = False
 
     def given(self, **others: object) -> list[str]:
         """Return which of these options are given; others: some that only one command has."""
@@ -82,13 +84,15 @@ class Request:
 
         also: see `write`.
         """
+        if self.cases:
+            return self._print_cases()
         case = case or self.case()
         end = 360.0 * case.machine.revolutions if COMMANDS[self.command].turns else 360.0
         if self.command == "balance":
             end = case.balance.cycle
         self.write(report(case, self.frame(end, parts), *how), case, **also)
 
-    def print_cases(self) -> None:
+    def _print_cases(self) -> None:
         """Print a row for each load case of the file. Raises UsageError where it has none."""
         given = self.given(**{"--columns": None, "--case": self.case_name or None})
         if given:
