@@ -21,12 +21,17 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 _MOST_STEPS = 10_000
 
 
-def number(text: str | float) -> float:
-    """Return a finite number with a decimal point, also 10/3 or 75 %."""
+def _read(parse: Callable[..., float], *given: str) -> float:
+    """Return what is parsed; what cannot be is a bad parameter."""
     try:
-        return parse_ratio(text) if isinstance(text, str) else text  # what holds where it is not given
+        return parse(*given)
     except UnitError as error:
         raise click.BadParameter(str(error)) from None
+
+
+def number(text: str | float) -> float:
+    """Return a finite number with a decimal point, also 10/3 or 75 %."""
+    return _read(parse_ratio, text) if isinstance(text, str) else text  # what holds where it is not given
 
 
 def numbers(text: str) -> tuple[float, ...]:
@@ -64,10 +69,8 @@ def speeds(text: str) -> tuple[float, ...]:
     """
     each = text.replace(":", ",").split(",")
     unit = written_unit(each[-1])
-    try:
-        found = tuple(parse_quantity(one if written_unit(one) else f"{one} {unit}".strip(), "speed") for one in each)
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
+    texts = (one if written_unit(one) else f"{one} {unit}".strip() for one in each)
+    found = tuple(_read(parse_quantity, one, "speed") for one in texts)
     if ":" in text:
         found = _stepped(found, text, "300:1500:10 rpm")
     if not all(speed > 0 for speed in found):
@@ -77,10 +80,7 @@ def speeds(text: str) -> tuple[float, ...]:
 
 def frequency(text: str) -> float:
     """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
-    try:
-        found = parse_quantity(text, "speed")
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
+    found = _read(parse_quantity, text, "speed")
     if not found > 0:
         raise click.BadParameter(f"'{text}': a frequency is more than 0")
     return found
