@@ -27,8 +27,9 @@ sys.dont_write_bytecode = False
 # as on the command line, where a thread for each core would only get in the way of the others
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# a width in the environment (pytest-xdist sets one) is asked of every output, by contract
+# a width and a height in the environment (pytest-xdist sets both) hold for every output, by contract
 os.environ.pop("COLUMNS", None)
+os.environ.pop("LINES", None)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
