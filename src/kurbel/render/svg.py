@@ -330,7 +330,7 @@ def _legend(frame: PanelFrame, left: float) -> list[Entry]:
 def _around(frame: PanelFrame, left: float, legend: Sequence[Entry]) -> Iterator[str]:
     """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
     panel, look, wide, tall = frame.panel, frame.look, frame.wide, frame.tall
-    across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 12)
+    across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 8)
     up = ticks(panel.y, frame.y, int(tall / 30), look)
     lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
     lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]

@@ -3,7 +3,7 @@
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import Any, NamedTuple, Union
 
@@ -216,6 +216,11 @@ class Panel(NamedTuple):
         across += [one.real for one in drawn]
         up += [one.imag for one in drawn]
         return [*across, marked[:, 0]], [*up, marked[:, 1]]
+
+    def called(self, words: Mapping[str, str]) -> "Panel":
+        """Return the panel with other words for curves, by their symbols."""
+        names = [one.name._replace(words=words.get(one.name.symbol, one.name.words)) for one in self.curves]
+        return self._replace(curves=tuple(one._replace(name=name) for one, name in zip(self.curves, names)))
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""
