@@ -144,10 +144,10 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
         ends = frame.y.place(np.array([shade.low[0], shade.high[0]])) / dot[1]
         for place in np.arange(np.ceil(start), end, 1 if shade.gain else 2):
             canvas.line(np.full(2, place), ends, "curve0" if shade.gain else "curve1")
-    for note in panel.notes:
-        at, text = complex(frame.place(note.place.real, note.place.imag)), frame.look.text(note.text)
+    for one in panel.captions:
+        at, text = complex(frame.place(one.place.real, one.place.imag)), frame.look.text(one.text)
         left = min(max(round(at.real - width(text) / 2), 0), canvas.columns - width(text))
-        canvas.write(left, round(at.imag / 2), text, "head" if note.strong else "unit")
+        canvas.write(left, round(at.imag / 2), text, "head" if one.strong else "unit")
     for label in frame.labels(named=True):
         role = "head" if label.look is None else f"curve{label.look}"
         canvas.write(round(label.left), round(label.top / 2), label.text, role)

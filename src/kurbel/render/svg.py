@@ -231,9 +231,9 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
     yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
     yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
-    for note in panel.notes:
-        at, of = complex(frame.place(note.place.real, note.place.imag)), "mark strong" if note.strong else "mark note"
-        yield _text(at.real, at.imag + 4.5, frame.look.text(note.text), of, "middle", plain=True)
+    for one in panel.captions:
+        at, of = complex(frame.place(one.place.real, one.place.imag)), "mark strong" if one.strong else "mark note"
+        yield _text(at.real, at.imag + 4.5, frame.look.text(one.text), of, "middle", plain=True)
     if panel.footnote:
         yield from _below(frame)
 

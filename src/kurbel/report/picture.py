@@ -177,7 +177,7 @@ class Body(NamedTuple):
         return found
 
 
-class Note(NamedTuple):
+class Caption(NamedTuple):
     """A text with its middle at a place x + iy; half: half of its width; strong: as a heading."""
 
     text: str
@@ -202,7 +202,7 @@ class Panel(NamedTuple):
     plain: bool = False
     title: str = ""
     bodies: tuple[Body, ...] = ()
-    notes: tuple[Note, ...] = ()
+    captions: tuple[Caption, ...] = ()
     footnote: str = ""
 
     @property
@@ -212,7 +212,7 @@ class Panel(NamedTuple):
         up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
         marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
         drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
-        drawn += [np.array([note.place - note.half, note.place + note.half]) for note in self.notes]
+        drawn += [np.array([one.place - one.half, one.place + one.half]) for one in self.captions]
         across += [one.real for one in drawn]
         up += [one.imag for one in drawn]
         return [*across, marked[:, 0]], [*up, marked[:, 1]]

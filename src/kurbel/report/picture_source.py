@@ -242,7 +242,7 @@ def in_units(panel: Panel, system: str) -> Panel:
             for x, y, of, of_x in panel.marks
         ),
         bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
-        notes=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.notes),
+        captions=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.captions),
     )
 
 

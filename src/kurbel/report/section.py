@@ -9,7 +9,7 @@ from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.mechanisms import PIN
-from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Curve, Note, Panel, Words
+from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel, Words
 from kurbel.report.picture_source import PHI, Source
 from kurbel.report.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
 from kurbel.solver.forces import CylinderForces
@@ -85,9 +85,11 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
         )
     left, right, bottom, top = _bounds(bodies)
     em = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1])
-    notes = tuple(Note(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts)
+    captions = tuple(
+        Caption(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts
+    )
     said = _footnote(machine, trains, row, len(front))
-    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), notes=notes, footnote=said)
+    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), captions=captions, footnote=said)
 
 
 def _standing(trains: Sequence[Train]) -> float:
