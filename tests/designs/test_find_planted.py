@@ -1,8 +1,5 @@
 """Values planted in machines of books are found again, and no solution is missed that a dense scan separates."""
 
-import re
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,34 +9,22 @@ from kurbel.declared.unit_systems import SI
 from kurbel.designs.find import find
 from kurbel.errors import KurbelError
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import dotted
 from kurbel.machine_file.source import read
+from swept_rows import EXAMPLES, numbers_in
 
 KEY_VALUES = ("c_max", "b_max", "T_max", "N_max", "S_min", "work", "P_max", "dE", "M_mean")
-NUMBER = re.compile(r"([0-9.]+(?:e[+-]?[0-9]+)?)(?: (.*))?")
-EXAMPLES = sorted(path for path in Path(__file__).parents[1].glob("examples/*.yaml") if path.stem != "answers")
-NO_NUMBERS = {"uncertainty", "limits", "expect", "trace", "points", "name", "count"}
 
 
 def planted(seed: int) -> tuple[Origin, str, float, float, float, str] | None:
     """Return a machine, one of its keys with a range in its unit, where in the range its value is, and that unit."""
     random = np.random.default_rng(seed)
-    origin = read(EXAMPLES[random.integers(len(EXAMPLES))])
-    try:
-        keys = [(path, NUMBER.fullmatch(text)) for path, text in leaves(tree_of(origin)) if isinstance(text, str)]
-    except KurbelError:
-        return None
-    keys = [
-        (path, found) for path, found in keys if found and float(found[1]) > 0 and not NO_NUMBERS & {*map(str, path)}
-    ]
+    file = EXAMPLES[random.integers(len(EXAMPLES))]
+    keys = numbers_in(file)
     if not keys:
         return None
-    path, found = keys[random.integers(len(keys))]
-    assert found
-    value = float(found[1])
+    key, value, unit = keys[random.integers(len(keys))]
     low, high = value * random.uniform(0.6, 0.95), value * random.uniform(1.05, 1.5)
-    return origin, dotted(path), low, high, (value - low) / (high - low), found[2] or ""
+    return read(file), key, low, high, (value - low) / (high - low), unit
 
 
 @pytest.mark.slow
