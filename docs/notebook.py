@@ -46,7 +46,9 @@ def _blocks() -> Iterator[str]:
 def _run(text: str, names: dict[str, Any]) -> tuple[str, Any]:
     """Run a cell; return what it prints, and the value of its last line where that is an expression."""
     code = ast.parse(text)
-    last = ast.Expression(code.body.pop().value) if isinstance(code.body[-1], ast.Expr) else None
+    end = code.body[-1]
+    last = ast.Expression(end.value) if isinstance(end, ast.Expr) else None
+    code.body = code.body[:-1] if last else code.body
     with redirect_stdout(StringIO()) as printed:
         exec(compile(code, "cell", "exec"), names)
         shown = eval(compile(last, "cell", "eval"), names) if last else None

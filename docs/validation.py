@@ -22,13 +22,13 @@ _WATERWORKS = _ROOT / "configs" / "waterworks.yaml"
 _KGF, _CM2 = 9.80665, 1e-4
 
 _JUDGED = {
-    "right": "both agree",
-    "right_within_1_unit": "print off by one in its last digit",
-    "first_order_formula": "kurbel: the source uses the first-order formula",
-    "series_approximation": "kurbel: the source uses a cut-off series",
-    "graphical": "kurbel: the source reads a drawing",
-    "rounded_intermediates": "kurbel: the source rounds on the way",
-    "wrong": "kurbel: the print is wrong",
+    "right": "both",
+    "right_within_1_unit": "both; last digit of the print off by one",
+    "first_order_formula": "kurbel; first-order formula",
+    "series_approximation": "kurbel; cut-off series",
+    "graphical": "kurbel; read off a drawing",
+    "rounded_intermediates": "kurbel; rounded on the way",
+    "wrong": "kurbel; print wrong",
     "note": "not printed",
     "not printed": "not printed",
 }
@@ -38,7 +38,8 @@ _HEAD = """# Validation
 
 Every published example that kurbel is tested with: what the source prints, what kurbel computes, and which is right.
 
-*Deviation* is the printed figure minus kurbel's, relative to kurbel's. The tests also hold every figure of kurbel in
+*Deviation* is the printed figure minus kurbel's, relative to kurbel's; *right* names who is right, and what the source
+does otherwise. The tests also hold every figure of kurbel in
 the worked examples against an independent recalculation in 30 digits, to its last digit; where nothing is printed, that
 is the only check. ᵍ: the source takes g = 9.81 m/s² or a rounded horsepower, kurbel 9.80665 m/s² and 550 ft lbf/s.
 ⁰: the figure is an input of the example, and kurbel finds the condition that it is the answer to.
@@ -110,12 +111,16 @@ def _source(example: str) -> str:
 def _row(example: str, row: dict[str, Any]) -> tuple[str, ...]:
     printed = row.get("printed", "–")
     if "ask" not in row:
-        return example, row["of"], printed, "–", row["unit"], "", f"not computed: {row['reason']}"
+        return example, row["of"], printed, "–", _unit(row), "", f"not computed: {row['reason']}"
     judged = _JUDGED[row["verdict"]] + (f" ({row['why']})" if "why" in row else "")
     figures = _figures({"file": example, **row})
     mark = "⁰" if "back" in row else "ᵍ" if _constants(row) else ""
     shown = ", ".join(_shown(one) for one in figures) + mark
-    return example, row["of"], printed, shown, row["unit"], _deviation(printed, figures), judged
+    return example, row["of"], printed, shown, _unit(row), _deviation(printed, figures), judged
+
+
+def _unit(row: dict[str, Any]) -> str:
+    return re.sub(r"(?<=[a-z])([23])", lambda power: "²³"[int(power[1]) - 2], row["unit"].replace("deg", "°"))
 
 
 def _figures(row: dict[str, Any]) -> list[float]:
@@ -222,9 +227,7 @@ def _infinite(case: Any) -> float:
 
 def _agreed(printed: str, value: float, why: str) -> str:
     decimals = len(printed.partition(".")[2])
-    return (
-        "both agree" if round(value, decimals) == float(printed) else f"kurbel: {why or 'the source rounds on the way'}"
-    )
+    return "both" if round(value, decimals) == float(printed) else f"kurbel; {why or 'rounded on the way'}"
 
 
 def _own_book(title: str, rows: Iterable[tuple[str, ...]]) -> str:
@@ -323,7 +326,7 @@ def _redtenbacher() -> str:
             "½ λ f",
             "0.8333",
             lambda: 100 * case["loss_crosshead_redtenbacher"].value,
-            "both agree (printed 1/120)",
+            "both (printed 1/120)",
         ),
         ("D 5", "with the logarithm", "–", lambda: 100 * redtenbacher_logarithm(1 / 6, 0.1), "not printed"),
         ("–", "over the stroke", "–", lambda: 100 * case["loss_crosshead"].value, over),
