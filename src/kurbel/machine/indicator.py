@@ -339,6 +339,7 @@ class Indicator(Record):
         none = "head_end" not in given and (mirrored or "crank_end" not in given)
         yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")
         for end in ("head_end", "crank_end"):
-            drawn = given.get("pressures") == "absolute" and getattr(given.get(end), "drawn", False)
+            card = given.get(end)
+            drawn = given.get("pressures") == "absolute" and isinstance(card, Card) and card.drawn
             message = "a drawn card counts from the atmospheric line; write 'pressures: gauge'"
             yield Rule((end, "drawn"), drawn, message)

@@ -376,8 +376,10 @@ class Piston(Record):
     @property
     def chambers(self) -> "dict[str, Chamber]":
         """What the indicator shows, by the key of the end."""
-        ends = ("head_end", "crank_end") if self.indicator else ()
-        return {end: chamber for end in ends if (chamber := getattr(self.indicator, end)) is not None}
+        if self.indicator is None:
+            return {}
+        ends = {"head_end": self.indicator.head_end, "crank_end": self.indicator.crank_end}
+        return {end: chamber for end, chamber in ends.items() if chamber is not None}
 
     def cycle_beside(self, cycle: str) -> str:
         """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.
