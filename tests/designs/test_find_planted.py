@@ -12,8 +12,7 @@ from kurbel.declared.unit_systems import SI
 from kurbel.designs.find import find
 from kurbel.errors import KurbelError
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import dotted
+from kurbel.machine_file.overrides import dotted, leaves, tree_of
 from kurbel.machine_file.source import read
 
 KEY_VALUES = ("c_max", "b_max", "T_max", "N_max", "S_min", "work", "P_max", "dE", "M_mean")

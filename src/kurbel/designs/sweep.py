@@ -17,7 +17,7 @@ from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.given import case_names
+from kurbel.machine_file.overrides import case_names
 from kurbel.numerics.extreme import size_of
 from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
