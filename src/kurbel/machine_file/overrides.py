@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, NoReturn
 
 import yaml
 
-from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.declared.reading import REFUSED, Node, Plain, Reading, Tree, is_nothing, kind_of, shown
 from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
@@ -26,7 +26,7 @@ class Override(NamedTuple):
 
     given: str
     path: Path
-    value: Any
+    value: Node
     place: Path = ()
 
 
@@ -92,7 +92,7 @@ def dotted(path: Path) -> str:
     return ".".join(map(str, path))
 
 
-def set_over(tree: Any, origin: Origin) -> list[Override]:
+def set_over(tree: Node, origin: Origin) -> list[Override]:
     """Put into the tree of a file what is set over it, and return that; raises UsageError.
 
     First the values of its load case, then its overrides, then what a sweep varies.
@@ -105,7 +105,7 @@ def set_over(tree: Any, origin: Origin) -> list[Override]:
         *_read_all(origin.varied, "--vary"),
     ]
     for one in overrides:
-        node: Any = tree
+        node: Node = tree
         for place in range(len(one.path)):
             if node is not REFUSED:
                 node = _step(node, one, place)
@@ -114,7 +114,7 @@ def set_over(tree: Any, origin: Origin) -> list[Override]:
 
 def _of_case(tree: Tree, name: str) -> Iterator[Override]:
     """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
-    cases: Any = tree.get("cases")
+    cases = tree.get("cases")
     listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
     named = {str(one.get("name")): index for index, one in enumerate(listed)}
     if name not in named:
@@ -126,7 +126,7 @@ def _of_case(tree: Tree, name: str) -> Iterator[Override]:
         yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
 
 
-def _step(node: Any, one: Override, place: int) -> Any:
+def _step(node: Node, one: Override, place: int) -> Any:
     """Go one step down, or set the value at the last one, and return what is there; what leads to it is made."""
     step, last = one.path[place], place == len(one.path) - 1
     above = dotted(one.path[:place])
@@ -148,7 +148,7 @@ def _step(node: Any, one: Override, place: int) -> Any:
     return node[str(step)]
 
 
-def _near(step: str | int, items: Sequence[Any]) -> int:
+def _near(step: str | int, items: Sequence[Node]) -> int:
     """Return the item of a list that is probably meant: of that name, counted from its end, or else the last one."""
     names = [item.get("name") if isinstance(item, dict) else None for item in items]
     if step in names:
@@ -163,7 +163,7 @@ def by_numbers(tree: Tree, key: str) -> str:
     >>> by_numbers({"cylinders": [{"name": "LP"}, {"name": "HP"}]}, "cylinders.HP.bore")
     'cylinders.1.bore'
     """
-    node: Any = tree
+    node: Node | None = tree
     found: list[str | int] = []
     for step in path_of(key):
         if isinstance(node, list) and node:
@@ -203,12 +203,13 @@ def given(origin: Origin) -> tuple[tuple[str, str], ...]:
 
 def tree_of(origin: Origin) -> Tree:
     """Return a file that was read without a fault as mappings, lists and texts, with what is set over it."""
-    tree: Tree = parse(origin.text, Reading())
+    tree = parse(origin.text, Reading())
+    assert isinstance(tree, dict)
     set_over(tree, origin)
     return tree
 
 
-def leaves(node: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
+def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
     """Yield the keys of a tree below which no key stands, each by its path with its value: a text or a list."""
     if isinstance(node, dict):
         for name, below in node.items():
@@ -220,7 +221,7 @@ def leaves(node: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
         yield path, node
 
 
-def _short(value: Any) -> str:
+def _short(value: Node) -> str:
     """Return a value in one line; of a long list its ends, and how many there are."""
     if not isinstance(value, list):
         text = " ".join(str(value).split())

@@ -8,7 +8,7 @@ from typing import Any
 
 from kurbel.declared.forms.structures import Given, Maker, RecordForm, places
 from kurbel.declared.numerals import WRITTEN, familiar
-from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, Tree, glued_hint, kind_of, shown
+from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, glued_hint, kind_of, shown
 from kurbel.declared.units import ZEROED_UNITS
 from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine import Machine
@@ -90,7 +90,7 @@ def read_machine(origin: Origin) -> Machine:
     return replace(machine, name=name, origin=origin)
 
 
-def read_tree(tree: Tree, origin: Origin, reading: Reading) -> Any:
+def read_tree(tree: Node, origin: Origin, reading: Reading) -> Any:
     """Return what the tree of a file says, before records are made of it; REFUSED after noting its faults."""
     return ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
 
