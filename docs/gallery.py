@@ -102,8 +102,7 @@ def page() -> str:
     """Return the page of the gallery."""
     blocks = [
         "# Gallery",
-        "Every picture that `kurbel plot` draws, of machines that come with kurbel; `--list` says which "
-        "of them a machine has. Written by `pytest --rewrite tests/pictures/test_gallery.py`.",
+        "Every picture that `kurbel plot` draws, of machines that come with kurbel; `--list` lists those of a machine.",
     ]
     for id, machine in shown():
         one = _DECLARED[id]

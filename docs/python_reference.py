@@ -84,7 +84,7 @@ def _signature(name: str, thing: Any) -> str:
         else f" -> {_short(inspect.formatannotation(returned))}"
     )
     line = f"{name}({', '.join(arguments)}){end}"
-    if len(line) > 96:
+    if len(line) > 76:
         line = f"{name}(\n" + "".join(f"    {one},\n" for one in arguments) + f"){end}"
     return f"```text\n{line}\n```\n\n"
 
@@ -118,7 +118,8 @@ def _members(of: type, names: Any) -> str:
 def _call(name: str, member: Any) -> str:
     if not inspect.isfunction(member):
         return f".{name}"
-    arguments = [one.name for one in inspect.signature(member).parameters.values() if one.name != "self"]
+    parameters = [one for one in inspect.signature(member).parameters.values() if one.name != "self"]
+    arguments = [("*" if one.kind is inspect.Parameter.VAR_POSITIONAL else "") + one.name for one in parameters]
     return f".{name}({', '.join(arguments)})"
 
 

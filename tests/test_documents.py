@@ -158,6 +158,11 @@ def test_the_page_of_validation_has_every_example() -> None:
     assert [example for example in TABLE if f"| {example} |" not in page] == []
 
 
+def test_no_page_begins_with_a_note_for_its_makers() -> None:
+    begins = {named(page): text_of(page)[:500] for page in PAGES}
+    assert [page for page, text in begins.items() if re.search(r"pytest|edit by hand|writes this page", text)] == []
+
+
 # links of the pages beside the site (README and its like) lead to files and headings that there are
 
 BESIDE = sorted(ROOT.glob("*.md"))

@@ -20,7 +20,7 @@ def told(line: str) -> str:
     text = words.pop() if "<<<" in words else None
     result = run(*[word for word in words if word != "<<<"], text=text)
     assert "Traceback" not in result.output
-    return f"{result.exit_code} {' '.join(result.stderr.split())}"
+    return f"{result.exit_code} {' '.join((result.stderr or result.stdout).split())}"
 
 
 @pytest.mark.parametrize("part", PARTS, ids=[part.partition("\n")[0].strip("# ") for part in PARTS])

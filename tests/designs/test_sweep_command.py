@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ import pytest
 
 import kurbel
 from kurbel.designs import workers
-from swept_rows import CONFIGS, WATERWORKS, rows, run
+from swept_rows import CONFIGS, WATERWORKS, rows, run, until_written
 
 
 def test_rows_are_what_forces_tells_of_each() -> None:
@@ -149,8 +148,7 @@ def in_the_midst(file: Path, jobs: str) -> subprocess.Popen[str]:
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    while process.poll() is None and not (part(file).exists() and part(file).stat().st_size > 100):
-        time.sleep(0.05)
+    until_written(process, part(file), 100)
     return process
 
 

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Iterable
 from contextlib import closing
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import click
 
@@ -97,7 +97,7 @@ def run(wanted: SweepOptions) -> None:
         # else the rows themselves go to the terminal
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
             found = with_bar(found, "designs", length=len(rows), update_min_steps=100)
-        chosen: Iterable[Any] = (row for row in found if all(one.holds(row) for one in conditions))
+        chosen: Iterable[Design] = (row for row in found if all(one.holds(row) for one in conditions))
         chosen = unbettered(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen
         chosen = summary(chosen, sweep.heads) if wanted.summary else chosen

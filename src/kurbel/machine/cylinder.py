@@ -48,7 +48,7 @@ def counterweights() -> Any:
 
 @record
 class Cylinder(Record):
-    """One cylinder with its crank mechanism and everything that hangs on the same rod.
+    """One cylinder with its crank mechanism and all that is on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
     is left out; crank_position: degrees by which this crank follows crank 1, None in a cylinder from a file that gives

@@ -73,13 +73,7 @@ COUPLER_VALUES = (
     ),
     KeyOffer(
         Quantity(
-            "coupler_inertia",
-            "F_b",
-            "force",
-            "Centrifugal force m v²/R of the coupler",
-            "",
-            ("forces",),
-            after="T_min",
+            "coupler_inertia", "F_b", "force", "Centrifugal force m v²/R of the coupler", "", ("forces",), after="T_min"
         ),
         _inertia,
     ),

@@ -24,11 +24,7 @@ _M_BEND = own_force(
 
 
 _BENDING = own_force(
-    "sigma_bend",
-    "σ_b",
-    "stress",
-    "Bending stress of the piston rod by M_b",
-    called="bending stress of the piston rod",
+    "sigma_bend", "σ_b", "stress", "Bending stress of the piston rod by M_b", called="bending stress of the piston rod"
 )
 _PUSHED = own_force(
     "sigma_rod",

@@ -206,13 +206,12 @@ class Pieces:
         found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
         return np.maximum(found, self.first[machine])
 
-    def kept_of(self, others: Pieces) -> tuple[Indices, Indices, Indices]:
-        """Return which of these pieces are among others as they are, which of those these are, and which are new."""
+    def kept_of(self, others: Pieces) -> tuple[Indices, Indices]:
+        """Return which of other pieces are among these as they are, and which of these are new."""
         row = others.holding(self.machine, self.middle)
         same = (others.offset[row] == self.offset) & (others.half[row] == self.half)
         same &= others.right_angle[row] == self.right_angle
-        kept = np.flatnonzero(same)
-        return kept, row[kept], np.flatnonzero(~same)
+        return row[same], np.flatnonzero(~same)
 
     # integrals, zeros and extremes of samples (nodes, pieces)
 
@@ -382,10 +381,13 @@ def resolved(
     return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
 
 
-def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Samples]:
-    """Return pieces halved until the samples are polynomials on them, and the samples there, each (nodes, pieces)."""
+def refined(pieces: Pieces, sample: Sample, judged: int | None = None) -> tuple[Pieces, Samples]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, each (nodes, pieces).
+
+    judged: how many of the samples are, the first ones; the others come along.
+    """
     nothing = np.zeros((0, *pieces.degrees.shape))
-    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing)[:2]
+    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing, judged=judged)[:2]
 
 
 def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Samples]) -> tuple[Array, Array]:
@@ -404,39 +406,41 @@ def _ranges(values: Samples) -> Array:
 
 
 def _halved_until_smooth(
-    pieces: Pieces, function: Callable[[Pieces, Array], Samples], parts: Array, only_highest: bool = False
+    pieces: Pieces,
+    function: Callable[[Pieces, Array], Samples],
+    parts: Array,
+    only_highest: bool = False,
+    judged: int | None = None,
 ) -> tuple[Pieces, Samples, Array]:
     """Return pieces halved until the functions of parts are polynomials on them, the functions, and the parts there.
 
-    only_highest: where they may have their largest values; the other pieces are left out.
+    only_highest: where they may have their largest values; the other pieces are left out. judged: see `refined`.
     """
     todo, size = pieces, np.zeros(())
-    done: list[Pieces] = []
-    found: list[Array] = []
+    done: list[tuple[Pieces, Indices, Sequence[Array]]] = []
     while True:
         values = function(todo, parts)
-        low, high = _ranges(values)
-        top, first = np.zeros((len(values), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
+        tested = values[:judged]
+        low, high = _ranges(tested)
+        top, first = np.zeros((len(tested), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
         top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
-        judged = values
         if only_highest:
             values, may = np.asarray(values), ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
             todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
-            judged = values * may[:, None, some]
-        rough = _rough(todo, judged, size, len(done))
+            tested = values * may[:, None, some]
+        rough = _rough(todo, tested, size, len(done))
         if not (done or rough.any()):
             return todo, values, parts
-        done.append(todo.taken(~rough))
-        found.append(np.concatenate((np.asarray(values)[..., ~rough], parts[..., ~rough])))
+        done.append((todo, np.flatnonzero(~rough), [*values, *parts]))
         if not rough.any():
             break
         nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
         halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
         parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    whole, both = joined(done, found)
+    whole, both = joined(done)
     return whole, both[: len(values)], both[len(values) :]
 
 
@@ -453,17 +457,25 @@ def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags
     return np.asarray(rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine]))
 
 
-def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
-    """Return pieces that together fill the cycles as one row, in order, and their samples (…, pieces)."""
-    one = parts[0]
-    if len(parts) == 1:
-        return one, values[0]
-    columns = [(part.right_angle, part.offset, part.half, part.machine) for part in parts]
+def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
+    """Return pieces that together fill the cycles as one row, in order, and samples of quantities (q, …, pieces) there.
+
+    parts: pieces, which of them are taken, and the samples of each quantity on all of them.
+    """
+    taken = [pieces.taken(rows) for pieces, rows, _ in parts]
+    columns = [(one.right_angle, one.offset, one.half, one.machine) for one in taken]
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
-    ordered = right_angle[order], offset[order], half[order], machine[order]
-    whole = Pieces(*ordered, one.count, one.cycle, one.rule)
-    return whole, np.concatenate(values, axis=-1)[..., order]
+    whole = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine).taken(order)
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    places = np.split(place, np.cumsum([len(rows) for _, rows, _ in parts])[:-1])
+    count = len(parts[0][2])
+    found = np.empty((count, *parts[0][2][0].shape[:-1], len(order)))
+    for at, (_, rows, values) in zip(places, parts):
+        for quantity, one in enumerate(values):
+            found[quantity][..., at] = one[..., rows]
+    return whole, found
 
 
 def _first_summits(

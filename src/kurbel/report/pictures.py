@@ -17,9 +17,9 @@ from kurbel.report.alike import together
 from kurbel.report.constructions import construction, polar_force
 from kurbel.report.crank import equal_bearings, equal_cylinders
 from kurbel.report.frame import subjects_of
-from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Sampled, Source, Values, in_units, level
+from kurbel.report.section import mechanism
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 from kurbel.solver.effort import Term
@@ -496,7 +496,8 @@ class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
     The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
-    across: panels next to each other.
+    across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
+    case and those that are wanted.
     """
 
     id: str
@@ -504,6 +505,7 @@ class PictureKind(NamedTuple):
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
+    whole: bool = False
 
     @property
     def text(self) -> str:
@@ -534,7 +536,7 @@ PICTURES = (
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
-    PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
+    PictureKind("mechanism", "Mechanism", "motion", mechanism, whole=True),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
@@ -623,6 +625,10 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
         for bearings in equal_bearings(case):
             yield Source(bearings[0], options.angles), together([one.name for one in bearings])
     else:
+        if kind.whole:
+            wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
+            yield Source((case, wanted), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
+            return
         for one in case.cylinders if command == "forces" else ():
             if options.cylinder in (None, one.drive.name):
                 one.refuse_locking()

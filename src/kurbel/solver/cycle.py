@@ -14,11 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
-from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, refined
+from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import told
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
@@ -111,17 +112,45 @@ def _smoothed(
 ) -> tuple[Pieces, State, Samples]:
     """Return the pieces halved until columns are polynomials there, the state and the columns on them."""
 
-    def sample(some: Pieces) -> list[Array]:
-        return _known(some, columns(state if some is pieces else State.on(drive, some)))
+    judged = _known(pieces, columns(state))
 
-    fine, values = refined(pieces, sample)
-    return fine, state.recut(drive, fine, pieces), values
+    def sample(some: Pieces) -> list[Array]:
+        if some is pieces:
+            return [*judged, *_before_friction(state)]
+        own = State.on(drive, some)
+        return [*_known(some, columns(own)), *_before_friction(own)]
+
+    fine, values = refined(pieces, sample, len(judged))
+    finer = state if fine is pieces else _restored(drive, fine, values[len(judged) :])
+    return fine, finer, values[: len(judged)]
 
 
 def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Pieces, State]:
-    """Return the pieces cut at more angles, and the state there."""
+    """Return the pieces cut at more angles, and the state there: most pieces and what is known of them stay."""
     cut = pieces.split(at)
-    return cut, state.recut(drive, cut, pieces)
+    if cut is pieces:
+        return pieces, state
+    source, new = cut.kept_of(pieces)
+    fresh = cut.taken(new)
+    known = _before_friction(state), _before_friction(State.on(drive, fresh))
+    whole, both = joined([(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])])
+    return whole, _restored(drive, whole, both)
+
+
+def _before_friction(state: State) -> list[Array]:
+    """Return motion and gas forces, which no side of a force changes: what `_restored` makes a state of."""
+    motion = [state.angle.sin, state.angle.cos, state.slope, state.curvature, *(state.rod_angle or ())]
+    return [np.broadcast_to(one, state.phi.shape) for one in (*motion, *state.piston_forces)]
+
+
+def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+    """Return the state on pieces of which `_before_friction` is known, each (nodes, pieces)."""
+    sin, cos, slope, curvature, *rest = known
+    pistons = len(rest) - len(drive.gas)
+    angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
+    state = State(drive.taken(pieces.machine), angle, pieces.middle)
+    state.slope, state.curvature, state.piston_forces = slope, curvature, rest[pistons:]
+    return state
 
 
 def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, State]:

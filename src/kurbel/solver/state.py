@@ -112,28 +112,6 @@ class State(MotionColumns):
         """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
-    def recut(self, drive: Drive, cut: Pieces, pieces: Pieces) -> State:
-        """Return the state on pieces that were cut again; this one is on them as they were before.
-
-        Of the pieces that are as they were, motion and pressures, which no side of a force changes, are kept.
-        """
-        if cut is pieces:
-            return self
-        kept, source, new = cut.kept_of(pieces)
-        fresh = State.on(drive, cut.taken(new))
-
-        def whole(own: Array, other: Array) -> Array:
-            found = np.empty(cut.degrees.shape)
-            found[:, kept], found[:, new] = np.broadcast_to(own, pieces.degrees.shape)[:, source], other
-            return found
-
-        rod = self.rod_angle and tuple(map(whole, self.rod_angle, fresh.rod_angle))
-        sin, cos = whole(self.angle.sin, fresh.angle.sin), whole(self.angle.cos, fresh.angle.cos)
-        state = State(drive.taken(cut.machine), CrankAngle(cut.degrees, sin, cos, rod), cut.middle)
-        state.slope, state.curvature = whole(self.slope, fresh.slope), whole(self.curvature, fresh.curvature)
-        state.piston_forces = [*map(whole, self.piston_forces, fresh.piston_forces)]
-        return state
-
     @cached_property
     def unrubbed(self) -> State:
         """The same state without friction in pins and journals; this friction is computed from its loads."""
