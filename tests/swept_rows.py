@@ -12,8 +12,7 @@ from click.testing import Result
 
 import command
 from kurbel.errors import KurbelError
-from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import dotted
+from kurbel.machine_file.overrides import dotted, leaves, tree_of
 from kurbel.machine_file.source import read
 
 CONFIGS = Path(__file__).parent.parent / "configs"

@@ -14,8 +14,7 @@ from kurbel.designs.answers import requested_answers
 from kurbel.designs.find import find
 from kurbel.errors import KurbelError
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import dotted
+from kurbel.machine_file.overrides import dotted, leaves, tree_of
 from kurbel.machine_file.source import decode
 
 OF_ONE = ("c_max", "b_max", "T_max", "T_min", "N_max", "S_min", "work", "P_max", "friction_work", "mean_pressure")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from kurbel.cli.request import cases_of
-from kurbel.machine_file.given import given
+from kurbel.machine_file.overrides import given
 from kurbel.render import Look
 from kurbel.render.report_page import report_page
 from kurbel.report.whole import side_by_side, whole_report

@@ -16,7 +16,7 @@ from pages import page_of, page_of_case
 
 from kurbel.cli import kurbel
 from kurbel.machine_file import loads
-from kurbel.machine_file.given import given
+from kurbel.machine_file.overrides import given
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case

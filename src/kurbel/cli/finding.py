@@ -11,7 +11,7 @@ from kurbel.designs.find import Solution, Solutions
 from kurbel.designs.find import find as found_in
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
-from kurbel.machine_file.rewrite import rewritten
+from kurbel.machine_file.overrides import rewritten
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw
 from kurbel.render.findings import as_json, as_rows, heads, picture, remarks

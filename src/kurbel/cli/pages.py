@@ -50,7 +50,7 @@ def report(
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
     from kurbel.cli.request import case_of, cases_of
-    from kurbel.machine_file.given import given
+    from kurbel.machine_file.overrides import given
     from kurbel.render.report_page import report_page
     from kurbel.report.whole import side_by_side, whole_report
 

@@ -63,7 +63,7 @@ def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more:
     return dataclasses.field(default=None if default is ... else default, metadata={"key": declared})
 
 
-def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Any:
+def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
     """Declare an entry that is no attribute: `gives` returns those that follow from it, from all values by key.
 
     key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and

@@ -217,7 +217,7 @@ ZEROED_UNITS = {
     **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
     **{"ata": ("absolute", "at"), "atü": ("gauge", "at")},
 }
-"""Pressure units that name what they count from, and the unit without; machine files have them (`zeroed_units`)."""
+"""Pressure units that name what they count from, and the unit without; machine files have them."""
 
 
 @cache

@@ -22,10 +22,8 @@ from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.given import leaves, tree_of
-from kurbel.machine_file.overrides import by_numbers, dotted, path_of, set_over
-from kurbel.machine_file.reader import ROOT, read_values, reading_of
-from kurbel.machine_file.zeroed_units import without_zeros
+from kurbel.machine_file.overrides import by_numbers, dotted, leaves, path_of, set_over, tree_of
+from kurbel.machine_file.reader import read_tree, read_values, reading_of
 from kurbel.near_words import did_you_mean
 
 
@@ -103,7 +101,7 @@ class Binder:
         origin = self._with(texts)
         tree = parse(origin.text, reading)
         set_over(tree, origin)
-        return ROOT.read(reading, {"name": origin.stem, **without_zeros(tree, reading)}, ())
+        return read_tree(tree, origin, reading)
 
     def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
         """Add the machine of one row, or the reason why there is none."""

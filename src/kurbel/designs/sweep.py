@@ -19,7 +19,7 @@ from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.given import case_names
+from kurbel.machine_file.overrides import case_names
 from kurbel.numerics.extreme import size_of
 from kurbel.report.alike import grouped, together
 from kurbel.report.limits import breaks, holders, without

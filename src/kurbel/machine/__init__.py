@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -23,13 +24,15 @@ from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
+from kurbel.machine.ideal_cards import Diesel, Otto
+from kurbel.machine.indicator import Rectangle
 from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
 from kurbel.machine.parts import Piston
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import MOST_TURNS, Coupling, Flywheel, Known, Load, Swing
+from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, Load, Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace
@@ -272,7 +275,7 @@ class Machine(Record):
         yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
-                yield Rule.of(Fault((key, getattr(diagram, "key", "points")), message))
+                yield Rule.of(Fault((key, diagram.key), message))
         if isinstance(self.effort, Swing):
             message = "needs the effort over the angle; of this one the swing of energy alone is given"
             yield Rule("load", self.load is not None and self.load.varies, message)
@@ -340,7 +343,8 @@ class Machine(Record):
         """The files that the traces of the machine, or its effort, were read from."""
         pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
         measured = (*(chamber for piston in pistons for chamber in piston.chambers.values()), self.effort)
-        return tuple(dict.fromkeys(file for one in measured for file in getattr(one, "files", ())))
+        files = (one.files for one in measured if isinstance(one, (Trace, Effort)))
+        return tuple(dict.fromkeys(chain(*files)))
 
     def lean_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
@@ -382,7 +386,8 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
             turns = CYCLES[machine.cycle_of_piston(cylinder, index)]
             for end, chamber in piston.chambers.items():
                 # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
-                if getattr(chamber, "fires", turns == 2 and getattr(chamber, "mean", 1.0) > 0):
+                idle = isinstance(chamber, Rectangle) and chamber.mean <= 0
+                if isinstance(chamber, (Otto, Diesel)) or (turns == 2 and not idle):
                     each.append((360 * turns, centres()[end == "crank_end"]))
         for length, angle in each:
             firing = (turn + angle + cylinder.crank_position for turn in range(0, cycle, length))

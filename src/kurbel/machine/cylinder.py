@@ -19,11 +19,9 @@ from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, R
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.traces.correct import CYCLES as CYCLES
 
 Item = TypeVar("Item")
-
-CYCLES = {"two-stroke": 1, "four-stroke": 2}
-"""Cycle -> revolutions of the shaft."""
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys of a cylinder that only something that slides can have, besides those of its pistons."""
@@ -179,7 +177,7 @@ def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
             yield Fault(("moment",), f"a {kind} moves its output to and fro; give 'ram_force', a force, instead")
         return
     own = ("bore",) if cylinder.pistons else ()
-    for key in (*own, *(key for key in _SLIDING if getattr(cylinder, key) is not None)):
+    for key in (*own, *(key for key in _SLIDING if vars(cylinder)[key] is not None)):
         yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
     if cylinder.mechanism.turns and cylinder.moment and cylinder.moment.back:
         yield Fault(
@@ -246,7 +244,7 @@ _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweig
 def work_alike(one: Cylinder, other: Cylinder) -> bool:
     """Whether two cylinders move and are pushed alike, wherever on the shaft they stand."""
     keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
-    return all(_same(getattr(one, key), getattr(other, key)) for key in keys)
+    return all(_same(vars(one)[key], vars(other)[key]) for key in keys)
 
 
 def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
@@ -258,11 +256,11 @@ def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list
     return groups
 
 
-def _same(one: Any, other: Any) -> bool:
+def _same(one: object, other: object) -> bool:
     if one is other or type(one) is not type(other):
         return one is other
-    if is_dataclass(one):
-        return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
-    if isinstance(one, tuple):
+    if is_dataclass(one) and not isinstance(one, type):
+        return all(_same(vars(one)[field.name], vars(other)[field.name]) for field in fields(one))
+    if isinstance(one, tuple) and isinstance(other, tuple):
         return len(one) == len(other) and all(map(_same, one, other))
-    return bool(np.array_equal(one, other))
+    return bool(np.array_equal(np.asarray(one), np.asarray(other)))

@@ -234,8 +234,6 @@ class _Engine(Record):
     exponent: float
     diagram_factor: float
 
-    fires: ClassVar[bool] = True
-
     def rules(self) -> Iterator[Rule]:
         if self.peak is not None:
             yield _order("peak", self.peak, "intake", self.intake)

@@ -108,10 +108,6 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-def _line_of(name: str, text: str) -> Any:
-    return alternative(_POINTS, text, key=name)
-
-
 @record
 class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
@@ -145,10 +141,10 @@ class Card(Record):
         instead="area",
         needs="drawn",
     )
-    _expansion = _line_of("expansion", "Line while the burnt or admitted gas expands")
-    _compression = _line_of("compression", "Line while the chamber is compressed or empties")
-    _intake = _line_of("intake", "Suction line of a four-stroke cycle")
-    _exhaust = _line_of("exhaust", "Exhaust line of a four-stroke cycle")
+    _expansion = alternative(_POINTS, "Line while the burnt or admitted gas expands")
+    _compression = alternative(_POINTS, "Line while the chamber is compressed or empties")
+    _intake = alternative(_POINTS, "Suction line of a four-stroke cycle")
+    _exhaust = alternative(_POINTS, "Exhaust line of a four-stroke cycle")
     lines: tuple[Line, ...] = ()
     interpolate: str = field(("linear", "polytropic"), "How points are joined", default="linear", absent="linear")
     clearance: float | None = field(
@@ -339,6 +335,7 @@ class Indicator(Record):
         none = "head_end" not in given and (mirrored or "crank_end" not in given)
         yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")
         for end in ("head_end", "crank_end"):
-            drawn = given.get("pressures") == "absolute" and getattr(given.get(end), "drawn", False)
+            card = given.get(end)
+            drawn = given.get("pressures") == "absolute" and isinstance(card, Card) and card.drawn
             message = "a drawn card counts from the atmospheric line; write 'pressures: gauge'"
             yield Rule((end, "drawn"), drawn, message)

@@ -9,6 +9,7 @@ import numpy as np
 from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import Choice, Form, NumberForm
+from kurbel.declared.keys import Key
 from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
@@ -87,8 +88,8 @@ def _rod(given: Values) -> dict[str, Any]:
     return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
 
 
-def _part(text: str, key: str) -> Any:
-    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum, key=key)
+def _part(text: str) -> Key:
+    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum)
 
 
 @record
@@ -108,10 +109,10 @@ class Masses(Record):
         least=0,
         gives=_sum,
     )
-    _piston = _part("Piston, or a list of pistons", "piston")
-    _piston_rod = _part("Piston rod", "piston_rod")
-    _crosshead = _part("Crosshead", "crosshead")
-    _other = _part("Any other reciprocating mass", "other")
+    _piston = _part("Piston, or a list of pistons")
+    _piston_rod = _part("Piston rod")
+    _crosshead = _part("Crosshead")
+    _other = _part("Any other reciprocating mass")
     _connecting_rod = alternative(
         OneOf(NumberForm("mass", least=0), RecordForm(ConnectingRod)),
         "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
@@ -376,8 +377,10 @@ class Piston(Record):
     @property
     def chambers(self) -> "dict[str, Chamber]":
         """What the indicator shows, by the key of the end."""
-        ends = ("head_end", "crank_end") if self.indicator else ()
-        return {end: chamber for end in ends if (chamber := getattr(self.indicator, end)) is not None}
+        if self.indicator is None:
+            return {}
+        ends = {"head_end": self.indicator.head_end, "crank_end": self.indicator.crank_end}
+        return {end: chamber for end, chamber in ends.items() if chamber is not None}
 
     def cycle_beside(self, cycle: str) -> str:
         """Return the working cycle of a tandem piston: that of the cylinder, or the two-stroke one of its cards.

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 import yaml
 
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
+from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, Tree, shown
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, Path, Step
 from kurbel.machine.origin import lines_of
@@ -23,7 +23,7 @@ Place = tuple[int, int]
 """Line and column, both counted from 0."""
 
 
-def parse(text: str, reading: Reading) -> Any:
+def parse(text: str, reading: Reading) -> Node:
     """Return the tree of a YAML text; what is wrong with it as YAML is noted.
 
     The tree has REFUSED in place of what was noted; it is REFUSED as a whole when the text could not be read to its
@@ -63,11 +63,11 @@ class Parser:
         self.values: dict[Path, Place] = {}
         self._path: list[Step] = []
         self._scalars = 0
-        self._events: Iterator[Any] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        self._events: Iterator[yaml.Event] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
-    def document(self) -> Any:
+    def document(self) -> Node:
         """Return the tree of the only document."""
-        tree: Any = None
+        tree: Node | None = None
         try:
             for event in self._events:
                 if isinstance(event, yaml.DocumentStartEvent):
@@ -82,9 +82,9 @@ class Parser:
             return REFUSED
         return Plain() if tree is None else tree
 
-    def _node(self, event: Any) -> Any:
+    def _node(self, event: yaml.Event) -> Node:
         """Return what an event begins, where the path leads to; REFUSED if anything but its content is wrong."""
-        found: Any = REFUSED
+        found: Node = REFUSED
         if isinstance(event, yaml.ScalarEvent):
             self._scalars += 1
             if self._scalars > _MOST_SCALARS:
@@ -102,21 +102,21 @@ class Parser:
             found = self._mapping() if isinstance(event, yaml.MappingStartEvent) else self._items()
         return REFUSED if wrong else found
 
-    def _below(self, step: Step, event: Any) -> Any:
+    def _below(self, step: Step, event: yaml.Event) -> Node:
         """Return what an event begins one step further down."""
         self._path.append(step)
         found = self._node(event)
         self._path.pop()
         return found
 
-    def _items(self) -> list[Any]:
+    def _items(self) -> list[Node]:
         """Return the list that has begun."""
-        items: list[Any] = []
+        items: list[Node] = []
         while not isinstance(event := next(self._events), yaml.SequenceEndEvent):
             items.append(self._below(len(items), event))
         return items
 
-    def _mapping(self) -> Any:
+    def _mapping(self) -> Node:
         """Return the mapping that has begun; REFUSED if one of its keys is no text."""
         found: Tree = {}
         whole = True
@@ -151,11 +151,11 @@ class Parser:
             return self._report(event, what)
         return False
 
-    def _report(self, event: Any, message: str) -> bool:
+    def _report(self, event: yaml.Event, message: str) -> bool:
         self.reading.note(Fault(tuple(self._path), message).at(*_place_of(event)))
         return True
 
-    def _stop(self, event: Any, message: str) -> NoReturn:
+    def _stop(self, event: yaml.Event, message: str) -> NoReturn:
         self._path.clear()
         self._report(event, message)
         raise StopReading

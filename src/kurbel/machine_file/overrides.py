@@ -1,11 +1,13 @@
-"""Values set from outside over those of a machine file: `KEY=VALUE`, the key dotted, the value as in the file."""
+"""A machine file by its dotted keys: what it gives, values set over it from outside, and its text with other values."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, NoReturn
 
-from kurbel.declared.reading import REFUSED, Plain, Reading, Tree, is_nothing, kind_of, shown
-from kurbel.errors import Fault, MachineFileError, Path, UsageError
+import yaml
+
+from kurbel.declared.reading import REFUSED, Node, Plain, Reading, Tree, is_nothing, kind_of, shown
+from kurbel.errors import Fault, MachineFileError, Path, UsageError, path_text
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
 from kurbel.machine_file.source import decode
@@ -24,7 +26,7 @@ class Override(NamedTuple):
 
     given: str
     path: Path
-    value: Any
+    value: Node
     place: Path = ()
 
 
@@ -90,7 +92,7 @@ def dotted(path: Path) -> str:
     return ".".join(map(str, path))
 
 
-def set_over(tree: Any, origin: Origin) -> list[Override]:
+def set_over(tree: Node, origin: Origin) -> list[Override]:
     """Put into the tree of a file what is set over it, and return that; raises UsageError.
 
     First the values of its load case, then its overrides, then what a sweep varies.
@@ -103,7 +105,7 @@ def set_over(tree: Any, origin: Origin) -> list[Override]:
         *_read_all(origin.varied, "--vary"),
     ]
     for one in overrides:
-        node: Any = tree
+        node: Node = tree
         for place in range(len(one.path)):
             if node is not REFUSED:
                 node = _step(node, one, place)
@@ -112,7 +114,7 @@ def set_over(tree: Any, origin: Origin) -> list[Override]:
 
 def _of_case(tree: Tree, name: str) -> Iterator[Override]:
     """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
-    cases: Any = tree.get("cases")
+    cases = tree.get("cases")
     listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
     named = {str(one.get("name")): index for index, one in enumerate(listed)}
     if name not in named:
@@ -124,7 +126,7 @@ def _of_case(tree: Tree, name: str) -> Iterator[Override]:
         yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
 
 
-def _step(node: Any, one: Override, place: int) -> Any:
+def _step(node: Node, one: Override, place: int) -> Any:
     """Go one step down, or set the value at the last one, and return what is there; what leads to it is made."""
     step, last = one.path[place], place == len(one.path) - 1
     above = dotted(one.path[:place])
@@ -146,7 +148,7 @@ def _step(node: Any, one: Override, place: int) -> Any:
     return node[str(step)]
 
 
-def _near(step: str | int, items: Sequence[Any]) -> int:
+def _near(step: str | int, items: Sequence[Node]) -> int:
     """Return the item of a list that is probably meant: of that name, counted from its end, or else the last one."""
     names = [item.get("name") if isinstance(item, dict) else None for item in items]
     if step in names:
@@ -161,7 +163,7 @@ def by_numbers(tree: Tree, key: str) -> str:
     >>> by_numbers({"cylinders": [{"name": "LP"}, {"name": "HP"}]}, "cylinders.HP.bore")
     'cylinders.1.bore'
     """
-    node: Any = tree
+    node: Node | None = tree
     found: list[str | int] = []
     for step in path_of(key):
         if isinstance(node, list) and node:
@@ -186,3 +188,101 @@ def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
             )
     beside = f" (with {', '.join(one.given for one in overrides)})" if overrides else ""
     return fault._replace(message=fault.message + beside)
+
+
+# what a file gives, key by key, as it was read: with what is set over it, and nothing guessed
+
+_MOST = 12
+_LONGEST = 160
+
+
+def given(origin: Origin) -> tuple[tuple[str, str], ...]:
+    """Return every key of a machine file, by its dotted path, with its value in one line."""
+    return tuple((path_text(path), _short(value)) for path, value in leaves(tree_of(origin)))
+
+
+def tree_of(origin: Origin) -> Tree:
+    """Return a file that was read without a fault as mappings, lists and texts, with what is set over it."""
+    tree = parse(origin.text, Reading())
+    assert isinstance(tree, dict)
+    set_over(tree, origin)
+    return tree
+
+
+def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
+    """Yield the keys of a tree below which no key stands, each by its path with its value: a text or a list."""
+    if isinstance(node, dict):
+        for name, below in node.items():
+            yield from leaves(below, (*path, name))
+    elif isinstance(node, list) and any(isinstance(one, dict) for one in node):
+        for number, below in enumerate(node):
+            yield from leaves(below, (*path, number))
+    else:
+        yield path, node
+
+
+def _short(value: Node) -> str:
+    """Return a value in one line; of a long list its ends, and how many there are."""
+    if not isinstance(value, list):
+        text = " ".join(str(value).split())
+        return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
+    shown = [_short(one) for one in value]
+    if len(shown) > _MOST:
+        return f"[{', '.join(shown[:3])}, …, {shown[-1]}] ({len(shown)} in all)"
+    return f"[{', '.join(shown)}]"
+
+
+def case_names(origin: Origin) -> tuple[str, ...]:
+    """Return the names of the load cases of a file; raises UsageError where it has none."""
+    cases = tree_of(origin).get("cases")
+    names = [one.get("name") for one in cases if isinstance(one, dict)] if isinstance(cases, list) else []
+    if not names and cases:
+        raise UsageError("--cases: 'cases' of the file is no list of cases, each with a 'name'; see kurbel check")
+    if not names:
+        raise UsageError("--cases: the file has no 'cases'")
+    return tuple(map(str, names))
+
+
+# the text of a file with other values under some of its keys; all else, comments too, stays as it is written
+
+
+def rewritten(text: str, values: Mapping[str, str]) -> str:
+    """Return the text of a machine file with texts of values in place of those under dotted keys.
+
+    A key that is not there yet comes last in the file, or first in its mapping. Raises UsageError for one of a list or
+    mapping.
+
+    >>> rewritten("crank: 400 mm  # of 1905\\nrod: 2 m\\n", {"crank": "410 mm", "flywheel.inertia": "9 kg m2"})
+    'crank: 410 mm  # of 1905\\nrod: 2 m\\nflywheel: {inertia: 9 kg m2}\\n'
+    """
+    for key, value in values.items():
+        start, end, written = _edit(text, path_of(key), value)
+        text = text[:start] + written + text[end:]
+    return text
+
+
+def _edit(text: str, path: Path, value: str) -> tuple[int, int, str]:
+    """Return from where to where a value stands, or belongs, and what is to stand there."""
+    node = yaml.compose(text, Loader=yaml.SafeLoader)
+    for place, step in enumerate(path):
+        if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):
+            node = node.value[step]
+            continue
+        if not isinstance(node, yaml.MappingNode):
+            raise UsageError(f"--write: '{dotted(path)}' is not written out in the file; write it there first")
+        inner = next((value for key, value in node.value if key.value == str(step)), None)
+        if inner is not None:
+            node = inner
+            continue
+        for missing in reversed(path[place + 1 :]):
+            value = f"{{{missing}: {value}}}"
+        if node.flow_style:
+            start = node.start_mark.index + 1
+            return start, start, f"{step}: {value}, "
+        if not place:
+            return len(text), len(text), "\n" * (not text.endswith("\n")) + f"{step}: {value}\n"
+        start, indent = node.start_mark.index, " " * node.start_mark.column
+        return start, start, f"{step}: {value}\n{indent}"
+    if not isinstance(node, yaml.ScalarNode):
+        raise UsageError(f"--write: '{dotted(path)}' is no single value in the file")
+    return node.start_mark.index, node.end_mark.index, value

@@ -7,14 +7,15 @@ from dataclasses import replace
 from typing import Any
 
 from kurbel.declared.forms.structures import Given, Maker, RecordForm, places
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of, shown
-from kurbel.errors import Fault, MachineFileError, UsageError
+from kurbel.declared.numerals import WRITTEN, familiar
+from kurbel.declared.reading import REFUSED, Node, Plain, Reading, StopReading, glued_hint, kind_of, shown
+from kurbel.declared.units import ZEROED_UNITS
+from kurbel.errors import Fault, MachineFileError, Path, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file import source
 from kurbel.machine_file.events import located, parse
 from kurbel.machine_file.overrides import named, set_over
-from kurbel.machine_file.zeroed_units import without_zeros
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
 
@@ -89,6 +90,11 @@ def read_machine(origin: Origin) -> Machine:
     return replace(machine, name=name, origin=origin)
 
 
+def read_tree(tree: Node, origin: Origin, reading: Reading) -> Any:
+    """Return what the tree of a file says, before records are made of it; REFUSED after noting its faults."""
+    return ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
+
+
 def read_values(origin: Origin, reading: Reading) -> Given:
     """Return what a file says, with the records that were made of it; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
@@ -97,7 +103,7 @@ def read_values(origin: Origin, reading: Reading) -> Given:
     given = REFUSED
     try:
         if isinstance(tree, dict):
-            given = ROOT.read(reading, {"name": origin.stem, **without_zeros(tree, reading)}, ())
+            given = read_tree(tree, origin, reading)
             Maker(reading).made(given)
         elif isinstance(tree, Plain) and not tree:
             reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")
@@ -111,3 +117,43 @@ def read_values(origin: Origin, reading: Reading) -> Given:
         raise origin.error(*reading.faults[:known], *(one for one in found if one.override), *in_file)
     assert isinstance(given, Given)
     return given
+
+
+# pressure units that name their zero, such as psia and barg, must agree with what a value counts from; in the tree they
+# are replaced by the units without, so that nothing else needs to have them
+
+_COUNTED = {
+    "ambient": "absolute",
+    "vapour_pressure": "absolute",
+    **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
+}
+"""Keys whose pressures do not count as the indicator around them says: '' where they are differences."""
+_ZEROED = re.compile(rf"((?:{WRITTEN})?\s*)({'|'.join(ZEROED_UNITS)})")
+
+
+def _without_zeros(tree: Node, reading: Reading, path: Path = (), counted: str = "") -> Any:
+    """Return a tree without such units; one that does not agree with `counted`, gauge or absolute, is a fault.
+
+    Pressures of an indicator count as its `pressures` say, the ambient is absolute, and no others have a zero.
+    """
+    if isinstance(tree, dict):
+        if path[-1:] == ("indicator",):
+            counted = "absolute" if tree.get("pressures") == "absolute" else "gauge"
+        zeros = {key: _COUNTED.get(key, counted) for key in tree}
+        return {key: _without_zeros(one, reading, (*path, key), zeros[key]) for key, one in tree.items()}
+    if isinstance(tree, list) and not (tree and isinstance(tree[0], list)):  # points are of bare numbers
+        return [_without_zeros(one, reading, (*path, index), counted) for index, one in enumerate(tree)]
+    found = _ZEROED.fullmatch(familiar(tree).strip()) if isinstance(tree, str) else None
+    if not found or (path[-1] != "unit" and not found[1].strip()):
+        return tree
+    zero, plain = ZEROED_UNITS[found[2]]
+    if zero == counted:
+        return type(tree)(found[1] + plain)
+    if not counted:
+        wrong = f"but this pressure has no zero; write the unit {plain}"
+    elif path[-1] == "ambient":
+        wrong = f"but the ambient is absolute; write the absolute pressure in {plain}"
+    else:
+        other = f"write 'pressures: {zero}', or the {counted} pressure in {plain}"
+        wrong = f"but 'pressures: {counted}' holds here; {other}"
+    return reading.fault(path, f"'{found[2]}' is {zero}, {wrong}")

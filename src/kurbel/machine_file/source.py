@@ -57,10 +57,9 @@ def decode(name: str, content: bytes, folder: str = "") -> Origin:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        before, after = content[: error.start].decode("utf-8-sig"), content[error.start :].decode("latin-1")
-        hint = f", in Latin-1 the letter '{after[0]}'" if after[0].isalpha() else ""
-        message = f"byte 0x{ord(after[0]):02X} is no UTF-8{hint}; save the file as UTF-8"
-        raise _refused(name, before + after, len(before), message) from None
+        before = content[: error.start].decode("utf-8-sig")
+        message = f"byte 0x{content[error.start]:02X} is no UTF-8; save the file as UTF-8"
+        raise _refused(name, before + content[error.start :].decode("latin-1"), len(before), message) from None
     if found := _UNPRINTABLE.search(text):
         message = f"the character U+{ord(found.group()):04X} cannot be printed; remove it"
         raise _refused(name, text, found.start(), message)

@@ -19,7 +19,8 @@ from kurbel.declared.keys import Rule
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
-TURNS = {"two-stroke": 1, "four-stroke": 2}
+CYCLES = {"two-stroke": 1, "four-stroke": 2}
+"""Cycle -> revolutions of the shaft."""
 PERIODS = (360.0, 720.0)
 _EVEN = 1e-3  # of a step: what rounded angles may miss
 _ROUNDING = 1e-9  # of a period
@@ -107,12 +108,12 @@ class Trace(Indivisible):
     def cycles(self) -> tuple[str, ...]:
         """The working cycles that its laps are, or make in pairs."""
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
-        return tuple(cycle for cycle, turns in TURNS.items() if 360.0 * turns in joins)
+        return tuple(cycle for cycle, turns in CYCLES.items() if 360.0 * turns in joins)
 
     def rules_in(self, cycle: str, lift: float) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine."""
-        other = next(name for name in TURNS if name != cycle)
-        covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * TURNS[cycle]:g} deg"
+        other = next(name for name in CYCLES if name != cycle)
+        covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * CYCLES[cycle]:g} deg"
         yield Rule((), cycle not in self.cycles, f"{covers}; write 'cycle: {other}' at the top")
 
     def over(self, period: float) -> "Trace":
