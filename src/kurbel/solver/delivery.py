@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number, Truth
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -73,7 +73,7 @@ def driven_pistons(drive: Drive) -> Iterator[Driven]:
             yield Driven(number, gas, head, crank, pumps)
 
 
-def _agreed(condition: Any) -> bool:
+def _agreed(condition: Truth) -> bool:
     if some(condition) and not every(condition):
         raise UsageError("these machines differ in what is driven")
     return bool(every(condition))
@@ -289,7 +289,7 @@ class Delivery(Results):
             found["suction_lift_max"] = (self.machine.ambient - liquid.vapour_pressure) / weight - most
         return found
 
-    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Any, Any, Any]:
+    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Number, Number, Number]:
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
@@ -297,16 +297,16 @@ class Delivery(Results):
         return steady if pipe.vessel else bare, bare, steady
 
 
-def _section(pipe: Pipe) -> Any:
+def _section(pipe: Pipe) -> Number:
     return math.pi / 4 * pipe.diameter**2
 
 
-def _friction(pipe: Pipe) -> Any:
+def _friction(pipe: Pipe) -> Number:
     """Return f l/(2 d a²) in 1/m⁴, which times ρ q² is the loss of pressure."""
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Any, Any]:
+def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing
