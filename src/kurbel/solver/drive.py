@@ -66,7 +66,7 @@ class Drive:
     down: cos of the inclination as the throw sees it, None where weights are left out: where it is positive, N > 0
     rests on the lower guide; weight: of the reciprocating masses along the stroke line and on the guide, None where it
     is left out; resistance: what the output works against, a force or, on what only swings, a moment; resistance_work:
-    what it takes out in a cycle, negative; way: path of what slides, there and back, per cycle; crosshead_friction: f,
+    what it takes out in a cycle, negative; path: of what slides, there and back, per cycle; crosshead_friction: f,
     0 without one; rubs: whether the crosshead rubs on its guide; guide_area: of its shoe, None where it is not given;
     yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether any of them
     is not 0; ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
@@ -107,7 +107,7 @@ class Drive:
             work, back = self.resistance.work, self.resistance.back
             strokes = work if mechanism.turns else work + back
             self.resistance_work = -strokes * stroke * self.revolutions
-        self.way: Number = 2 * stroke * self.revolutions
+        self.path: Number = 2 * stroke * self.revolutions
         self.has_gas = any(piston.indicator for piston in cylinder.pistons)
         self.has_force = bool(self.has_gas or self.has_inertia or self.weight or self.resistance)
 

@@ -72,12 +72,12 @@ def _own_pressure(state: State, end: str) -> Array | None:
 
 
 def _own_volume(state: State, end: str) -> Any:
-    gas, way = state.drive.own_gas, state.way
+    gas, passed = state.drive.own_gas, state.displacement
     if gas is None or _own_end(state, end) is None:
         return None
     if end == "head":
-        return gas.piston.head_area * way + gas.clearance_volumes[0]
-    return gas.piston.crank_area * (state.mechanism.stroke - way) + gas.clearance_volumes[1]
+        return gas.piston.head_area * passed + gas.clearance_volumes[0]
+    return gas.piston.crank_area * (state.mechanism.stroke - passed) + gas.clearance_volumes[1]
 
 
 def _own_rise(state: State, end: str) -> Array | None:
