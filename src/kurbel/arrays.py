@@ -10,6 +10,8 @@ Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
 Indices = np.ndarray[tuple[Any, ...], np.dtype[np.intp]]
 Number = Union[float, Array]
 """A number of one machine, or of many machines, (machines,)."""
+Truth = Union[bool, Flags]
+"""Whether something holds for one machine, or for each of many, (machines,)."""
 
 
 class Indivisible:

@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Truth
+
 
 def is_number(value: Any) -> bool:
     """Return whether a value is a float, or a number that brings its own operations."""
@@ -45,12 +47,12 @@ def ulp(value: Any) -> Any:
     return np.spacing(value)
 
 
-def every(condition: Any) -> bool:
+def every(condition: Truth) -> bool:
     """Return whether a condition holds: of an array, everywhere."""
     return condition if isinstance(condition, bool) else bool(condition.all())
 
 
-def some(condition: Any) -> bool:
+def some(condition: Truth) -> bool:
     """Return whether a condition holds: of an array, anywhere."""
     return condition if isinstance(condition, bool) else bool(condition.any())
 

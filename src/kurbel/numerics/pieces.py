@@ -79,9 +79,9 @@ class SampledExtremes(NamedTuple):
     smallest: Array
     smallest_at: Array
 
-    def each(self, told: Callable[[Array], Any]) -> list[Extremes]:
-        """Return those of every quantity; told: gives a result (machines,) the form in which it is shown."""
-        high, high_at, low, low_at = (map(told, part) for part in self)
+    def each(self, result: Callable[[Array], Any]) -> list[Extremes]:
+        """Return those of every quantity; result: gives numbers (machines,) the form in which they are shown."""
+        high, high_at, low, low_at = (map(result, part) for part in self)
         return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
 
 

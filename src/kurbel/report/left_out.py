@@ -1,5 +1,6 @@
 """What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
+from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.turning import Swing
 from kurbel.report.tables import LeftOut
@@ -158,7 +159,7 @@ def strength_left_out(machine: Machine) -> list[LeftOut]:
     )
 
 
-def bearing_left_out(diameter: float | None, length: float | None, omega: float | None) -> list[LeftOut]:
+def bearing_left_out(diameter: float | None, length: float | None, omega: Number | None) -> list[LeftOut]:
     """Return what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
     lacks = " and ".join(name for name, size in (("diameter", diameter), ("length", length)) if not size)
     return missing(

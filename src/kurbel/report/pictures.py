@@ -137,7 +137,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
         def values(degrees: Array, within: Array) -> Array:
             state = results.at(degrees, within)
             pressures = (state.pressure(end) + gas.base for _, end in ends)  # noqa: B023 (used before the next one)
-            return np.stack([state.way, *pressures])
+            return np.stack([state.displacement, *pressures])
 
         samples = source.samples(("x", *(id for id, _ in ends)), values=values)
         x, *pressures = samples.values
@@ -156,7 +156,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
             curves.append(samples.curve(end, place, pressure))
         marks: tuple[Mark, ...] = ()
         if number == 0 and not over_volume and (highest := results.p_max):
-            marks = (source.mark("p_max", highest, float(results.at(np.array([highest.degrees])).way[0])),)
+            marks = (source.mark("p_max", highest, float(results.at(np.array([highest.degrees])).displacement[0])),)
         across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
         up = Axis(Words("p", words="pressure"), "pressure", mark="abs" if gas.absolute else "")
         title = gas.piston.name if len(results.drive.gas) > 1 else ""

@@ -32,7 +32,7 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
 from kurbel.quantity import value
-from kurbel.solver.figures import AtAngles, Results, told
+from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import SupportedShaft, Vector, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
@@ -170,25 +170,25 @@ class Bearing(Results):
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
         return np.append(self._cycle[0].low, self._cycle[0].cycle)
 
-    def _told(self, values: Array) -> Any:
-        return told(values, self.count)
+    def _result(self, values: Array) -> Any:
+        return result(values, self.count)
 
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values by id in SI; those that need sizes, speed or a coefficient only if these are given."""
         pieces, load, (x, y, shell_x, shell_y) = self._cycle
-        loads, mean = pieces.extremes(load[None]).each(self._told)[0], self._told(pieces.mean(load))
+        loads, mean = pieces.extremes(load[None]).each(self._result)[0], self._result(pieces.mean(load))
         # the time in which it exceeds half the largest, by the mean of each piece; the weights sum to 2
         largest = np.atleast_1d(loads.largest.value)
         parted = pieces.split(pieces.zeros(load - pieces.of(largest / 2), largest))
         part = load if parted is pieces else parted.carried(load, pieces)
         above = np.where(parted.rule.weights @ part > parted.of(largest), 1.0, 0.0)
         time, sums = parted.integral(np.stack((np.broadcast_to(above, part.shape), part * above)))
-        high = self._told(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)))
+        high = self._result(np.where(largest == 0, 0.0, sums / np.where(time > 0, time, 1.0)))
         found = {"load_max": loads.largest, "load_min": loads.smallest, "load_mean": mean, "load_high": high}
 
         for surface, ending in ((x + 1j * y, ""), (shell_x + 1j * shell_y, "_shell")):
-            arc, middle = map(self._told, unloaded(pieces, surface, self.contact))
+            arc, middle = map(self._result, unloaded(pieces, surface, self.contact))
             found[f"unloaded_arc{ending}"] = None if self.count is None and math.isnan(arc) else arc
             found[f"unloaded_middle{ending}"] = None if self.count is None and math.isnan(middle) else middle
 
@@ -246,9 +246,9 @@ class RodPin(Bearing):
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
         rate = self._own.carried(self._common, 1 + slope if self._pin == "crank_pin" else slope)
-        fastest = self._common.extremes(rate).each(self._told)[0].peak
+        fastest = self._common.extremes(rate).each(self._result)[0].peak
         whole = None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
-        return fastest, self._told(self._common.mean(np.abs(rate[0]))), whole
+        return fastest, self._result(self._common.mean(np.abs(rate[0]))), whole
 
 
 class MainBearing(Bearing):
@@ -303,14 +303,14 @@ class MainBearing(Bearing):
         return np.stack((force.real, force.imag, engine.real, engine.imag))
 
     def _rubbing(self) -> tuple[Extreme, Any, Any]:
-        fastest = Extreme(1.0, self._told(np.zeros(self.count or 1)))
+        fastest = Extreme(1.0, self._result(np.zeros(self.count or 1)))
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size[0] is None:
             return fastest, 1.0, None
         force = self._sampled(rubbed=False)
         pieces, load, _ = with_magnitude(self._common, np.stack((force.real, force.imag)))
-        return fastest, 1.0, self._told(pieces.integral(load)) * coefficient * self.size[0] / 2
+        return fastest, 1.0, self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
 def _pin_load(state: State) -> Vector:

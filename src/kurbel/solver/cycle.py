@@ -21,7 +21,7 @@ from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined, refined
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import told
+from kurbel.solver.figures import result
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 _SURE = 4.0
@@ -40,9 +40,9 @@ class SampledCylinder:
 
     drive: Drive
 
-    def told(self, values: Array) -> Any:
+    def result(self, values: Array) -> Any:
         """Return values (machines,) as they are for many machines, and as a float for one."""
-        return told(values, self.drive.count)
+        return result(values, self.drive.count)
 
     # the pieces
 
@@ -99,7 +99,7 @@ class SampledCylinder:
         found = {name: values for name in columns if (values := self.sampled(name)) is not None}
         if not found:
             return {}
-        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self.told)))
+        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self.result)))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""

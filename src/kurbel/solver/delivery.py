@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number, Truth
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -37,7 +37,7 @@ from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
-from kurbel.solver.figures import AtAngles, Results, Searched, told
+from kurbel.solver.figures import AtAngles, Results, Searched, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
@@ -73,7 +73,7 @@ def driven_pistons(drive: Drive) -> Iterator[Driven]:
             yield Driven(number, gas, head, crank, pumps)
 
 
-def _agreed(condition: Any) -> bool:
+def _agreed(condition: Truth) -> bool:
     if some(condition) and not every(condition):
         raise UsageError("these machines differ in what is driven")
     return bool(every(condition))
@@ -195,7 +195,7 @@ class Delivery(Results):
         self._sampled, self._both = sampled, both
         self._rates: dict[str, Array] = {}
         self._swings: dict[str, Any] = {}
-        self._told = partial(told, count=count)
+        self._result = partial(result, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.breaks = np.append(pieces.low, pieces.cycle)
         if count is None:
@@ -237,7 +237,7 @@ class Delivery(Results):
     def mean_of(self, flow: str, cubed: bool = False) -> Any:
         """Return the mean over the cycle of dV/dφ, or of its cube."""
         rate = self.rate(flow)
-        return self._told(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
+        return self._result(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -248,7 +248,7 @@ class Delivery(Results):
         """Those of every column that is declared to have extremes, as far as there is one."""
         declared = [id for id, row in self.rows.columns.items() if row.quantity.extremes]
         found = {id: values for id in declared if (values := self.sampled(id)) is not None}
-        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._told))) if found else {}
+        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result))) if found else {}
 
     def swing(self, flow: str) -> Any:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
@@ -256,7 +256,7 @@ class Delivery(Results):
             rate = self.rate(flow)
             above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
             high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
-            self._swings[flow] = self._told((high - low)[0])
+            self._swings[flow] = self._result((high - low)[0])
         return self._swings[flow]
 
     @cached_property
@@ -284,12 +284,12 @@ class Delivery(Results):
             inertia = self.sampled("acceleration_head")
             assert friction is not None
             heads = friction if inertia is None else friction + inertia
-            most = self._told(self.pieces.extremes(heads[None]).largest[0])
+            most = self._result(self.pieces.extremes(heads[None]).largest[0])
             weight = liquid.density * GRAVITY
             found["suction_lift_max"] = (self.machine.ambient - liquid.vapour_pressure) / weight - most
         return found
 
-    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Any, Any, Any]:
+    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Number, Number, Number]:
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
@@ -297,16 +297,16 @@ class Delivery(Results):
         return steady if pipe.vessel else bare, bare, steady
 
 
-def _section(pipe: Pipe) -> Any:
+def _section(pipe: Pipe) -> Number:
     return math.pi / 4 * pipe.diameter**2
 
 
-def _friction(pipe: Pipe) -> Any:
+def _friction(pipe: Pipe) -> Number:
     """Return f l/(2 d a²) in 1/m⁴, which times ρ q² is the loss of pressure."""
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Any, Any]:
+def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing

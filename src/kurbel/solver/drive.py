@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Indices
+from kurbel.arrays import Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine import CYCLES, Cylinder, Machine
@@ -35,9 +36,9 @@ class ExactRod(NamedTuple):
     centrifugal force and its weight, the second moves to and fro with the piston.
     """
 
-    pin_mass: Any
-    crosshead_mass: Any
-    excess_inertia: Any
+    pin_mass: Number
+    crosshead_mass: Number
+    excess_inertia: Number
 
 
 class PinFriction(NamedTuple):
@@ -46,9 +47,9 @@ class PinFriction(NamedTuple):
     line: of the crankshaft, by which the journals carry the force on the pin; None where it is not known.
     """
 
-    crank_pin: Any
-    crosshead_pin: Any
-    journals: Any
+    crank_pin: Number
+    crosshead_pin: Number
+    journals: Number
     line: SupportedShaft | None
 
 
@@ -65,7 +66,7 @@ class Drive:
     down: cos of the inclination as the throw sees it, None where weights are left out: where it is positive, N > 0
     rests on the lower guide; weight: of the reciprocating masses along the stroke line and on the guide, None where it
     is left out; resistance: what the output works against, a force or, on what only swings, a moment; resistance_work:
-    what it takes out in a cycle, negative; way: path of what slides, there and back, per cycle; crosshead_friction: f,
+    what it takes out in a cycle, negative; path: of what slides, there and back, per cycle; crosshead_friction: f,
     0 without one; rubs: whether the crosshead rubs on its guide; guide_area: of its shoe, None where it is not given;
     yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether any of them
     is not 0; ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
@@ -79,34 +80,34 @@ class Drive:
         self.name, self.mechanism = cylinder.name, cylinder.mechanism
         self.revolutions = CYCLES[machine.cycle_of(cylinder)]
         self.cycle = 360.0 * self.revolutions
-        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega: Number | None = None if machine.speed is None else 2 * math.pi * machine.speed
 
         masses, mechanism = cylinder.masses, self.mechanism
         length, rod = mechanism.rod_length, masses.connecting_rod if masses else None
         exact = rod is not None and rod.exact
-        self.mass: Any = masses.at_crosshead(length) if masses else 0.0
-        self.pin_inertia: Any = masses.at_pin(length) * mechanism.crank**2 if masses else 0.0
+        self.mass: Number = masses.at_crosshead(length) if masses else 0.0
+        self.pin_inertia: Number = masses.at_pin(length) * mechanism.crank**2 if masses else 0.0
         self.rod = (
             ExactRod(rod.at_pin(length), rod.at_crosshead(length), rod.excess_inertia(length))
             if rod and exact
             else None
         )
-        self.rod_pull: Any = self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
+        self.rod_pull: Number = self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
         self.has_inertia = masses is not None and self.omega is not None
 
         inclination = machine.lean_of(cylinder)
         self._incline = None if inclination is None else CrankAngle.of(inclination)
         self.down: Any = self._incline and self._incline.cos
         self.weight = self.weight_of(self.mass) if self._incline and masses else None
-        self.guide_weight: Any = self.weight[1] if self.weight else 0.0
+        self.guide_weight: Number = self.weight[1] if self.weight else 0.0
 
         stroke, self.resistance = mechanism.stroke, cylinder.ram_force or cylinder.moment
-        self.resistance_work: Any = None
+        self.resistance_work: Number | None = None
         if self.resistance:
             work, back = self.resistance.work, self.resistance.back
             strokes = work if mechanism.turns else work + back
             self.resistance_work = -strokes * stroke * self.revolutions
-        self.way: Any = 2 * stroke * self.revolutions
+        self.path: Number = 2 * stroke * self.revolutions
         self.has_gas = any(piston.indicator for piston in cylinder.pistons)
         self.has_force = bool(self.has_gas or self.has_inertia or self.weight or self.resistance)
 
@@ -119,14 +120,15 @@ class Drive:
         self.yoke_rubs = any(some(one != 0) for one in self.yoke_friction)
         guide, rings = (friction.guide, friction.rings) if friction else (None, None)
         self.guide_area: Any = guide.length * guide.width if guide else None
-        self.ring_force, self.ring_surface = 0.0, 0.0
+        self.ring_force: Number = 0.0
+        self.ring_surface: Number = 0.0
         if rings:
-            surface: Any = rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
+            surface: Number = rings.count * math.pi * cylinder.pistons[0].bore * rings.height * rings.coefficient
             if isinstance(rings.pressure, GasOnRings):
                 self.ring_surface = surface * rings.pressure.gas
             else:
                 self.ring_force = surface * rings.pressure
-        self.steady_friction: Any = self.ring_force + constant
+        self.steady_friction: Number = self.ring_force + constant
 
     def taken(self, index: Indices) -> Drive:
         """Return a copy with the numbers of these machines, one for every angle or piece (n,)."""
@@ -146,12 +148,12 @@ class Drive:
         whole = Angles(*(np.concatenate(parts) for parts in zip(*jumps)))
         return Pieces.between(whole, count, self.cycle, 16 if len(whole.degrees) < _DENSE * count else 6)
 
-    def centrifugal(self, mass: Any) -> Any:
+    def centrifugal(self, mass: Number) -> Number:
         """Return the centrifugal force m R ω² in N of a mass in kg at the crank pin; 0 where no speed is given."""
         # a float squared by ** raises where the product is infinite
         return 0.0 if self.omega is None else mass * self.mechanism.crank * self.omega * self.omega
 
-    def weight_of(self, mass: Any) -> tuple[Any, Any]:
+    def weight_of(self, mass: Number) -> tuple[Number, Number]:
         """Return the weight in N of a mass in kg along the stroke line and on the guide; 0 where it is left out."""
         incline = self._incline
         return (mass * GRAVITY * incline.sin, mass * GRAVITY * incline.cos) if incline else (0.0, 0.0)
@@ -181,28 +183,28 @@ class Drive:
         return math.hypot(*(gas.noise for gas in self.gas))
 
     @cached_property
-    def driving(self) -> tuple[Any, ...]:
+    def driving(self) -> tuple[Truth, ...]:
         """Of the pistons that have an indicator, whether each drives: its indicated work is positive."""
         return tuple(gas.work > _IDLE * gas.swept_volume for gas in self.gas)
 
     @cached_property
-    def pumping(self) -> tuple[Any, ...]:
+    def pumping(self) -> tuple[Truth, ...]:
         """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
 
     @property
-    def beyond(self) -> tuple[Any, ...]:
+    def beyond(self) -> tuple[Truth, ...]:
         """Of the pistons that have an indicator, whether each is a tandem one on the rod itself, without a lever."""
         own = self.cylinder.pistons[0].indicator is not None if self.gas else False
         return tuple(False if own and not n else gas.piston.lever_ratio == 1 for n, gas in enumerate(self.gas))
 
     @property
-    def drives(self) -> Any:
+    def drives(self) -> Truth:
         """Whether any piston drives."""
         return any_of(self.driving)
 
     @cached_property
-    def driven(self) -> Any:
+    def driven(self) -> Truth:
         """Whether a piston is driven, its indicated work being negative, or the output works against a resistance."""
         resisted = self.resistance_work is not None and self.resistance_work != 0
         return any_of((resisted, *self.pumping))
@@ -240,9 +242,9 @@ class Drive:
         )
 
 
-def any_of(conditions: Any) -> Any:
+def any_of(conditions: Iterable[Truth]) -> Truth:
     """Return whether any of the conditions holds, each a bool or one of every machine, (machines,)."""
-    found: Any = False
+    found: Truth = False
     for one in conditions:
         found = found | one
     return found

@@ -266,7 +266,7 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
 _ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
 
 
-def told(values: Array, count: int | None) -> Any:
+def result(values: Array, count: int | None) -> Any:
     """Return values (machines,) as they are for many machines, and as a float for one, whose count is None."""
     return float(values[0]) if count is None else values
 

@@ -533,4 +533,4 @@ class DeadCentre(Results):
         values = State.at(drive, angles.ravel(), sides.ravel(), machine).P_gas.reshape(angles.shape)
         largest = np.arange(count), np.abs(values).argmax(axis=1)
         found = np.where(both, values[largest], np.nan), np.mod(angles[largest], self._cycle)
-        return Extreme(*map(forces.told, found))
+        return Extreme(*map(forces.result, found))

@@ -404,7 +404,7 @@ class CylinderForces(SampledCylinder, Results):
         lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
         if drive.guide_area is not None and lost is not None:
             if drive.rubs and some(lost != 0):
-                found["p_guide_mean"] = lost / (drive.crosshead_friction * drive.guide_area * drive.way)
+                found["p_guide_mean"] = lost / (drive.crosshead_friction * drive.guide_area * drive.path)
             if speed is not None:
                 found["wear_mean"] = lost * speed / drive.revolutions
         return found
@@ -431,18 +431,18 @@ class CylinderForces(SampledCylinder, Results):
             return found
 
         def over_cycle(values: Array) -> Any:
-            return self.told(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
+            return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
 
         if friction.crosshead is not None and drive.has_force:
             drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None
             found["crosshead"] = 0.0 if drag is None else over_cycle(drag)
         if friction.rings is not None:
-            found["rings"] = drive.ring_force * drive.way
+            found["rings"] = drive.ring_force * drive.path
             if some(drive.ring_surface != 0):
                 drag = np.abs(self.samples.across_piston) * self.pieces.of(drive.ring_surface)
                 found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
-            found["constant"] = friction.constant * drive.way
+            found["constant"] = friction.constant * drive.path
         given = (*friction.of_pins, *(["block"] if friction.block is not None else []))
         if drive.has_force:
             found |= {name: over_cycle(self.samples.losses.get(name, 0.0)) for name in given}
@@ -459,7 +459,7 @@ class CylinderForces(SampledCylinder, Results):
         """
         if self.work_left is None:
             return None
-        turnover, whole = (self.told(self.pieces.integral(one)) for one in (np.abs(self.samples.M), self.samples.M))
+        turnover, whole = (self.result(self.pieces.integral(one)) for one in (np.abs(self.samples.M), self.samples.M))
         return where(turnover > 0, (whole - self.work_left) / where(turnover > 0, turnover, 1.0), 0.0)
 
 

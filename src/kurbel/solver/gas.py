@@ -33,7 +33,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
-from kurbel.solver.figures import told
+from kurbel.solver.figures import result
 from kurbel.solver.trace import TracePressure, spread
 from kurbel.traces.correct import Setting, Trace
 
@@ -76,15 +76,15 @@ class Process:
         return math.fsum((float(straight), *curved))
 
 
-def growth(z: Any, way: Any, clearance: Any) -> Any:
-    """Return ln(V′/V) between stroke fractions z and z + way.
+def growth(z: Any, distance: Any, clearance: Any) -> Any:
+    """Return ln(V′/V) between stroke fractions z and z + distance.
 
     Only ln(1 + what is more than the smaller volume) has its digits both for steep lines and for small clearances.
 
     >>> round(float(growth(1.0, -1.0, 1.0)), 9)
     -0.693147181
     """
-    return np.where(way < 0, -1.0, 1.0) * np.log1p(np.abs(way) / (np.minimum(z, z + way) + clearance))
+    return np.where(distance < 0, -1.0, 1.0) * np.log1p(np.abs(distance) / (np.minimum(z, z + distance) + clearance))
 
 
 Line = tuple[int, float, float, float, float, float]
@@ -135,7 +135,7 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
     def run(stroke: int, z: float, p: float, next_z: float, exponent: float = 0.0) -> float:
         """Draw a line of constant pressure, or along p V^n = const, and return the pressure at its end."""
         next_p = p
-        if exponent and next_z != z:  # without a way there may be no volume
+        if exponent and next_z != z:  # without a distance there may be no volume
             next_p = after_polytrope(p + lift, z + clearance, next_z + clearance, exponent) - lift
         lines.append((stroke, z, p, next_z, next_p, exponent))
         return next_p
@@ -228,7 +228,7 @@ class CardPressure:
         angles = np.where(self._p == level, self._begins, np.where(self._next_p == level, until, np.inf))
         first = np.minimum.reduceat(angles, self._first)
         whole = np.broadcast_arrays(best - self.setting.base, first, np.empty(self._count or 1))
-        return Extreme(*(told(one, self._count) for one in whole[:2]))
+        return Extreme(*(result(one, self._count) for one in whole[:2]))
 
     def at(
         self, z: Array, degrees: Array, within: Array, machine: Indices | None, remaining: Array | None = None
@@ -242,21 +242,21 @@ class CardPressure:
         begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
         lift, base, clearance = (spread(one, machine) for one in (self._lift, setting.base, self._clearance))
         own, rest = (z, remaining) if setting.head_end else (remaining, z)
-        way = (1 - z if own is None else own) - begin
+        distance = (1 - z if own is None else own) - begin
         if remaining is not None:
-            way = np.where(begin > 0.5, (1 - begin) - rest, way)
+            distance = np.where(begin > 0.5, (1 - begin) - rest, distance)
         # angles of corners are rounded, lines may be steep: at corners the pressure is exactly the card's; of a piece
         # only the first and the last node may be there
-        at = np.s_[:: len(way) - 1] if way.ndim > 1 else np.s_[:]
+        at = np.s_[:: len(distance) - 1] if distance.ndim > 1 else np.s_[:]
         turned = within_cycle(degrees[at], setting.cycle)
         for corner, whole in ((ends, next_z - begin), (begins, 0.0)):
-            way[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, way[at])
-        straight: Array = (p - base) + rise * way
+            distance[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, distance[at])
+        straight: Array = (p - base) + rise * distance
         if self.straight:
             return straight
         curved = exponent != 0
         clearance = np.where(curved, clearance, 1.0)  # what is straight may begin without any volume
-        power = (p + lift) * np.exp(growth(begin, way, clearance) * -exponent)
+        power = (p + lift) * np.exp(growth(begin, distance, clearance) * -exponent)
         return np.where(curved, power - lift - base, straight)
 
     def _holding(self, within: Array, machine: Indices | None) -> Indices:
@@ -360,9 +360,13 @@ class PistonGas:
     @property
     def traced(self) -> tuple[float, float] | None:
         """Indicated work in J of the ends that have a trace, and its change per radian of angle; None without."""
-        way = self.stroke * self.repeats
+        distance = self.stroke * self.repeats
         works = [(area * end.area, area * end.area_by_angle) for end, area in self._traces]
-        return (way * sum(work for work, _ in works), way * sum(change for _, change in works)) if works else None
+        return (
+            (distance * sum(work for work, _ in works), distance * sum(change for _, change in works))
+            if works
+            else None
+        )
 
     @property
     def noise(self) -> float:

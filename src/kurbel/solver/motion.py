@@ -18,7 +18,7 @@ from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
 from kurbel.quantity import Heading, value
-from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
+from kurbel.solver.figures import AtAngles, Results, Rows, Searched, result, rows_of
 
 
 class MotionColumns(AtAngles):
@@ -29,7 +29,7 @@ class MotionColumns(AtAngles):
     rod, whose path is wanted.
 
     rod_angle: sin ψ and cos ψ, None without a rod; posed: the crank angles with them; rod_slope: dψ/dφ, 0 without a
-    rod; way: displacement in m from the inner dead centre; slope, curvature: dx/dφ in m per radian and d²x/dφ²; of what
+    rod; displacement: in m from the inner dead centre; slope, curvature: dx/dφ in m per radian and d²x/dφ²; of what
     only swings, of θ; direction: +1 on the outstroke and for what turns on, −1 on the return stroke.
     """
 
@@ -39,7 +39,7 @@ class MotionColumns(AtAngles):
         "z",
         "ratio",
         "Displacement as a fraction of the stroke, or of the swing, from the inner dead centre",
-        lambda one: None if one.mechanism.turns else one.way / one.mechanism.stroke,
+        lambda one: None if one.mechanism.turns else one.displacement / one.mechanism.stroke,
         on_request=("motion", "forces"),
     )
     psi = value(
@@ -113,7 +113,7 @@ class MotionColumns(AtAngles):
         return self.mechanism.coordinate(self.posed)
 
     @cached_property
-    def way(self) -> Any:
+    def displacement(self) -> Any:
         """Displacement from the inner dead centre in m, of what only swings in radians."""
         return self.coordinate - self.mechanism.start
 
@@ -274,7 +274,7 @@ class Motion(Results):
     def _searched(self) -> list[Extremes]:
         """Largest and smallest values of what is sampled."""
         pieces, values = self._turn
-        return pieces.extremes(values).each(partial(told, count=self._count))
+        return pieces.extremes(values).each(partial(result, count=self._count))
 
     def _times_omega(self, found: Extremes, order: int) -> Extremes:
         """Return extremes over a turn times ω^order."""

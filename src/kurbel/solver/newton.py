@@ -79,7 +79,7 @@ def _places(state: State) -> _Places:
     """Return how the pins and the rod move, from the places of the pins."""
     drive, angle = state.drive, state.angle
     R, L = drive.mechanism.crank, drive.mechanism.rod_length
-    square = drive.omega**2 if drive.has_inertia and drive.omega else 0.0
+    square = float(drive.omega**2) if drive.has_inertia and drive.omega else 0.0
     pin_speed, pin = R * (-angle.sin + 1j * angle.cos), -R * (angle.cos + 1j * angle.sin)
     if not math.isfinite(L):
         still = np.zeros_like(angle.sin)

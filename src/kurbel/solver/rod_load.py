@@ -18,7 +18,7 @@ from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import value, values_for
 from kurbel.solver.cycle import reversals
 from kurbel.solver.drive import Drive
-from kurbel.solver.figures import Results, told
+from kurbel.solver.figures import Results, result
 
 _LOADS = {
     "rod_compression": ("P_G,d", "rod load at the crosshead pin in compression"),
@@ -28,7 +28,7 @@ _LOADS = {
     "gas_compression": ("P_gas,d", "gas load in compression"),
     "gas_tension": ("P_gas,z", "gas load in tension"),
 }
-"""Column P_… and the way it loads the rod -> symbol, and what it is called."""
+"""Column P_… and how it loads the rod -> symbol, and what it is called."""
 
 
 class RodLoads(Results):
@@ -63,19 +63,19 @@ class RodLoads(Results):
     def answers(self) -> dict[str, Any]:
         """The key values."""
         found, count = dict[str, Any](), self.drive.count
-        extremes = self.pieces.extremes([*self.loads.values()]).each(partial(told, count=count))
+        extremes = self.pieces.extremes([*self.loads.values()]).each(partial(result, count=count))
         peaks = dict(zip(self.loads, extremes))
         for load in _LOADS:
-            column, _, way = load.rpartition("_")
+            column, _, side = load.rpartition("_")
             if peak := peaks.get(f"P_{column}"):
-                size, degrees = peak.largest if way == "compression" else (-peak.smallest.value, peak.smallest.degrees)
+                size, degrees = peak.largest if side == "compression" else (-peak.smallest.value, peak.smallest.degrees)
                 found[f"{load}_max"] = Extreme(where(size > 0, size, 0.0), degrees)
         if "P_rod" not in self.loads:
             return found
 
         found["phi_rod_reversal"] = changes = reversals(self.drive, self.pieces, self.loads["P_rod"])
         whole, longest = self._reversed([changes] if count is None else list(changes))
-        found["reversal_angle"], found["reversal_longest"] = told(whole, count), told(longest, count)
+        found["reversal_angle"], found["reversal_longest"] = result(whole, count), result(longest, count)
         found["reversal_ratio"] = angle = found["reversal_angle"]
         if some(angle > 0):
             pressed, pulled = (abs(one.value) for one in peaks["P_rod"])
@@ -96,8 +96,8 @@ class RodLoads(Results):
         presses = self.pieces.at(self.loads["P_rod"], machine, (start + end) / 2) > 0
 
         stretches = np.zeros((2, 2, len(changes)))  # pressed, pulled; sum, longest; machines
-        for of, way in zip(stretches, (presses, ~presses)):
-            np.add.at(of[0], machine[way], (end - start)[way])
-            np.maximum.at(of[1], machine[way], (end - start)[way])
+        for of, sense in zip(stretches, (presses, ~presses)):
+            np.add.at(of[0], machine[sense], (end - start)[sense])
+            np.maximum.at(of[1], machine[sense], (end - start)[sense])
         pressed, pulled = stretches
         return np.where(pulled[0] < pressed[0], pulled, pressed)

@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -51,9 +51,9 @@ class Rubbing(NamedTuple):
     of second order in f, as the friction circles of the books do.
     """
 
-    at_crank: Any
-    at_crosshead: Any
-    journals: Any
+    at_crank: Number
+    at_crosshead: Number
+    journals: Number
 
 
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
@@ -66,21 +66,21 @@ def _own_end(state: State, end: str) -> Pressure | None:
     return None if gas is None else gas.head if end == "head" else gas.crank
 
 
-def _own_pressure(state: State, end: str) -> Any:
+def _own_pressure(state: State, end: str) -> Array | None:
     gas, chamber = state.drive.own_gas, _own_end(state, end)
     return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
 
 
 def _own_volume(state: State, end: str) -> Any:
-    gas, way = state.drive.own_gas, state.way
+    gas, passed = state.drive.own_gas, state.displacement
     if gas is None or _own_end(state, end) is None:
         return None
     if end == "head":
-        return gas.piston.head_area * way + gas.clearance_volumes[0]
-    return gas.piston.crank_area * (state.mechanism.stroke - way) + gas.clearance_volumes[1]
+        return gas.piston.head_area * passed + gas.clearance_volumes[0]
+    return gas.piston.crank_area * (state.mechanism.stroke - passed) + gas.clearance_volumes[1]
 
 
-def _own_rise(state: State, end: str) -> Any:
+def _own_rise(state: State, end: str) -> Array | None:
     chamber = _own_end(state, end)
     return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
 
@@ -126,7 +126,7 @@ class State(MotionColumns):
         """The rows of its columns, those of the mechanism among them."""
         return column_rows(State, self.mechanism.OFFERS)
 
-    def filled(self, number: Any) -> Array:
+    def filled(self, number: Number) -> Array:
         """Return a number as an array of the shape of the angles."""
         return np.broadcast_to(np.asarray(number, dtype=float), self.phi.shape)
 
@@ -203,11 +203,11 @@ class State(MotionColumns):
         return sum(self.pressure(end) * (area * sense) for end, area in ((gas.head, head), (gas.crank, -crank)) if end)
 
     @cached_property
-    def piston_forces(self) -> list[Any]:
+    def piston_forces(self) -> list[Array]:
         """Force in N on each piston that has an indicator."""
         return [self.force_on(gas) for gas in self.drive.gas]
 
-    def force_of(self, shares: Sequence[Any]) -> Any:
+    def force_of(self, shares: Sequence[Truth]) -> Array | None:
         """Return the force in N on the pistons of which these shares count; None where none counts."""
         each = zip(self.piston_forces, shares)
         counted = [force * spread(share, self.drive.index) for force, share in each if share is not False]
@@ -298,7 +298,7 @@ class State(MotionColumns):
     )
 
     @cached_property
-    def resistance(self) -> Any:
+    def resistance(self) -> Array | None:
         """Load on the output against its motion, in N, or in N m where the output swings or turns."""
         resistance = self.drive.resistance
         if resistance is None:
@@ -316,7 +316,7 @@ class State(MotionColumns):
         unknown = not crosshead and (masses is None or masses.crosshead is None)
         if unknown or self.P_gas is None or not self.mechanism.has_rod:
             return None
-        mass: Any = 0.0
+        mass: Number = 0.0
         if masses:
             mass = masses.parts if crosshead or masses.crosshead is None else masses.parts - masses.crosshead
         moved = self.P_gas - self.b * mass if self.drive.has_inertia else self.P_gas
@@ -365,7 +365,7 @@ class State(MotionColumns):
         bend = formulas.rod_curvature(self.angle.sin, sin_psi, cos_psi, self.rod_slope, self.mechanism.lam)
         return bend * (rod.excess_inertia * self.omega * self.omega)
 
-    def _side(self, couple: Any) -> Any:
+    def _side(self, couple: Number) -> Any:
         """Return the force in N, square to the stroke line, by which a couple on the rod relieves the guide."""
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
@@ -376,7 +376,7 @@ class State(MotionColumns):
         return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
 
     @cached_property
-    def _friction_side(self) -> Any:
+    def _friction_side(self) -> Number:
         """Side force in N of the friction in both pins on the rod, or of the block in a Scotch yoke; 0 without it."""
         block, _ = self.drive.yoke_friction
         if self.rod_angle is None:
@@ -385,7 +385,7 @@ class State(MotionColumns):
         return 0.0 if rubbing is None else self._side(rubbing.at_crank + rubbing.at_crosshead)
 
     @cached_property
-    def _rod_side(self) -> Any:
+    def _rod_side(self) -> Number:
         """Side force in N of all couples on the rod: of an exact one, and of the friction in its pins."""
         return self._friction_side if self.drive.rod is None else self._side(self.rod_couple) + self._friction_side
 
@@ -400,14 +400,14 @@ class State(MotionColumns):
         if friction is None or self.P is None:
             return None
         pin = on_pin(self.unrubbed)
-        bearings: Any = np.hypot(*pin)
+        bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [one.name for one in drive.machine.cylinders]
             throw = friction.line.throw_of(names.index(drive.name))
             count = len(throw.cylinders)
             carried = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
             bearings = sum(np.hypot(*force) for force in carried) / count
-        at_crosshead: Any = 0.0
+        at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ: forward where it swings back
             at_crosshead = np.hypot(*on_crosshead_pin(self.unrubbed)) * (self._forward * friction.crosshead_pin)
         return Rubbing(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
@@ -415,14 +415,14 @@ class State(MotionColumns):
     # the guide
 
     @cached_property
-    def across_piston(self) -> Any:
+    def across_piston(self) -> Number:
         """Pressure in Pa at the head end of the cylinder's own piston over that at its crank end."""
         gas = self.drive.own_gas
         head, crank = (self.pressure(end) if end else 0.0 for end in ((gas.head, gas.crank) if gas else (None, None)))
         return head - crank
 
     @cached_property
-    def steady_friction(self) -> Any:
+    def steady_friction(self) -> Number:
         """Friction in N of rings, and what is given as a force."""
         drive = self.drive
         by_gas = np.abs(self.across_piston) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0

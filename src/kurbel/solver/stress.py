@@ -355,7 +355,7 @@ class CrankshaftStrength(Results):
         if self.count is not None:
             alike = (self.shaft.b + self.shaft.flywheel_position >= self.shaft.b) == _flywheel_beyond(self.shaft)
             found = np.where(np.broadcast_to(alike, self.count), found, math.nan)
-        return [Extreme(*map(self.forces.told, pair)) for pair in zip(found, degrees)]
+        return [Extreme(*map(self.forces.result, pair)) for pair in zip(found, degrees)]
 
     @cached_property
     def answers(self) -> dict[str, Any]:
@@ -386,8 +386,8 @@ class CrankshaftStrength(Results):
         """
         (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
         extremes = pieces.extremes(loads[:3])
-        most = [Extreme(*map(self.forces.told, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
-        mean_A, mean_B, of_rod = map(self.forces.told, pieces.mean(loads[1:]))
+        most = [Extreme(*map(self.forces.result, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
+        mean_A, mean_B, of_rod = map(self.forces.result, pieces.mean(loads[1:]))
         found: dict[str, Any] = {"A_max": most[1], "B_max": most[2]}
         for part, load, mean in zip(_BEARINGS, most, (of_rod, mean_A, mean_B)):
             diameter, length = shaft.journal_diameter, shaft.journal_length
@@ -403,7 +403,7 @@ class CrankshaftStrength(Results):
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state), state.angle, pieces)
-        return self.forces.told(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
+        return self.forces.result(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
 
     # the two positions of the book, and the worst of the cycle
 
