@@ -6,7 +6,7 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields
-from types import MappingProxyType
+from types import MappingProxyType, NoneType
 from typing import Any, ClassVar, NamedTuple, Union
 
 import numpy as np
@@ -184,7 +184,8 @@ class Record:
         keys = {name: key for name, key in self.KEYS.items() if key.attribute}
         known = {name: (vars(self)[key.attribute], default.get(key.attribute)) for name, key in keys.items()}
         given = {name: value for name, (value, absent) in known.items() if value is not absent}
-        numbers = {name: value for name, value in given.items() if value is not None and np.ndim(value) == 0}
+        scalars = {name: value for name, value in given.items() if not isinstance(value, (tuple, NoneType))}
+        numbers = {name: value for name, value in scalars.items() if np.ndim(value) == 0}
         return (
             _out_of_bounds(keys, numbers)
             or _broken((*contradictions(keys, given), *self.rules()), self)

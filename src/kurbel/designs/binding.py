@@ -244,7 +244,7 @@ def _column(values: Array) -> Any:
 # the place of a key
 
 
-def _every(value: Any) -> Iterator[Given]:
+def _every(value: object) -> Iterator[Given]:
     """Yield every mapping as read, inner ones first."""
     if isinstance(value, Given):
         for one in value.values.values():
@@ -255,7 +255,7 @@ def _every(value: Any) -> Iterator[Given]:
             yield from _every(one)
 
 
-def _reads(given: Given, name: Any) -> bool:
+def _reads(given: Given, name: object) -> bool:
     """Return whether a record reads the value of a key itself."""
     return name in given.values and name in given.form.keys
 

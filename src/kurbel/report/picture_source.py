@@ -241,6 +241,8 @@ def in_units(panel: Panel, system: str) -> Panel:
             Mark(float(to(0, x)), float(to(1, y)), shown(of, 0, units[0]) if of_x else shown(of, 1, y_unit))
             for x, y, of, of_x in panel.marks
         ),
+        bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
+        notes=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.notes),
     )
 
 

@@ -32,9 +32,9 @@ from kurbel.report.machine_pictures import (
     unbalanced_over_angle,
     unbalanced_vectors,
 )
-from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import PHI, PictureOptions, Source, Values, between, in_units, level
+from kurbel.report.section import mechanism
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
 
@@ -244,7 +244,8 @@ class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
     The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
-    across: panels next to each other.
+    across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
+    case and those that are wanted.
     """
 
     id: str
@@ -252,6 +253,7 @@ class PictureKind(NamedTuple):
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
+    whole: bool = False
 
     @property
     def text(self) -> str:
@@ -282,7 +284,7 @@ PICTURES = (
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
-    PictureKind("mechanism", "Mechanism", "motion", mechanism, across=2),
+    PictureKind("mechanism", "Mechanism", "motion", mechanism, whole=True),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
@@ -365,10 +367,14 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
         results = case.torsion if command == "torsion" else subjects_of(case, command)[-1].results
         yield Source(results, options.angles), ""
         return
+    if kind.whole:
+        drawn = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
+        yield Source((case, drawn), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
+        return
     for one in case.cylinders if command == "forces" else ():
         if options.cylinder in (None, one.drive.name):
             one.refuse_locking()
-    for equal in equal_parts(case, "forces" if kind.id == "mechanism" else command):
+    for equal in equal_parts(case, command):
         wanted = [one for one in equal if bearings or options.cylinder in (None, one.name)]
         if wanted:
             several = bearings or len(case.cylinders) > 1

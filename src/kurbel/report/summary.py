@@ -7,6 +7,8 @@ from contextlib import suppress
 from functools import partial
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine, firings
@@ -152,6 +154,7 @@ class Found(NamedTuple):
     at_deg: float | None
 
 
+@np.errstate(all="ignore")
 def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     """Return key values for the first page by their ids; without ids, the eight that say most of its kind, none zero.
 
