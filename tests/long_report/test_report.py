@@ -154,7 +154,7 @@ def test_load_cases_and_limits_are_on_the_first_page() -> None:
     """Of each limit and cylinder what is nearest to its bound in any case; half the capacity with one end unloaded."""
     page = page_of("compressor-two-stage", cases=True)
     summary = text_in(section(page, "summary"))
-    rows = re.findall(r"([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)\s*(?:low|high) pressure", summary)
+    rows = re.findall(r"([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)\s*PASS", summary)
     assert len(rows) == 4
     assert summary.count("PASS") == 4
     both, one = (number_of(re.search(rf"{name}\s*([\d.]+)", summary).group(1)) for name in ("both ends", "unloaded"))
@@ -219,7 +219,7 @@ def test_limits_and_expectations_have_a_verdict() -> None:
     page = page_of_case(Case(loads(text + 'expect: {stroke: "800 mm ± 1 %"}}')))
     said = text_in(page)
     # R Zusammenstellung 112, of which c_max is 2.136 m/s
-    assert re.search(r"Largest velocity on the outstroke\s*2\.1359 m/s\s*≤ 2 m/s\s*cylinder 1\s*FAIL", said)
+    assert re.search(r"2\.1359 m/s\s*≤ 2 m/s\s*FAIL\s*Largest velocity on the outstroke\s*cylinder 1", said)
     assert "PASS" in said
     assert "800 mm ± 1 %" in said
     assert page.count('<tr class="bad">') == 1

@@ -33,8 +33,8 @@ figcaption b{color:var(--ink)}
 .notice{margin:.5rem 0}
 .warning{padding:.4rem .8rem;border-left:.3rem solid var(--warn);background:var(--warned)}
 tr.good,tr.bad{color:var(--ink);font-weight:400}
-tr.good td:last-child{color:var(--good);font-weight:600}
-tr.bad td:last-child{color:var(--bad);font-weight:600}
+tr.good td:nth-child(4){color:var(--good);font-weight:600}
+tr.bad td:nth-child(4){color:var(--bad);font-weight:600}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.3rem;list-style:none;padding:0}
 footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}

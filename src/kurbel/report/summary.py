@@ -236,12 +236,19 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         for one in [one for one in equal if one.severity == "error"] or [nearest]:
             bad, of = one.severity == "error", one.quantity
             value, where = (one.value or 0.0, one.unit), one.where + one.what.removeprefix(str(one.path[-1]))
-            names = (of.symbol, _CLAUSE.split(of.text)[0]) if of else ("", one.what)
-            rows.append((*names, value, one.bound, where, "FAIL" if bad else "PASS"))
+            symbol, text = (of.symbol, _CLAUSE.split(of.text)[0]) if of else ("", one.what)
+            rows.append((symbol, value, one.bound, "FAIL" if bad else "PASS", text, where))
             marks.append("bad" if bad else "good")
     if rows:
-        heads = "Symbol", "Limit or expectation", "Value", "Bound", "Where", ""
-        yield Grid("", heads, tuple(rows), numbers=(2,), verdicts=tuple(marks))
+        heads = (
+            "Symbol",
+            "Value",
+            "Bound",
+            "Verdict",
+            "Limit or expectation",
+            "Where",
+        )  # what a narrow window shows first
+        yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
     yield from (Notice(str(error), "bad") for error in found.errors)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 

@@ -226,9 +226,10 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     one, other = ({fact.quantity: fact.number for fact in some} for some in facts)
     yield Grid("", _heads(names), _compared(one, other, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
-        warnings = of_machine(case)
-        found = (*verdicts(case), *(Notice(text, "warning") for text in warnings))
-        yield from (f"{name}:", *found) if found else (Notice(f"{name}: no warnings.", "good"),)
+        found = (*verdicts(case), *(Notice(text, "warning") for text in of_machine(case)))
+        yield from (f"{name}:", *found) if found else ()
+        if not of_machine(case):
+            yield Notice(f"{name}: no warnings.", "good")
 
 
 def _heads(names: Sequence[str]) -> tuple[str, ...]:
