@@ -13,7 +13,7 @@ import click
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
-from kurbel.declared.keys import Key, Keys, Record, required
+from kurbel.declared.keys import Key, Keys, Record, without
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
@@ -146,9 +146,8 @@ def _records() -> Iterator[str]:
 
 
 def _keys(keys: Keys) -> str:
-    needed = required(keys)
     rows = (
-        (f"`{word}`", key.symbol, key.text, _written(word, key), _absent(key, word in needed))
+        (f"`{word}`", key.symbol, key.text, _written(word, key), _absent(keys, word))
         for word, key in _with_cases(keys)
         if not isinstance(key.form, Inline)
     )
@@ -176,8 +175,8 @@ def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     yield from (one for word, inner in form.parts if not word for one in _cases(inner))
 
 
-def _absent(key: Key, needed: bool) -> str:
-    return "must be given" if needed else key.absent
+def _absent(keys: Keys, word: str) -> str:
+    return without(keys, word) if word in keys else ""
 
 
 def _command(name: str) -> str:

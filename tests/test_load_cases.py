@@ -9,6 +9,9 @@ import pytest
 
 import kurbel as api
 from command import run
+from kurbel.errors import KurbelError
+from kurbel.machine_file.reader import read_machine
+from kurbel.machine_file.source import decode
 
 PUMP = """\
 speed: 50 rpm
@@ -89,3 +92,11 @@ def test_cases_that_are_no_list_are_not_called_missing(tmp_path: Path) -> None:
     file.write_text(f"{text}\ncases:\n  slow: {{speed: 20 rpm}}\n", encoding="utf-8")
     for options in (("sweep", str(file), "--cases"), ("forces", str(file), "--case", "slow")):
         assert "is no list of cases" in run(*options).stderr
+
+
+def test_a_case_may_set_a_list() -> None:
+    """What is wrong with it is found when the case is computed."""
+    text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, cases: [{name: odd, set: {speed: [1, 2]}}]}"
+    assert api.loads(text).cases
+    with pytest.raises(KurbelError, match="speed: expected"):
+        read_machine(decode("<text>", text.encode())._replace(case="odd"))

@@ -180,3 +180,28 @@ def test_the_lowest_place_of_narrow_curved_valleys(
     expected = 1.5 if place == (0.5, 0.5) else 1.0
     assert value == pytest.approx(expected, rel=1e-11)
     assert found == pytest.approx(np.array(place), abs=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        (("N_peak",), 2, "N_peak: write an equation, such as 'N_max = 4 kN'"),
+        (("N_peek = 4 kN",), 2, "find: no key value 'N_peek'; did you mean 'N_peak'?"),
+        (("N_peak = 4.5 kN", "--where", "offset > 50 mm"), 3, "--where leaves out 2 that have it"),
+    ],
+)
+def test_what_cannot_be_found_says_why(options: tuple[str, ...], status: int, message: str) -> None:
+    ran = run("find", str(CONFIGS / "offset-engine.yaml"), "--vary", "offset=0:60 mm", *options)
+    assert (ran.exit_code, message in ran.stderr) == (status, True), ran.stderr
+
+
+def test_an_end_of_the_range_may_fail_by_what_is_wanted() -> None:
+    """The vessel of this end would empty: ΔV/2 is 11.3 cm³."""
+    found = found_in("triplex-pump", "pump.delivery_pipe.vessel.volume=0.001:10 l", "vessel_swing = 1 %")
+    assert len(found.found) == 1
+    assert "would empty" in found.failed[0].why
+    ran = run("sweep", str(CONFIGS / "triplex-pump.yaml"), "--vary", "speed=90,100 rpm", "--columns", "nobody")
+    assert (ran.exit_code, "no key value 'nobody'" in ran.stderr) == (2, True)
+    vary = ("--vary", "pump.delivery_pipe.vessel.volume=0.001,1 l", "--columns", "vessel_swing", "-f", "csv")
+    ran = run("sweep", str(CONFIGS / "triplex-pump.yaml"), *vary)
+    assert [("would empty" in line) for line in ran.stdout.splitlines()] == [False, True, False]

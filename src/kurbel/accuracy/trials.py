@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from types import FrameType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, Union
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -26,10 +26,15 @@ from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
 OWN = "kurbel"
-Method = tuple[str, str, Callable[[], Any]]
-"""Name, how finely, and what computes the values, (n,) or one."""
+Found = Union[float, tuple[float, float], Array, None]
+"""What a method computes: one value, the largest and the smallest, or (n,); None for what a machine does not have."""
+Method = tuple[str, str, Callable[[], Found]]
+"""Name, how finely, and what computes the values."""
 Function = Callable[[Array, Array], Array]
 """Takes angles (n,) in degrees, and for each one within its piece."""
+Rival = Callable[[str, Function, Array, int], Found]
+"""Takes a quantity, what it is computed from, the edges of its pieces in degrees, and how finely."""
+T = TypeVar("T")
 
 
 class Zero(Exception):
@@ -158,7 +163,7 @@ def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Met
     """Yield methods for x, c or b at crank angles, order 0 to 2, as derivatives by φ in m."""
     mechanism = machine.cylinders[0].mechanism
 
-    def book(at: Array) -> Any:
+    def book(at: Array) -> Stance:
         phi = np.radians(at)
         return stance(mechanism.crank, mechanism.rod_length, mechanism.offset, np.sin(phi), np.cos(phi), np.sqrt)
 
@@ -197,7 +202,7 @@ def force_methods(quantity: str, machine: Machine, corners: Sequence[Number], qu
         yield name, str(count), partial(_sampled, method, quantity, machine, edges, count)
 
 
-def _sampled(method: Callable[..., Any], quantity: str, machine: Machine, edges: Array, count: int) -> Any:
+def _sampled(method: Rival, quantity: str, machine: Machine, edges: Array, count: int) -> Found:
     return method(quantity, sampler(quantity, machine), edges, count)
 
 
@@ -217,7 +222,7 @@ def sampler(quantity: str, machine: Machine) -> Function:
     return function
 
 
-def equidistant(quantity: str, function: Function, edges: Array, count: int) -> Any:
+def equidistant(quantity: str, function: Function, edges: Array, count: int) -> Found:
     """Return a quantity from so many equal divisions of each turn: by the trapezium rule, or the largest ordinates."""
     phi = np.arange(round((edges[-1] - edges[0]) * count / 360)) * (360 / count)
     values, step = function(phi, phi), 2 * math.pi / count
@@ -239,7 +244,7 @@ def _on(function: Function, edges: Array, shares: Array) -> Array:
     return function(phi.ravel(), np.broadcast_to(middles, phi.shape).ravel()).reshape(phi.shape)
 
 
-def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Any:
+def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Found:
     """Return a quantity by Gauss's rule on each piece, and roots looked for at as many steps."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
 
@@ -247,7 +252,7 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Any
         return np.asarray(_on(function, edges, (1 + nodes) / 2) @ weights * np.radians(np.diff(edges)) / 2)
 
     if quantity[0] == "A":
-        return integrals(edges).sum()
+        return float(integrals(edges).sum())
     if quantity[0] == "T":
         step = 1e-4
         tops, within = float_roots(lambda phi, at: function(phi + step, at) - function(phi - step, at), edges, count)
@@ -256,7 +261,7 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Any
     mean = integrals(edges).sum() / np.radians(edges[-1] - edges[0])
     crossings, _ = float_roots(lambda phi, at: function(phi, at) - mean, edges, count)
     cuts = np.unique([*edges, *crossings])
-    return np.ptp(np.append(0.0, np.cumsum(integrals(cuts) - mean * np.radians(np.diff(cuts)))))
+    return float(np.ptp(np.append(0.0, np.cumsum(integrals(cuts) - mean * np.radians(np.diff(cuts))))))
 
 
 def float_roots(function: Function, edges: Array, parts: int) -> tuple[Array, Array]:
@@ -280,7 +285,7 @@ def float_roots(function: Function, edges: Array, parts: int) -> tuple[Array, Ar
     return np.asarray(found), np.asarray(within)
 
 
-def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
+def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Found:
     """Return a quantity from the polynomial through so many values on each piece, at the zeros of Chebyshev's."""
     nodes = chebyshev.chebpts1(count)
     fits = chebyshev.chebfit(nodes, _on(function, edges, (1 + nodes) / 2).T, count - 1).T
@@ -295,7 +300,7 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
         return max(map(max, values)), min(map(min, values))
     whole = [half * np.diff(chebyshev.chebval([-1, 1], chebyshev.chebint(fit)))[0] for fit, half in zip(fits, halves)]
     if quantity[0] == "A":
-        return sum(whole)
+        return float(sum(whole))
     fits[:, 0] -= sum(whole) / (2 * halves.sum())
     for fit, half in zip(fits, halves):
         start, *sums = chebyshev.chebval([-1.0, *sorted(inside(fit)), 1.0], chebyshev.chebint(fit))
@@ -306,7 +311,7 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Any:
 # rows, and their times
 
 
-def rows_of(quantity: str, truth: Any, methods: Iterator[Method], quick: bool) -> Iterator[Trial]:
+def rows_of(quantity: str, truth: Number | list[Number], methods: Iterator[Method], quick: bool) -> Iterator[Trial]:
     """Yield the rows of one quantity, kurbel's own first. Raises Zero."""
     reference = np.atleast_1d(np.array(truth, dtype=object))
     if all(abs(one) <= 1e-30 for one in reference):
@@ -337,7 +342,7 @@ def errors(values: Array, reference: Array) -> tuple[float | None, float | None]
     return error, ulp if error < 1e-12 else None
 
 
-def timed(run: Callable[[], Any], quick: bool) -> tuple[float, float]:
+def timed(run: Callable[[], object], quick: bool) -> tuple[float, float]:
     """Return the median and the least time in seconds of 20 runs, or those of half a second (quick: 5, a tenth)."""
     times: list[float] = []
     while not times or (len(times) < (5 if quick else 20) and sum(times) < (0.1 if quick else 0.5)):
@@ -347,11 +352,11 @@ def timed(run: Callable[[], Any], quick: bool) -> tuple[float, float]:
     return statistics.median(times), min(times)
 
 
-def watched(run: Callable[[], Any]) -> tuple[Any, int, int]:
+def watched(run: Callable[[], T]) -> tuple[T, int, int]:
     """Return what a computation gives, how many functions of the solver run, and of how many crank angles."""
     functions, evaluations = set(), 0
 
-    def watch(frame: FrameType, event: str, result: Any) -> None:
+    def watch(frame: FrameType, event: str, result: object) -> None:
         nonlocal evaluations
         if event == "call" and frame.f_globals.get("__name__", "").startswith("kurbel.solver"):
             functions.add(frame.f_code)
@@ -462,7 +467,7 @@ def _changes(whole: dict[str, float], other: dict[str, float], cause: str) -> It
 # what leaving out saves
 
 
-def savings(machine: Machine, compute: Callable[[Machine], Any], quick: bool) -> Iterator[Saving]:
+def savings(machine: Machine, compute: Callable[[Machine], object], quick: bool) -> Iterator[Saving]:
     """Yield the whole machine, and the same without friction, masses, cards and speed, one after another.
 
     compute: all that a command prints.

@@ -83,6 +83,9 @@ def report(
 @click.option("--list", "listed", is_flag=True, help="List the pictures of this machine; without FILE, all pictures.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
+@click.option(
+    "--poster", "size", metavar="A0|...|A5", help="The machine in section as a sheet to hang, to a pdf or svg."
+)
 @cylinder_option
 @units_option
 @number_options
@@ -95,6 +98,7 @@ def plot(
     listed: bool,
     file_name: str | None,
     angles: tuple[float, ...] | None,
+    size: str | None,
     cylinder: str | None,
     units: str | None,
     decimal: str,
@@ -118,7 +122,15 @@ def plot(
         raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
     if file_name == "-":
         file_name = None
-    if file_name is not None:
+    if size is not None:
+        from kurbel.render.poster import check_poster, draw_poster
+        from kurbel.report.summary import facts_of, subtitle_of, tiles
+
+        size = check_poster(size, file_name)
+        if set(names) - {"mechanism"} or listed:
+            raise click.UsageError("--poster draws the mechanism alone; leave other pictures and --list out.")
+        names = ("mechanism",)
+    elif file_name is not None:
         check_file(file_name)
     options = PictureOptions(units or "metric", cylinder, angles)
     case = None if file is None else case_of(file, case_name, overrides, file_name)
@@ -127,7 +139,11 @@ def plot(
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    draw(pictures(case, names, options), look, file_name)
+    drawn = pictures(case, names, options)
+    if size is not None and file_name is not None:
+        facts = tiles(facts_of(case).values(), options.system)
+        return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
+    draw(drawn, look, file_name)
 
 
 @click.command()

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Iterable
 from contextlib import closing
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import click
 
@@ -99,7 +99,7 @@ def run(wanted: SweepOptions) -> None:
         # else the rows themselves go to the terminal
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
             found = Progress("sweep").counted(found, "designs", len(rows))
-        chosen: Iterable[Any] = (row for row in found if all(one.holds(row) for one in conditions))
+        chosen: Iterable[Design] = (row for row in found if all(one.holds(row) for one in conditions))
         chosen = unbettered(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen
         if wanted.summary:

@@ -6,13 +6,13 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass, fields
-from types import MappingProxyType
+from types import MappingProxyType, NoneType
 from typing import Any, ClassVar, NamedTuple, Union
 
 import numpy as np
 
 from kurbel.arrays import Flags
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, Step, refuse, refused
 
@@ -65,6 +65,14 @@ def required(keys: Keys) -> list[str]:
     """Return the names of the keys that must be given, and that no other key can replace."""
     replaced = {key.instead for key in keys.values()}
     return [name for name, key in keys.items() if key.required and name not in replaced]
+
+
+def without(keys: Keys, name: str) -> str:
+    """Return what holds without a key: that it must be given, it or one of others, or else what `absent` says."""
+    key = keys[name]
+    either = [name, *(other for other, one in keys.items() if one.instead == name)]
+    alone = "must be given" if len(either) == 1 else f"{' or '.join(either)} must be given"
+    return alone if key.required else key.absent
 
 
 class Rule(NamedTuple):
@@ -131,7 +139,7 @@ def _broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault
 
 def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     forms = {name: key.form for name, key in keys.items() if name in given}
-    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, Number))
+    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, NumberForm))
     return [Fault((name,), f"{given[name]:g} {wrong}") for name, wrong in found if wrong]
 
 
@@ -176,7 +184,8 @@ class Record:
         keys = {name: key for name, key in self.KEYS.items() if key.attribute}
         known = {name: (vars(self)[key.attribute], default.get(key.attribute)) for name, key in keys.items()}
         given = {name: value for name, (value, absent) in known.items() if value is not absent}
-        numbers = {name: value for name, value in given.items() if value is not None and np.ndim(value) == 0}
+        scalars = {name: value for name, value in given.items() if not isinstance(value, (tuple, NoneType))}
+        numbers = {name: value for name, value in scalars.items() if np.ndim(value) == 0}
         return (
             _out_of_bounds(keys, numbers)
             or _broken((*contradictions(keys, given), *self.rules()), self)

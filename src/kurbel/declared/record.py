@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from kurbel.declared.forms.structures import form_of
-from kurbel.declared.keys import Key, Record, Rule
+from kurbel.declared.keys import Key, Record, Rule, Values
 
-__all__ = ["Record", "Rule", "alternative", "field", "first_of", "record"]
+__all__ = ["Record", "Rule", "Values", "alternative", "field", "first_of", "record"]
 
 if TYPE_CHECKING:
     from typing_extensions import dataclass_transform

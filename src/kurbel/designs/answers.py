@@ -5,9 +5,10 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Indices
+from kurbel.arrays import Array, Indices
 from kurbel.declared.reading import shown
-from kurbel.designs.binding import Batch
+from kurbel.declared.unit_systems import SI
+from kurbel.designs.binding import Batch, Binder
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -16,7 +17,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
-from kurbel.report.frame import subjects_of, too_large
+from kurbel.report.frame import Subject, subjects_of, too_large
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 
@@ -32,8 +33,10 @@ AT_ONCE = 500
 _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
 """Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""
 
-Values = Union[Sequence[Any], str]
-"""The key values of a machine, in SI, a number, a tuple or None each; or the reason why it has none."""
+Value = Union[float, tuple[float, ...], None]
+"""A key value in SI: a number, or a list; None where there is none."""
+Values = Union[Sequence[Value], str]
+"""The key values of a machine; or the reason why it has none."""
 
 
 class Answer(NamedTuple):
@@ -60,11 +63,13 @@ class Answer(NamedTuple):
         return number_of(found)
 
 
-def requested_answers(machine: Machine, names: Sequence[str], with_angles: bool = False) -> tuple[Answer, ...]:
+def requested_answers(
+    machine: Machine, names: Sequence[str], with_angles: bool = False, option: str = "--columns"
+) -> tuple[Answer, ...]:
     """Return the key values requested by id or symbol, of every cylinder that has them; without names the usual ones.
 
     Those are all of `forces`; of a machine without a cylinder, whose turning effort is given, all of `flywheel`.
-    with_angles: next to each extreme the crank angle at which it occurs.
+    with_angles: next to each extreme the crank angle at which it occurs; option: where the names are from, for errors.
 
     Raises UsageError for a key value that does not exist, or that this machine does not have.
     """
@@ -72,14 +77,16 @@ def requested_answers(machine: Machine, names: Sequence[str], with_angles: bool 
     once: dict[Answer, tuple[Answer, ...]] = {}
     with np.errstate(all="ignore"):
         declared = every_quantity().all_key_values
-        found = (one for name in joined(names, declared) for one in _named(case, name)) if names else _usual(case)
+        found = (
+            (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
+        )
         for one, value in found:
             angle = (one._replace(angle=True),) if with_angles and _stands(value) else ()
             once.setdefault(one._replace(alone=False), (one, *angle))
     return tuple(part for parts in once.values() for part in parts)
 
 
-def _stands(value: Any) -> bool:
+def _stands(value: object) -> bool:
     """Return whether a value occurs at a crank angle, or may do so in other designs."""
     return isinstance(value, (Extreme, KurbelError))
 
@@ -94,17 +101,17 @@ def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
                 yield Answer(quantity, command, subject.name), value
 
 
-def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
+def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
     """Return the key values of a name, each with its value for this machine, see `_answer`; pistons: theirs, too."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
-    of_owner = _named(case, own, pistons=True) if not ids and called(own, declared) else ()
+    of_owner = _named(case, own, option, pistons=True) if not ids and called(own, declared) else ()
     if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
         return found
     if not ids or ambiguity(name, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
-        raise UsageError(f"--columns: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
+        raise UsageError(f"{option}: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
     command = every_quantity().commands_of(ids[0])
     command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
     for word in dict.fromkeys(command):
@@ -116,10 +123,10 @@ def _named(case: Case, name: str, pistons: bool = False) -> list[tuple[Answer, A
         ]
         if found:
             return found
-    raise UsageError(f"--columns: this machine has no {ids[0]}; kurbel check shows why")
+    raise UsageError(f"{option}: this machine has no {ids[0]}; kurbel check shows why")
 
 
-def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:
+def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
     """Return the value of a key value, None where there is none; or the error, since other designs may have one."""
     try:
         return None if default and not subject.says(quantity) else subject.answer(quantity)
@@ -127,7 +134,7 @@ def _answer(subject: Any, quantity: Quantity, default: bool = False) -> Any:
         return error
 
 
-def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
+def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Value]:
     """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
     found = answers_in(Case(machine), answers)
     for one, value in zip(answers, found):
@@ -138,7 +145,7 @@ def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Any]:
 
 def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
     """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
-    known: dict[tuple[str, str], Any] = {}
+    known: dict[tuple[str, str], Subject] = {}
     for command in dict.fromkeys(one.command for one in answers):
         known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
     found = ((one, known.get((one.command, one.subject))) for one in answers)
@@ -165,6 +172,15 @@ def answers_of(
                 if row not in found and (rows is None or row in rows):
                     found[row] = _alone(batch.one(place), requested)
     return found
+
+
+def answers_at(binder: Binder, numbers: Array, requested: Sequence[Answer]) -> list[Values]:
+    """Return the key values of the machines with these numbers (n, keys) in SI under the keys of a binder."""
+    units = [SI[kind] for kind in binder.kinds]
+    rows = [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+    bound = binder.bound(rows)
+    found = bound.failures | answers_of(bound.batches, requested)
+    return [found[row] for row in range(len(rows))]
 
 
 def is_slow(machine: Machine, answer: Answer) -> bool:
@@ -194,7 +210,7 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
         half = len(places) // 2
         return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
     fit = np.ones(len(places), dtype=bool)
-    each: list[Sequence[Any]] = []
+    each: list[Sequence[Value]] = []
     for value in columns:
         if isinstance(value, tuple) and value and isinstance(value[0], tuple):  # a list of each machine
             each.append(value)

@@ -13,7 +13,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
 from kurbel.declared.forms.structures import Given, Maker, too_extreme
-from kurbel.declared.forms.values import Number
+from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
@@ -189,7 +189,7 @@ def _values(
     columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
     UsageError for a key whose value is not a number.
     """
-    slots: list[tuple[Given, str, Number, Array]] = []
+    slots: list[tuple[Given, str, NumberForm, Array]] = []
     read = np.ones(count, dtype=bool)
     for key, texts in columns.items():
         owner, name, _ = _owner(path_of(key), every)
@@ -244,7 +244,7 @@ def _column(values: Array) -> Any:
 # the place of a key
 
 
-def _every(value: Any) -> Iterator[Given]:
+def _every(value: object) -> Iterator[Given]:
     """Yield every mapping as read, inner ones first."""
     if isinstance(value, Given):
         for one in value.values.values():
@@ -255,7 +255,7 @@ def _every(value: Any) -> Iterator[Given]:
             yield from _every(one)
 
 
-def _reads(given: Given, name: Any) -> bool:
+def _reads(given: Given, name: object) -> bool:
     """Return whether a record reads the value of a key itself."""
     return name in given.values and name in given.form.keys
 

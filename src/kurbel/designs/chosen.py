@@ -13,7 +13,7 @@ from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.sweep import KEPT, Design, Head
+from kurbel.designs.sweep import KEPT, Cell, Design, Head
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
@@ -42,7 +42,7 @@ class Condition(NamedTuple):
 
     place: int | str
     relation: str
-    value: Any
+    value: float | str
 
     def holds(self, row: Design) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
@@ -95,7 +95,7 @@ def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str]
     return ids.index(found)
 
 
-def _number(value: Any) -> float | None:
+def _number(value: Cell) -> float | None:
     """Return the number in a cell, inf for an infinite rod; None where there is none."""
     if value == _INFINITE:
         return math.inf

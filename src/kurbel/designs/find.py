@@ -12,16 +12,15 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_of, requested_answers
+from kurbel.designs.answers import Answer, answers_at, requested_answers
 from kurbel.designs.binding import Binder
 from kurbel.designs.chosen import Condition, parts_of, read_condition
 from kurbel.designs.plan import read_span
-from kurbel.designs.sweep import Design, Head, begun, limit_answers
+from kurbel.designs.sweep import Design, Head, begun, broken_of, limits_of
 from kurbel.errors import NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
 from kurbel.numerics.search import common_roots, lowest, roots
-from kurbel.report.limits import breaks
 
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
@@ -107,13 +106,15 @@ def find(
     Raises UsageError for what cannot be read, and NoSolutionError, with what was met, where nothing is found.
     """
     extreme = least or greatest
+    if wrong := next((one for one in equations if "=" not in one), ""):
+        raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
     designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions, progress)
     solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
     findings = designs.findings(solutions, jumps)
     if not solutions:
-        raise NoSolutionError(_nothing(findings))
+        raise NoSolutionError(_nothing(findings, designs.excluded))
     return findings
 
 
@@ -146,7 +147,9 @@ class _Designs:
         heads = [Head(one.key, SI[one.kind], True, one.kind) for one in self.varied]
         heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(self.names, self.answers)]
         self.conditions: list[tuple[str, Condition]] = [(one, read_condition(one, heads, ())) for one in conditions]
-        self.limits = tuple(limit_answers(self.binder.machine))
+        self.limits = list(limits_of(self.binder.machine))
+        self.excluded = 0
+        """Solutions that break a condition."""
         self.computed: list[tuple[tuple[float, ...], Array, str]] = []
         """Of every design its numbers, its key values, and why it fails."""
 
@@ -162,21 +165,18 @@ class _Designs:
         """
         if self.progress:
             self.progress(f"{len(self.computed)} designs computed")
-        rows = self.numbers(places).tolist()
-        texts = [[f"{one!r} {SI[own.kind]}".rstrip() for one, own in zip(row, self.varied)] for row in rows]
-        bound = self.binder.bound(texts)
-        found = bound.failures | answers_of(bound.batches, (*self.answers, *(one for _, one, _ in self.limits)))
-        count = len(self.answers)
+        numbers, count = self.numbers(places), len(self.answers)
+        rows, found = (
+            numbers.tolist(),
+            answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits))),
+        )
         values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
-        for number, row in enumerate(rows):
-            own = found[number]
+        for number, (row, own) in enumerate(zip(rows, found)):
             if isinstance(own, str):
                 over[number] = against[number] = own
             else:
                 values[number] = [np.nan if one is None else one for one in own[:count]]
-                judged = ((*limit, value) for limit, value in zip(self.limits, own[count:]) if value is not None)
-                broken = [f"limits.{name}" for name, one, bound, value in judged if breaks(one.quantity, bound, value)]
-                over[number] = ", ".join(broken)
+                over[number] = ", ".join(f"limits.{name}" for name in broken_of(self.limits, own[count:]))
                 whole = Design(number, (*row, *own[:count]))
                 against[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
             self.computed.append((tuple(row), values[number], own if isinstance(own, str) else ""))
@@ -228,6 +228,7 @@ def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
         return [], []
     key_values, over, against = designs.at(places)
     solutions: list[list[Solution]] = [[], []]
+    designs.excluded = sum(map(bool, against))
     for number, row in enumerate(designs.numbers(places).tolist()):
         if not against[number]:
             notes = (f"breaks {over[number]}",) if over[number] else ()
@@ -278,8 +279,8 @@ def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _nothing(findings: Solutions) -> str:
-    """Return the message that nothing was found, with the values that were met."""
+def _nothing(findings: Solutions, excluded: int) -> str:
+    """Return the message that nothing was found, with the values that were met; excluded: solutions by --where."""
     ranges = " and ".join(
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.in_unit(one.high):.6g} {one.unit}".rstrip()
         for one in findings.varied
@@ -293,8 +294,9 @@ def _nothing(findings: Solutions) -> str:
         f"{one.answer.quantity.id} is {_shown(low, one.answer)} to {_shown(high, one.answer)}"
         for one, (low, high) in zip(findings.wanted, findings.met)
     )
-    jumps = "; it is passed by a jump" if findings.jumps else ""
-    return f"{ranges}: no design has {wanted}: {met}{jumps}"
+    more = "; it is passed by a jump" if findings.jumps else ""
+    more += f"; --where leaves out {excluded} that {'has' if excluded == 1 else 'have'} it" if excluded else ""
+    return f"{ranges}: no design has {wanted}: {met}{more}"
 
 
 def _shown(value: float, answer: Answer) -> str:
@@ -316,7 +318,7 @@ def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tupl
         origin,
         [key for key, *_ in spans],
         ends,
-        lambda machine: [requested_answers(machine, [name]) for name in names],
+        lambda machine: [requested_answers(machine, [name], option="find") for name in names],
     )
     for name, each in zip(names, found):
         if each[0].quantity.listed:

@@ -5,7 +5,7 @@ These are a grid of all values, or of values side by side, each with every point
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from statistics import NormalDist
@@ -105,12 +105,10 @@ def read_span(text: str) -> tuple[str, str, str, str]:
     ('crank', '300 mm', '500 mm', 'mm')
     """
     key, _, values = (part.strip() for part in plain(text).partition("="))
-    pairs = [_number_and_unit(part.strip()) for part in values.split(":")]
-    if not key or len(pairs) != 2 or not all(number for number, _ in pairs):
-        raise _refused(text, "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm")
-    (low, first), (high, unit) = pairs
-    if first and first != unit:
-        raise _refused(text, f"a range has one unit, this one has {first} and {unit or 'none'}")
+    expected = "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
+    if not key:
+        raise _refused(text, expected)
+    (low, high), unit = _numbers(text, values.split(":"), 2, expected)
     return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
 
 
@@ -133,48 +131,44 @@ def _number_and_unit(part: str) -> tuple[str, str]:
     return (found.group(), part[found.end() :].strip()) if found else ("", part)
 
 
-def _range(text: str, values: str) -> tuple[str, ...]:
-    """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last one."""
-    parts = values.split(":")
-    if len(parts) != 3:
-        raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25")
+def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tuple[list[str], str]:
+    """Return so many numbers as they are written, and their unit; expected: what else is refused."""
     pairs = [_number_and_unit(part.strip()) for part in parts]
+    if len(pairs) != count or not all(number for number, _ in pairs):
+        raise _refused(text, expected)
     units = {unit for _, unit in pairs if unit}
     if len(units) > 1:
-        raise _refused(text, f"a range has one unit, this one has {' and '.join(sorted(units))}")
+        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(sorted(units))}")
+    if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), ""):
+        raise _refused(text, f"{shown(large)} is too large to compute with")
+    return [number for number, _ in pairs], units.pop() if units else ""
+
+
+def _range(text: str, values: str) -> tuple[str, ...]:
+    """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last one."""
+    expected = "a range has three numbers, first:last:step, such as 3:6:0.25"
+    numbers, unit = _numbers(text, values.split(":"), 3, expected)
     try:
-        first, last, step = (Decimal(number) for number, _ in pairs)
+        first, last, step = map(Decimal, numbers)
     except InvalidOperation:
-        raise _refused(text, "a range has three numbers, first:last:step, such as 3:6:0.25") from None
-    _refuse_too_large(text, pairs)
+        raise _refused(text, expected) from None
     if not float(step) or (last - first) / step < 0:
         raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
     if (last - first) / step >= MOST_VALUES:
         raise _refused(text, f"this range has more than {MOST_VALUES} values, as no key may")
-    unit = units.pop() if units else ""
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 
 
 def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]:
-    words = {"normal": ("mean", "standard deviation"), "uniform": ("least", "most")}[name]
-    pairs = [_number_and_unit(part.strip()) for part in inside.split(",")]
-    if len(pairs) != 2 or not all(number for number, _ in pairs):
-        raise _refused(text, f"{name}({words[0]}, {words[1]}) has two numbers, such as normal(450 mm, 0.2 mm)")
-    units = {unit for _, unit in pairs if unit}
-    if len(units) > 1:
-        raise _refused(text, f"write {words[0]} and {words[1]} in one unit, not in {' and '.join(sorted(units))}")
-    _refuse_too_large(text, pairs)
-    first, second = (float(number) for number, _ in pairs)
+    words = {"normal": "mean, standard deviation", "uniform": "least, most"}[name]
+    expected = f"{name}({words}) has two numbers, such as normal(450 mm, 0.2 mm)"
+    numbers, unit = _numbers(text, inside.split(","), 2, expected)
+    first, second = map(float, numbers)
     if name == "normal" and second <= 0:
-        raise _refused(text, f"the standard deviation must be more than 0, got {pairs[1][0]}")
+        raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
     if name == "uniform" and second <= first:
-        raise _refused(text, f"the least value must be less than the most, got {pairs[0][0]} and {pairs[1][0]}")
-    return Distribution(name, first, second), units.pop() if units else ""
-
-
-def _refuse_too_large(text: str, pairs: Iterable[tuple[str, str]]) -> None:
-    if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), None):
-        raise _refused(text, f"{shown(large)} is too large to compute with")
+        raise _refused(text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}")
+    return Distribution(name, first, second), unit
 
 
 class Plan:

@@ -5,17 +5,17 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from itertools import chain, pairwise
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar, Union
 
 import numpy as np
 
 from kurbel.declared.forms.figures import scoped
 from kurbel.declared.unit_systems import SI, convert, shown_unit, units_of
 from kurbel.declared.units import parse_quantity, plain_quantities
-from kurbel.designs.answers import Answer, answers_of, is_slow, requested_answers
+from kurbel.designs.answers import Answer, Value, answers_of, is_slow, requested_answers
 from kurbel.designs.binding import Batch, Binder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
-from kurbel.errors import KurbelError, MachineFileError, NoSolutionError, UsageError
+from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
@@ -37,6 +37,8 @@ _GOLDEN = (5**0.5 - 1) / 2
 
 
 Found = TypeVar("Found")
+Cell = Union[Value, str]
+"""A value of a row; a text for an input that is a word."""
 
 
 class Spec(NamedTuple):
@@ -80,7 +82,7 @@ class Design(NamedTuple):
     """
 
     number: int
-    values: tuple[Any, ...]
+    values: tuple[Cell, ...]
     keeps: bool | None = None
     broken: str = ""
     failure: str = ""
@@ -92,6 +94,14 @@ class Design(NamedTuple):
 
 KEPT = {True: "yes", False: "no", None: ""}
 """The text for limits that are kept, are not kept, and cannot be judged."""
+
+
+class Limit(NamedTuple):
+    """A limit: its name in the file, the key value, and the bound in SI."""
+
+    name: str
+    answer: Answer
+    bound: float
 
 
 class Sweep:
@@ -107,12 +117,13 @@ class Sweep:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {spec.most}")
         self._keys = [one.key for one in self.plan.inputs]
         self._binder, self.requested, self._limits = self._started(self._keys)
+        self._every = (*self.requested, *(one.answer for one in self._limits))
         self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
         """Heads of the texts after the values, as `Design.text` has them."""
 
-    def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[tuple[str, Answer, float]]]:
-        """Return the binder, the requested key values, and each limit with its key value and bound.
+    def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[Limit]]:
+        """Return the binder, the requested key values, and the limits.
 
         The first valid machine is searched for in the texts of the file itself and in rows of the whole plan.
         """
@@ -123,9 +134,8 @@ class Sweep:
             rows = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
         starts = chain([written_texts(self.spec.origin, keys)] if self.spec.given else [], map(self.plan.texts, rows))
 
-        def answers(machine: Machine) -> tuple[tuple[Answer, ...], list[tuple[str, Answer, float]]]:
-            requested = requested_answers(machine, self.spec.columns, self.spec.with_angles)
-            return requested, list(limit_answers(machine))
+        def answers(machine: Machine) -> tuple[tuple[Answer, ...], list[Limit]]:
+            return requested_answers(machine, self.spec.columns, self.spec.with_angles), list(limits_of(machine))
 
         binder, (requested, limits) = begun(self.spec.origin, keys, starts, answers, self.spec.cases)
         return binder, requested, limits
@@ -193,7 +203,7 @@ class Sweep:
         """Return the wanted rows of a chunk, counted from 0."""
         own = range(wanted.start - company.start, wanted.stop - company.start)
         bound = self._binder.bound([self.plan.texts(row) for row in company], own)
-        found = bound.failures | answers_of(bound.batches, (*self.requested, *(one for _, one, _ in self._limits)), own)
+        found = bound.failures | answers_of(bound.batches, self._every, own)
         answered = {row: each for row in own if not isinstance(each := found[row], str)}
         columns = zip(zip(*answered.values()), self.requested, self._units)
         values = dict(zip(answered, zip(*(_in_unit(column, one.kind, unit) for column, one, unit in columns))))
@@ -207,7 +217,7 @@ class Sweep:
                 rows.append(Design(number + 1, (*inputs, *[None] * len(self.requested)), failure=str(found[row])))
         return rows
 
-    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Any, ...]]:
+    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Cell, ...]]:
         """Return the values of the inputs in these rows, counted from 0."""
         columns = []
         for head, texts in zip(self.heads, zip(*map(self.plan.texts, rows))):
@@ -217,11 +227,10 @@ class Sweep:
             columns.append([known[text] for text in texts])
         return zip(*columns)
 
-    def _judged(self, found: Sequence[Any]) -> tuple[bool | None, str, str]:
+    def _judged(self, found: Sequence[Value]) -> tuple[bool | None, str, str]:
         """Return whether the limits are kept, the first that is not, and which cannot be judged."""
-        there = [(*limit, value) for limit, value in zip(self._limits, found) if value is not None]
-        broken = next((name for name, one, bound, value in there if breaks(one.quantity, bound, value)), "")
-        known = {name for name, *_ in there}
+        broken = next(broken_of(self._limits, found), "")
+        known = {limit.name for limit, value in zip(self._limits, found) if value is not None}
         unknown = {name: one.quantity.id for name, one, _ in self._limits if name not in known}
         keeps = None if not self.limited or (unknown and not broken) else not broken
         return keeps, broken, "; ".join(f"limits.{name}: {without(name, id)}" for name, id in unknown.items())
@@ -241,8 +250,7 @@ class Sweep:
     @cached_property
     def _at_once(self) -> int:
         """Rows that are computed and handed over together: few where each takes long."""
-        every = (*self.requested, *(one for _, one, _ in self._limits))
-        return _SLOWLY if any(is_slow(self._binder.machine, one) for one in every) else CHUNK
+        return _SLOWLY if any(is_slow(self._binder.machine, one) for one in self._every) else CHUNK
 
 
 def begun(
@@ -254,16 +262,18 @@ def begun(
 ) -> tuple[Binder, Found]:
     """Return the binder from the first texts that make a machine, and what `answers` returns of that machine.
 
-    Raises the error of the first texts where none make one.
+    Raises the error of the first texts where none make one, or the first that two texts have.
     """
     failed: list[KurbelError] = []
     for texts in starts:
         try:
             binder = Binder(origin, keys, texts, cases)
             return binder, answers(binder.machine)
-        except (MachineFileError, NoSolutionError) as error:
+        except KurbelError as error:
             failed.append(error)
-    raise failed[0] if isinstance(failed[0], NoSolutionError) else UsageError(str(failed[0]))
+            if isinstance(error, UsageError) and str(error) in map(str, failed[:-1]):
+                raise  # it is of what is wanted, not of these texts
+    raise UsageError(str(failed[0])) if isinstance(failed[0], MachineFileError) else failed[0]
 
 
 def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
@@ -279,7 +289,7 @@ def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
     return found
 
 
-def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
+def _in_unit(column: Sequence[Value], kind: str, unit: str) -> list[Value]:
     """Return values of a kind in a unit; lists as tuples, None for a missing value."""
     if set(map(type, column)) == {float}:  # as most are
         return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
@@ -293,8 +303,8 @@ def _in_unit(column: Sequence[Any], kind: str, unit: str) -> list[Any]:
     ]
 
 
-def limit_answers(machine: Machine) -> Iterator[tuple[str, Answer, float]]:
-    """Yield each limit of the file with its key value and bound; raises UsageError where the machine has none."""
+def limits_of(machine: Machine) -> Iterator[Limit]:
+    """Yield the limits of the file, each for all that it holds for; raises UsageError where the machine has none."""
     case = Case(machine)
     for name, bound in machine.limits:
         try:
@@ -304,7 +314,14 @@ def limit_answers(machine: Machine) -> Iterator[tuple[str, Answer, float]]:
             raise UsageError(f"limits.{name}: {error}") from None
         if not found:
             raise UsageError(f"limits.{name}: {without(name, scoped(name)[1])}")
-        yield from ((name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
+        yield from (Limit(name, Answer(one.quantity, one.command, one.subject.name), bound) for one in found)
+
+
+def broken_of(limits: Sequence[Limit], values: Sequence[Value]) -> Iterator[str]:
+    """Yield the names of the limits that these values break, one for each limit, None where there is none."""
+    for (name, one, bound), value in zip(limits, values):
+        if not (value is None or isinstance(value, tuple)) and breaks(one.quantity, bound, value):
+            yield name
 
 
 _sweep = lru_cache(maxsize=4)(Sweep)

@@ -14,9 +14,9 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, convert, units_of
+from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_of, is_slow
+from kurbel.designs.answers import Answer, answers_at, is_slow
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, Path, UnitError, UsageError
@@ -180,18 +180,12 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
 
     shifts: (machines, inputs), in uncertainties.
     """
-    units = [SI[kind] for kind in inputs.binder.kinds]
-    rows = [
-        [f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)]
-        for row in (inputs.values + shifts * inputs.spreads).tolist()
-    ]
-    bound = inputs.binder.bound(rows)
-    values = bound.failures | answers_of(bound.batches, requested)
-    found = np.full((len(rows), len(requested)), math.nan)
-    for row, each in values.items():
+    every = answers_at(inputs.binder, inputs.values + shifts * inputs.spreads, requested)
+    found = np.full((len(every), len(requested)), math.nan)
+    for row, each in enumerate(every):
         if not isinstance(each, str):
             found[row] = [one if isinstance(one, (int, float)) else math.nan for one in each]
-    return found, [why for _, why in sorted(values.items()) if isinstance(why, str)]
+    return found, [why for why in every if isinstance(why, str)]
 
 
 def with_uncertainty(

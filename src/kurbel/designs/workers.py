@@ -1,6 +1,5 @@
 """Chunks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
 
-import asyncio
 import logging
 import os
 import pickle
@@ -153,6 +152,8 @@ def work() -> None:
 @contextmanager
 def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
+        import asyncio
+
         from distributed import Client, TimeoutError
         from distributed.comm import CommClosedError, connect
     except ImportError:

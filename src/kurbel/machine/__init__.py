@@ -17,9 +17,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.keys import Values
 from kurbel.declared.reading import REFUSED, has_refused, shown
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar
 
@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, first_of, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
@@ -127,7 +127,7 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
         yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"

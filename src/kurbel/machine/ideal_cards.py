@@ -6,18 +6,19 @@ the stroke volume. Exponents are those of p V^n.
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.declared.forms.values import Number
+from kurbel.arrays import Number
+from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.reading import REFUSED, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 
-CLEARANCE = Number(share_of="the stroke", least=1e-6, most=1e5)
+CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number(share_of="the stroke", least=1e-6, most=1e5, zero=True)
+CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
 """The same where nothing need be compressed into it: then it may be left out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
@@ -33,13 +34,13 @@ def _exponent(text: str, absent: str, default: Any = AIR_EXPONENT) -> Any:
     return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3")
 
 
-def _order(key: str, high: Any, low_name: str, low: Any) -> Rule:
+def _order(key: str, high: Number, low_name: str, low: Number) -> Rule:
     """Return the rule that the pressure under `key` is larger than the other one."""
     sentence = f"{{high:pressure}} is not above the {low_name} pressure ({{low:pressure}})"
     return Rule(key, high <= low, sentence, {"high": high, "low": low})
 
 
-def after_polytrope(pressure: Any, volume: Any, next_volume: Any, exponent: Any) -> Any:
+def after_polytrope(pressure: Number, volume: Number, next_volume: Number, exponent: Number) -> Any:
     """Return P (V/V′)^n: the pressure after a change of volume along P V^n = const; P absolute, V in any unit.
 
     >>> after_polytrope(1.0, 8.0, 1.0, 1.0)
@@ -53,7 +54,7 @@ def after_polytrope(pressure: Any, volume: Any, next_volume: Any, exponent: Any)
     return math.exp(exponent * math.log(volume / next_volume)) * pressure
 
 
-def _above_vacuum(lift: Any, **pressures: Any) -> Iterator[Rule]:
+def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
     """Yield the rule that pressures are above the perfect vacuum; lift makes them absolute."""
     for name, pressure in pressures.items():
         if pressure is not None:
@@ -82,12 +83,12 @@ class _TwoStroke(Record):
     lower: ClassVar[str]
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         high, low = given.get(cls.higher, REFUSED), given.get(cls.lower, REFUSED)
         if has_refused(given.values()) and high is not REFUSED and low is not REFUSED:
             yield _order(cls.higher, high, cls.lower, low)
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or the absolute pressures."""
         two = f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
         yield Rule((), cycle != "two-stroke", two)
@@ -173,7 +174,7 @@ class Compressor(_TwoStroke):
         """Exponent of the expansion of what is left in the clearance."""
         return self.exponent if self.expansion_exponent is None else self.expansion_exponent
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
         yield from super().rules_in(cycle, lift)
         c = self.clearance
@@ -259,7 +260,7 @@ class _Engine(Record):
         """What the diagram factor leaves out."""
         return _factor_notes(self.diagram_factor)
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
         two = "a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
         yield Rule((), self.exhaust is not None and cycle != "four-stroke", f"exhaust: {two}")

@@ -7,11 +7,12 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Number
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Number, Points, size_faults, unit_name
+from kurbel.declared.forms.values import Choice, NumberForm, Points, size_faults, unit_name
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
@@ -43,7 +44,7 @@ class Rectangle:
             "power are correct, forces over the angle are not",
         )
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what is below the vacuum; lift makes the pressure absolute, in Pa."""
         if self.level is not None:
             below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
@@ -59,7 +60,7 @@ class Drawn(Record):
 
     length: float = field(
         # keeps the unit in which it is written, so that the lengths of many cards are read one by one
-        Number("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
+        NumberForm("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
         "Length of the card on the paper",
         "l",
         required=True,
@@ -85,7 +86,7 @@ class Chamber(Protocol):
         """The working cycles that it can be part of."""
         ...
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
         ...
 
@@ -195,7 +196,7 @@ class Card(Record):
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         """Yield what is wrong with the lines that could be read, where others could not be."""
         if has_refused(given.values()) and "drawn" not in given:
             lines = {name: value for name, value in given.items() if isinstance(value, list)}
@@ -211,7 +212,7 @@ class Card(Record):
         """The one cycle that has so many lines."""
         return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or what no polytropic line can be drawn through."""
         wanted = STROKES[cycle]
         lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
@@ -280,7 +281,7 @@ class Constant(Record):
 
 _CHAMBER = Keyed(
     cases={
-        "mean_pressure": Number("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
+        "mean_pressure": NumberForm("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
         "constant": RecordForm(Constant),
         "trace": RecordForm(Measured),
         "steam": RecordForm(Steam),
@@ -292,7 +293,7 @@ _CHAMBER = Keyed(
     beside=("diagram_factor", "unloaded"),
     texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
 )
-_ONE_PRESSURE = Number(
+_ONE_PRESSURE = NumberForm(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
 )
 
@@ -333,7 +334,7 @@ class Indicator(Record):
     absolute: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         mirrored = given.get("crank_end") == "mirrored"
         none = "head_end" not in given and (mirrored or "crank_end" not in given)
         yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")

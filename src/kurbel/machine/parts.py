@@ -1,14 +1,15 @@
 """What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Form, Number
-from kurbel.declared.record import Record, Rule, alternative, field, first_of, record
+from kurbel.declared.forms.values import Choice, Form, NumberForm
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.machine.pumped import Gas
@@ -65,11 +66,11 @@ class ConnectingRod(Record):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-_ONE_OR_MORE: Form = OneOf(Number("mass", least=0), Listing(Number("mass", least=0)))
+_ONE_OR_MORE: Form = OneOf(NumberForm("mass", least=0), Listing(NumberForm("mass", least=0)))
 _PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
 
 
-def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
+def _sum(given: Values) -> dict[str, Any]:
     """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
     each = {name: given[name] for name in _PARTS if given.get(name) is not None}
     sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
@@ -81,7 +82,7 @@ def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _rod(given: Mapping[str, Any]) -> dict[str, Any]:
+def _rod(given: Values) -> dict[str, Any]:
     rod = given["connecting_rod"]
     return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
 
@@ -112,7 +113,7 @@ class Masses(Record):
     _crosshead = _part("Crosshead", "crosshead")
     _other = _part("Any other reciprocating mass", "other")
     _connecting_rod = alternative(
-        OneOf(Number("mass", least=0), RecordForm(ConnectingRod)),
+        OneOf(NumberForm("mass", least=0), RecordForm(ConnectingRod)),
         "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),
@@ -134,7 +135,7 @@ class Masses(Record):
     pistons: tuple[float, ...] = ()
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
         yield Rule((), not given, none)
 
@@ -169,7 +170,7 @@ class Rings(Record):
     count: int = field(int, "Number of rings", least=1, required=True)
     height: float = field("length", "Height of one ring along the bore", "h", above=0, required=True)
     pressure: float | GasOnRings = field(
-        OneOf(Choice(("gas",)), Number("pressure", least=0), RecordForm(GasOnRings)),
+        OneOf(Choice(("gas",)), NumberForm("pressure", least=0), RecordForm(GasOnRings)),
         "Pressure of the ring on the wall; `gas` or `{gas: k}`: k times the pressure difference across the piston",
         "p_r",
         required=True,
@@ -277,7 +278,7 @@ class RamForce(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
 
 
@@ -387,7 +388,7 @@ class Piston(Record):
         fits = all(cycle in each for each in given)
         return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
 
-    def indicator_rules(self, cycle: str, ambient: Any) -> Iterator[Rule]:
+    def indicator_rules(self, cycle: str, ambient: Number) -> Iterator[Rule]:
         """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
         for end, chamber in self.chambers.items():

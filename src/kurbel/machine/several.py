@@ -8,7 +8,7 @@ from typing import Any
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
@@ -62,7 +62,7 @@ class EqualCylinders(Record):
     shared: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if has_refused(given.values()):
             return
         count, banks = given["count"], given.get("bank_angles", (0.0,))

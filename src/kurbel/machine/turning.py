@@ -1,15 +1,15 @@
 """What turns with the shaft and works on it: flywheel, load, a turning-moment diagram, an elastic coupling."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms.structures import OneOf
-from kurbel.declared.forms.values import Number, Points, size_faults, unit_name
+from kurbel.declared.forms.values import NumberForm, Points, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import Node, Reading, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
@@ -75,7 +75,7 @@ class Rim(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if "outer_diameter" in given and "inner_diameter" in given and not has_refused(given.values()):
             inner, outer = given["inner_diameter"], given["outer_diameter"]
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
@@ -170,7 +170,7 @@ class Flywheel(Record):
     rim: Rim | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         rim = given.get("rim")
         if isinstance(rim, Rim) and rim.sized_by:
             message = "the moment of inertia is given and also follows from the sizes of the rim; give only one of them"
@@ -290,7 +290,7 @@ class _MeanTorque(OneOf):
     """A mean torque with its unit, or as a bare number in the unit of the diagram, which becomes `InUnit`."""
 
     def __init__(self) -> None:
-        super().__init__(Number("torque"), Number("ratio"))
+        super().__init__(NumberForm("torque"), NumberForm("ratio"))
         self.number = None
 
     def kind_as_written(self, text: Node | None) -> str:
@@ -344,7 +344,7 @@ class Load(Record):
     diagram: Effort | Harmonics | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         lone = "unit" in given and not {"points", "harmonics"} & given.keys()
         yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
         yield Rule("harmonics", "harmonics" in given and "mean" not in given, "'harmonics' needs 'mean' beside it")

@@ -182,7 +182,7 @@ def explain(error: Any, lines: list[str]) -> Fault:
     # a key without a space after its colon is in or just above these lines
     above = range(here[0], max(begin[0] - 2, -1), -1) if second or colon else ()
     glued, key, value = next(((n, *found[0]) for n in above if (found := _GLUED.findall(lines[n]))), (-1, "", ""))
-    lone, _, rest = [*lines, ""][begin[0]].strip().partition(" ")
+    lone, _, rest = lines[begin[0]].strip().partition(" ")
     bracket = "]" if "sequence" in context else "}"
     no_start = "cannot start any token" in problem or "node content" in problem
     table = (

@@ -13,10 +13,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, islice
-from typing import Any, BinaryIO, NamedTuple, NoReturn
+from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Design, Sweep
+from kurbel.designs.sweep import Cell, Design, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -53,7 +53,7 @@ class Titles(NamedTuple):
         heads = [f"{name}_{unit.replace(' ', '')}" if unit else name for name, unit in self.names]
         return [self.row, *heads, *self.last]
 
-    def values(self, row: Design) -> list[Any]:
+    def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
         return [row.number, *row.values, *map(row.text, self.last)]
 
@@ -111,7 +111,7 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
     return f"{above}{rule}\n", lambda row: table_row(cells(row))
 
 
-def _cell(value: Any, look: Look) -> str:
+def _cell(value: Cell, look: Look) -> str:
     """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
         return look.unit(value) if isinstance(value, Unit) else look.text(value)
@@ -233,10 +233,8 @@ def kept_rows(
     path = part if os.path.isfile(part := _part_of(file_name)) else file_name
     if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
         return Kept(), rows
-    heads, whole_line = lines_of(titles, look)
+    heads, line_of = lines_of(titles, look)
     head = heads if rows.start == 0 else ""
-    names, width = titles.whole, 1 + len(sweep.plan.inputs)
-    _, line_of_inputs = lines_of(Titles(titles.names[: width - 1]), look)
 
     def refuse(why: str) -> NoReturn:
         raise UsageError(
@@ -244,21 +242,12 @@ def kept_rows(
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
 
-    def parsed(lines: Sequence[str], count: int) -> list[list[str]]:
-        try:
-            found = _cells(lines, look)
-        except csv.Error as error:
-            refuse(f"it is no csv: {error}")
-        for line, (heads, cells) in zip(lines, found):
-            if len(cells) != count or (heads and heads != names[:count]) or not cells[0].isdecimal():
-                refuse(f"it has a line {line.rstrip()[:60]!r}")
-        return [cells for _, cells in found]
-
     def compare(cells: Sequence[str], now: Sequence[str]) -> None:
-        for name, there, here in zip(names, cells, now):
+        for name, there, here in zip(titles.whole, cells, now):
             if there != here and not _same(there, here):
                 refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
 
+    count, following, last = 0, rows.start, list[str]()
     try:
         with open(path, "rb") as file:
             begin = next(file, b"")
@@ -268,49 +257,51 @@ def kept_rows(
             size = len(begin) if head and begin.endswith(b"\n") else 0
             file.seek(size)
 
-            count, following, last = 0, rows.start, None
             whole = (line for line in file if line.endswith(b"\n"))
             while lines := list(islice(whole, _COMPARED_AT_ONCE)):
-                some = parsed([line.decode("utf-8", "replace") for line in lines], len(names))
-                known = [row for cells in some if (row := int(cells[0]) - 1) in rows]
-                inputs = zip(known, sweep.inputs(known))
-                now = dict(
-                    zip(known, parsed([line_of_inputs(Design(row + 1, values)) for row, values in inputs], width))
-                )
-                for cells in some:
-                    row = int(cells[0]) - 1
+                some = []
+                for line in lines:
+                    if not (cells := _cells(line.decode("utf-8", "replace"), titles, look)):
+                        refuse(f"it has a line {line.decode('utf-8', 'replace').rstrip()[:60]!r}")
+                    some.append((int(cells[0]) - 1, cells))
+                inputs = iter(sweep.inputs([row for row, _ in some if row in rows]))
+                for row, cells in some:
                     if row not in rows:
                         refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
                     if row < following or (not conditions and row != following):
                         refuse(f"row {following + 1} is missing in it")
-                    compare(cells, now[row])
+                    compare(cells, [cells[0], *(_cell_text(one, look) for one in next(inputs))])
                     following = row + 1
-                    last = cells if any(cells[width : 1 + len(sweep.heads)]) else last
+                    last = cells if any(cells[1 + len(sweep.plan.inputs) : 1 + len(sweep.heads)]) else last
                 count, size = count + len(lines), size + sum(map(len, lines))
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from None
 
     if last:
         computed = next(rows_of(sweep, range(int(last[0]) - 1, int(last[0]))))
-        compare(last, parsed([whole_line(computed)], len(names))[0])
+        compare(last, _cells(line_of(computed), titles, look))
         if not all(one.holds(computed) for one in conditions):
             refuse(f"row {last[0]} is in it, which --where leaves out")
     return Kept(count, size), rows[following - rows.start :]
 
 
-def _cells(lines: Sequence[str], look: Look) -> list[tuple[list[str], list[str]]]:
-    """Return the heads, none in csv, and the texts of the cells of each line; no cells of one that is of neither."""
-    if look.format == "csv":
-        return [([], cells) for cells in csv.reader(lines, delimiter=";" if look.comma else ",")]
-    found = []
-    for line in lines:
-        try:
+def _cells(line: str, titles: Titles, look: Look) -> list[str]:
+    """Return the texts of the cells of a line; none of a line that no row of these titles has."""
+    try:
+        if look.format == "csv":
+            found = next(csv.reader([line], delimiter=";" if look.comma else ","), [])
+        else:
             values = dict(json.loads(line))
-        except (ValueError, TypeError):
-            values = {}
-        each = [one if isinstance(one, list) else [one] for one in values.values()]
-        found.append((list(values), [" ".join("" if one is None else str(one) for one in parts) for parts in each]))
-    return found
+            each = [tuple(one) if isinstance(one, list) else one for one in values.values()]
+            found = [_cell_text(one, look) for one in each] if list(values) == titles.whole else []
+    except (csv.Error, ValueError, TypeError):
+        return []
+    return found if len(found) == len(titles.whole) and found[0].isdecimal() else []
+
+
+def _cell_text(value: Cell, look: Look) -> str:
+    cell = csv_cell(value, look)
+    return "" if cell is None else str(cell)
 
 
 def _same(there: str, here: str) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
@@ -67,7 +67,7 @@ class Figures(Form):
 
     def figure_of(self, quantity: Quantity) -> Form:
         """Return the form of a figure for a quantity."""
-        number = Number(quantity.kind)
+        number = NumberForm(quantity.kind)
         return FigureForm(number) if self.tolerated else number
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
@@ -119,7 +119,7 @@ _PERCENT = rf"({NUMBER.pattern})\s*%"
 class FigureForm(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
-    def __init__(self, size: Number) -> None:
+    def __init__(self, size: NumberForm) -> None:
         self.size = size
         self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"

@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from kurbel.arrays import Indivisible
-from kurbel.declared.forms.values import TEXT, Choice, Form, Number
+from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
 from kurbel.declared.keys import TOO_EXTREME, Key, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
@@ -413,13 +413,13 @@ def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that stand for numbers.
     """
     if isinstance(form, str):
-        return Number(form, **bounds)
+        return NumberForm(form, **bounds)
     if isinstance(form, tuple):
         return Choice(form)
     if isinstance(form, list):
         return Listing(form_of(form[0], bounds))
     if form is int:
-        return Number(whole=True, **{"least": 1, **bounds})
+        return NumberForm(whole=True, **{"least": 1, **bounds})
     if form is bool:
         return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:

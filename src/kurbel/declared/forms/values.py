@@ -47,7 +47,7 @@ class Form(ABC):
     shape: ClassVar[type] = str
     """Of the tree: str, list or dict."""
     kind: str = ""
-    number: "Number | None" = None
+    number: "NumberForm | None" = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -96,7 +96,7 @@ def out_of_size(value: Any, kind: str) -> str:
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
-    smallest, largest, unit, *_ = KINDS[kind]
+    smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
     held = f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
     if not np.all(abs(value) <= largest):
@@ -116,7 +116,7 @@ def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) ->
 
 
 @dataclass(eq=False)
-class Number(Form):
+class NumberForm(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger; zero: 0 is allowed
@@ -200,7 +200,7 @@ class Number(Form):
     def out_of_bounds(self, value: Any) -> str:
         """Compare a number, or each of many, with the bounds.
 
-        >>> Number("length", least=0.1).out_of_bounds(-0.3)
+        >>> NumberForm("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
         bounds = (
