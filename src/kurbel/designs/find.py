@@ -166,10 +166,8 @@ class _Designs:
         if self.progress:
             self.progress(f"{len(self.computed)} designs computed")
         numbers, count = self.numbers(places), len(self.answers)
-        rows, found = (
-            numbers.tolist(),
-            answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits))),
-        )
+        rows = numbers.tolist()
+        found = answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits)))
         values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
         for number, (row, own) in enumerate(zip(rows, found)):
             if isinstance(own, str):
