@@ -47,7 +47,7 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
         [sys.executable, "-m", "kurbel", *arguments],
         stdout=follower,
         stderr=follower,
-        env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR")}
+        env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "LINES")}
         | {"PYTHONIOENCODING": "utf-8"}
         | settings,
     ):

@@ -39,7 +39,7 @@ def _fitting(report: Report, look: Look, first: Collection[str]) -> Report:
     most = get_terminal_size().lines
     if not sys.stdout.isatty() or len([*islice(page(report, look), most)]) < most:
         return report
-    across = max(((look.width or 80) - _SIDE) // _CELL, 2)
+    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
     return first_selection(report, first, across, rows=most // 6)
 
 
