@@ -32,7 +32,7 @@ _what_varies = stacked(
     ),
     click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
 )
-_what_is_told = stacked(
+_what_is_printed = stacked(
     click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
     click.option(
@@ -74,7 +74,7 @@ _who_computes = stacked(
 @click.command()
 @machine_file
 @_what_varies
-@_what_is_told
+@_what_is_printed
 @units_option
 @_where_it_goes
 @_who_computes
