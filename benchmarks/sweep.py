@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from kurbel.designs.answers import AT_ONCE, Answer, answered_alone, answers_of, requested_answers
+from kurbel.designs.answers import Answer, answered_alone, answers_of, requested_answers
 from kurbel.designs.binding import Batch, Binder
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
@@ -39,9 +39,10 @@ CHAPTERS = (
     ("four-in-line", ("F_free_max", "M_free_max", "counterweight_best")),
     ("gas-engine", ("load_max", "unloaded_arc")),
     ("gas-engine", ("sigma_pin_max",)),
+    ("triplex-pump", ("flow_mean", "flow_max", "flow_min", "volume_fluctuation", "vessel_swing", "suction_lift_max")),
 )
 """Key values of the whole machine."""
-SINGLE, RUNS = 10, 5
+DESIGNS, SINGLE, RUNS = 1000, 10, 5
 
 
 def seconds(task: Callable[[], object]) -> float:
@@ -68,7 +69,7 @@ def at_speeds(name: str, count: int) -> list[Batch]:
     return binder.bound([(f"{speed * share:.6f} rpm",) for share in np.linspace(0.9, 1.1, count)]).batches
 
 
-def told(name: str, many: float, count: int, single: float | None = None) -> None:
+def report(name: str, many: float, count: int, single: float | None = None) -> None:
     """Print a line: microseconds a design, and how often faster than alone."""
     ratio = "" if single is None else f"{single / (many / count):>8.0f} x"
     print(f"{name:<48}{many / count * 1e6:>10.0f} us{ratio}")
@@ -79,30 +80,32 @@ def beside_alone(name: str, batches: list[Batch], requested: list[Answer]) -> No
     alone = [batches[0].one(place) for place in range(SINGLE)]
     with np.errstate(all="ignore"):
         single = seconds(lambda: [answered_alone(machine, requested) for machine in alone]) / SINGLE
-    told(name, seconds(lambda: answers_of(batches, requested)), AT_ONCE, single)
+    report(name, seconds(lambda: answers_of(batches, requested)), DESIGNS, single)
 
 
 def main() -> None:
     """Print the table."""
     rows = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
-    machines = designs(WATERWORKS, AT_ONCE)
+    angles = np.linspace(0.0, 1000.0, 1_000_000)
+    print(f"np.sin of a million doubles: {seconds(lambda: np.sin(angles)) * 1e3:.1f} ms")
+    machines = designs(WATERWORKS, DESIGNS)
     every = list(requested_answers(machines[0].one(0), ()))
     motion = [one for one in every if one.quantity.id in ("c_m", "c_max", "b_max", "b_min", "phi_b_zero")]
     beside_alone(f"key values of forces: {WATERWORKS}", machines, every)
     beside_alone(f"motion alone: {WATERWORKS}", machines, motion)
     for name in OTHERS:
-        batches = designs(name, AT_ONCE)
+        batches = designs(name, DESIGNS)
         beside_alone(f"key values of forces: {name}", batches, list(requested_answers(batches[0].one(0), ())))
     for name, columns in CHAPTERS:
-        batches = at_speeds(name, AT_ONCE)
+        batches = at_speeds(name, DESIGNS)
         beside_alone(f"{', '.join(columns)}: {name}", batches, list(requested_answers(batches[0].one(0), columns)))
-    told("binding to the file", seconds(lambda: designs(WATERWORKS, AT_ONCE)), AT_ONCE)
+    report("binding to the file", seconds(lambda: designs(WATERWORKS, DESIGNS)), DESIGNS)
     vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
     begin = time.process_time()
     sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
     titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
     size = sum(map(len, map(lines_of(titles, Look("csv"))[1], rows_of(sweep, range(rows)))))
-    told(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
+    report(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{size / 1e6:.1f} MB written, {memory:.0f} MB of memory at most")
 

@@ -64,8 +64,8 @@ def saved(report: Report) -> str:
     stages, times = (next(c.values for c in table.columns if c.id == id) for id in ("stages", "least"))
     (whole, _), *_, (motion, _), (positions, _) = each = list(zip(stages, times))
     spans = " and ".join(f"{each[place][1]:.2g} ms" for place in (0, -2))
-    return f"""for all that is printed of the whole machine {whole} functions
-of the solver run, for its motion alone {motion}, for positions alone {positions}; the first two take {spans}"""
+    return f"""all results of the whole machine need {whole} functions
+of the solver, its motion alone {motion}, positions alone {positions}; the first two take {spans}"""
 
 
 def explanation(report: Report) -> str:
@@ -76,7 +76,7 @@ def explanation(report: Report) -> str:
     rough = errors(engine, "model_error", lambda names: names[1] == "infinite rod")
     hand = errors(engine, "numerical_error", lambda names: names[1] in EQUIDISTANT and names[2] == "36")
     own = errors(engine, "numerical_error", lambda names: names[1] == "kurbel")
-    return f"""Which error should an engineer worry about? For the first built-in machine, a steam engine with L/R = 5:
+    return f"""Which error matters? For the first built-in machine, a steam engine with L/R = 5:
 
 | error | from | to |
 | --- | --: | --: |
@@ -87,24 +87,24 @@ def explanation(report: Report) -> str:
 | of the arithmetic: kurbel | {power(min(own))} | {power(max(own))} |
 
 - **Data.** A dead centre that is found 0.1° too late, or half a percent of noise in the gas force, changes the answers
-  by {power(min(data))} to {power(max(data))}. No formula mends that: look after dead centre and indicator first.
+  by {power(min(data))} to {power(max(data))}. No formula corrects that: check dead centre and indicator first.
 - **Model.** The infinite rod costs up to {max(rough):.0%}, the formulas of first order up to {power(max(model))}.
-  A computer has no reason left to use either.
-- **Reading.** 18 divisions of the half turn, as the book has them, miss by up to {max(hand):.1%}: the peaks and
-  jumps between two divisions are not seen.
-- **Arithmetic.** The smallest error of the data is {power(min(data) / max(own))} times kurbel's largest here. Its worst
-  answer in all scenes is off by {worst(report)}. Whatever differs from a measurement is not the arithmetic.
+  With a computer there is no reason to use either.
+- **Reading.** 18 divisions of the half turn, as the book has them, miss by up to {max(hand):.1%}: peaks and
+  jumps between two divisions are missed.
+- **Arithmetic.** The smallest error of the data is {power(min(data) / max(own))} times kurbel's largest here. Its
+  largest error in all scenes is {worst(report)}. Differences from a measurement are not due to arithmetic.
 
-What a machine does not need is left out: {saved(engine)}.
+What a machine does not need is not computed: {saved(engine)}.
 
-The picture shows, for every quantity, time over error for all built-in machines, with lines between the answers of one
-method for one machine: the error falls to the right, the grey line is 2⁻⁵³, the rounding of one float. A method
-further right *and* lower than the dot of the same machine would be better than kurbel's own; the last sentence of the
-report says whether there is one, and names it. The strong methods share their idea with kurbel's: cut the cycle at the
-corners of the cards, and between them use Gauss rules, root searches or a fit of Chebyshev polynomials. How many points
-they need is not known beforehand; kurbel finds that out for each machine. References are textbook formulas in 40 digits
-of mpmath, with Gauss rules whose pieces are halved until 25 digits agree. `benchmarks/speed_lines.py` and
-`benchmarks/flywheel.py` do the same for the speed of the shaft."""
+The picture shows time over error of every quantity for all built-in machines; a line joins the results of one method
+for one machine. The error falls to the right; the grey line is 2⁻⁵³, the rounding of one float. A method further right
+*and* lower than the dot of the same machine would be better than kurbel's own; the last sentence of the report names
+any. The best methods use kurbel's idea: cut the cycle at the corners of the cards, and between them use Gauss rules,
+root searches or a fit of Chebyshev polynomials. The number of points that they need is not known beforehand; kurbel
+determines it for each machine. References are textbook formulas in 40 digits of mpmath, with Gauss rules whose pieces
+are halved until 25 digits agree. `benchmarks/speed_lines.py` and `benchmarks/flywheel.py` do the same for the speed of
+the shaft. `python docs/accuracy.py` writes this page."""
 
 
 def main() -> None:
@@ -115,13 +115,11 @@ def main() -> None:
     engine = render(report._replace(parts=report.parts[:1]), Look(format="markdown"))
     text = "\n\n".join(
         (
-            "# How exact, and how fast",
-            "`python docs/accuracy.py` writes this page from a run of `kurbel accuracy`, whose first machine is shown, "
-            "and of `kurbel accuracy --extremes`.",
+            "# Accuracy and run time",
             explanation(report),
             f"![Time over error]({PICTURE})",
             engine.strip(),
-            f"Stiff and extreme machines are put to the whole program, from the text of a file to the report: "
+            f"Stiff and extreme machines are run through the whole program, from the text of a file to the report: "
             f"{extremes.parts[0].place_tables[0].title}.",
         )
     )

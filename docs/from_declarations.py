@@ -13,7 +13,7 @@ import click
 from kurbel.cli import COMMANDS, kurbel
 from kurbel.declared.forms.structures import Inline, Keyed, RecordForm, records
 from kurbel.declared.forms.values import Form
-from kurbel.declared.keys import Key, Keys, Record, required
+from kurbel.declared.keys import Key, Keys, Record, without
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_of, unit_names
 from kurbel.machine import Machine
@@ -25,7 +25,7 @@ from kurbel.report.delivery import ENDS
 from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
 from kurbel.report.zusammenstellung import FACTORS
 
-_WRITTEN = "Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand."
+_WRITTEN = "<!-- Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand. -->"
 
 
 def keys() -> str:
@@ -54,18 +54,18 @@ def commands() -> str:
     return _page("Every command and option", *map(_command, COMMANDS))
 
 
-_KEYS = """A key that is a mapping has a table of its own. Keys of `cylinder`, its mechanism and its piston stand at
-the top of a machine with one cylinder. `kurbel keys KEY` tells one of them in the terminal, with its dotted path."""
-_COLUMNS = """Quantities over the crank angle, by the command that prints them first. The id stands in CSV, JSON,
-`--columns` and `--where`, which take the symbol too. Forces toward the shaft count positive, the velocity c likewise; φ
-runs from the inner dead centre in the sense of rotation. What a machine has not is left out."""
-_KEY_VALUES = """Single figures, by the command that prints them first; `limits` and `expect` in the machine file make
-rules of them. They are exact: none of them hangs on `--step`. `_max` is the largest signed value, `_min` the smallest,
-`_peak` the largest magnitude."""
+_KEYS = """A key that is a mapping has a table of its own. Keys of `cylinder`, its mechanism and its piston are at
+the top level of a machine with one cylinder. `kurbel keys KEY` prints one in the terminal, with its dotted path."""
+_COLUMNS = """Quantities over the crank angle, by the command that prints them first. The id is used in CSV, JSON,
+`--columns` and `--where`, which take the symbol, too. Forces are positive toward the shaft, and so is the velocity c; φ
+runs from the inner dead centre in the sense of rotation. Units are those of SI, metric, technical and imperial."""
+_KEY_VALUES = """Single figures, by the command that prints them first; `limits` and `expect` in the machine file check
+them. They are exact and do not depend on `--step`. `_max` is the largest signed value, `_min` the smallest, `_peak` the
+largest magnitude. Units are those of SI, metric, technical and imperial."""
 
 
 def _page(title: str, *parts: str) -> str:
-    return "\n\n".join([f"# {title}", _WRITTEN, *(part.strip("\n") for part in parts)]) + "\n"
+    return "\n\n".join([f"# {title}", *(part.strip("\n") for part in parts), _WRITTEN]) + "\n"
 
 
 def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
@@ -103,9 +103,14 @@ def _others() -> Iterator[str]:
 
 
 def _quantities(declared: Iterable[Quantity]) -> str:
-    heads = ("id", "symbol", *SYSTEMS, "meaning, formula, source")
-    units = SYSTEMS.values()
-    return _table(heads, ((f"`{q.id}`", q.symbol, *(_unit(one[q.kind]) for one in units), q.text) for q in declared))
+    rows = ((f"`{q.id}`", q.symbol, q.text, _units_of(q.kind)) for q in declared)
+    return _table(("id", "symbol", "meaning, formula, source", "units"), rows)
+
+
+def _units_of(kind: str) -> str:
+    """Return the units of a kind in every system, once where all of them have the same; a middle dot parts them."""
+    each = [_unit(one[kind]) for one in SYSTEMS.values()]
+    return " · ".join(each) if len(set(each)) > 1 else each[0]
 
 
 def _unit(given: str | tuple[str, ...]) -> str:
@@ -114,15 +119,15 @@ def _unit(given: str | tuple[str, ...]) -> str:
 
 def _units() -> Iterator[str]:
     yield (
-        "A unit belongs to a kind, and a key asks for one kind. Products and powers are written as people write them: "
-        "`N m` or `N*m`, `kg m2`, `kg m^2` or `kg m²`. `kg` is a mass; a force is `kgf` or `kp`."
+        "Every key takes units of one kind. Products and powers are written `N m` or `N*m`, `kg m2`, `kg m^2` or "
+        "`kg m²`. `kg` is a mass; a force is `kgf` or `kp`."
     )
     rows = ((kind.replace("_", " "), ", ".join(f"`{name}`" for name in unit_names(kind))) for kind in kinds())
     yield _table(("kind", "units"), rows)
 
 
 def _sizes() -> Iterator[str]:
-    yield "## What a machine file may hold\n\nWhatever is smaller or larger is refused; the sign is free."
+    yield "## Sizes\n\nA value beyond these is an error; the sign is free. [Limits of size](../size.md) has times."
     rows = [(kind.replace("_", " "), range_of(kind)) for kind in KINDS]
     rows += [("points of one diagram or trace", f"up to {MOST_POINTS}"), ("items of one list", f"up to {MOST_ITEMS}")]
     yield _table(("kind", "size"), rows)
@@ -141,13 +146,19 @@ def _records() -> Iterator[str]:
 
 
 def _keys(keys: Keys) -> str:
-    needed = required(keys)
     rows = (
-        (f"`{word}`", key.symbol, key.form.written, _absent(key, word in needed), _example(word, key), key.text)
+        (f"`{word}`", key.symbol, key.text, _written(word, key), _absent(keys, word))
         for word, key in _with_cases(keys)
         if not isinstance(key.form, Inline)
     )
-    return _table(("key", "symbol", "form", "absent", "example", "meaning"), rows)
+    return _table(("key", "symbol", "meaning", "written", "if absent"), rows)
+
+
+def _written(word: str, key: Key) -> str:
+    """Return how a value is written: as its form says where that shows it, else by an example."""
+    name = word.rpartition(".")[2]
+    example = key.line(name).removeprefix(f"{name}: ")
+    return key.form.written if "`" in key.form.written or not example else f"`{example}`"
 
 
 def _with_cases(keys: Keys) -> Iterator[tuple[str, Key]]:
@@ -164,13 +175,8 @@ def _cases(form: Form) -> Iterator[tuple[str, Key]]:
     yield from (one for word, inner in form.parts if not word for one in _cases(inner))
 
 
-def _absent(key: Key, needed: bool) -> str:
-    return "must be given" if needed else key.absent
-
-
-def _example(word: str, key: Key) -> str:
-    line = key.line(word.rpartition(".")[2])
-    return line and f"`{line}`"
+def _absent(keys: Keys, word: str) -> str:
+    return without(keys, word) if word in keys else ""
 
 
 def _command(name: str) -> str:

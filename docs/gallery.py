@@ -49,6 +49,7 @@ TEACHING = {
 """Shipped machine -> the picture that teaches most of it."""
 BEST = {
     "bearing-loads": "gas-engine",
+    "campbell": "torsional-damper",
     "card-volume": "compressor",
     "effort": "waterworks-two-cranks",
     "flow": "triplex-pump",
@@ -101,8 +102,7 @@ def page() -> str:
     """Return the page of the gallery."""
     blocks = [
         "# Gallery",
-        "Every picture that `kurbel plot` draws, of machines that come with kurbel; `--list` says which "
-        "of them a machine has. Written by `pytest --rewrite tests/pictures/test_gallery.py`.",
+        "Every picture that `kurbel plot` draws, of machines that come with kurbel; `--list` lists those of a machine.",
     ]
     for id, machine in shown():
         one = _DECLARED[id]

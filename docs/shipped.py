@@ -33,8 +33,8 @@ _ROUNDING = 1e-9
 
 _HEAD = """# Machines that come with kurbel
 
-`kurbel example` lists them, `kurbel example NAME > engine.yaml` takes one as a pattern. Each begins with a comment that
-says where its figures come from and what it is good for.
+`kurbel example` lists them, `kurbel example NAME > engine.yaml` copies one. Each begins with a comment on the source of
+its figures and on what it shows; figures that the source prints are under `expect`, which `kurbel check` compares.
 """
 
 

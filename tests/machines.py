@@ -47,11 +47,6 @@ def single_acting(
     )
 
 
-def bore_of_area(area: float) -> float:
-    """Bore in m of a piston of this area in m²."""
-    return math.sqrt(4 * area / math.pi)
-
-
 def largest_velocity(mechanism: Mechanism) -> Extreme:
     """The largest velocity over ω in m, and its crank angle."""
     found = one_cylinder(mechanism, rpm=60 / math.tau).motion.c_max

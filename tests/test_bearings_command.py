@@ -72,9 +72,3 @@ def test_three_throws_cannot_be_overhung() -> None:
     shaft = SHAFT.replace("b: 400 mm", "b: 1200 mm\n  overhung: true")
     text = " ".join(run("bearings", "-", "--key-values", text=THREE + shaft).stdout.split())
     assert "main bearings 3 throws cannot all be overhung; a shaft has two ends" in text
-
-
-def test_a_machine_without_loads_is_refused() -> None:
-    result = run("bearings", "-", text="crank: 100 mm\nrod: 500 mm\n")
-    assert result.exit_code == 2
-    assert "no load on any bearing" in result.stderr

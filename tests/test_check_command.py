@@ -325,23 +325,6 @@ def test_findings_stand_at_the_name_as_it_is_written() -> None:
     assert [(one["line"], one["column"], one["severity"]) for one in found] == [(5, 10, "error")]
 
 
-@pytest.mark.parametrize(
-    ("figures", "message"),
-    [
-        ("limits: {MP.T_max: 1 N}", "5:10: limits.MP.T_max: no cylinder is called 'MP'; there are machine, HP, LP"),
-        ("expect: {machin.T_max: 1 N ± 1 %}", "no cylinder is called 'machin'; did you mean 'machine'?"),
-        ("limits: {HP.T_mx: 1 N}", "unknown key value 'HP.T_mx'"),
-        ("limits: {HP.phi_reversal: 1 deg}", "is a list of values"),
-        ("limits: {HP.A_head: 1 m2, HP.A_H: 1 m2}", "'HP.A_H' is the symbol of HP.A_head, which is given already"),
-        ("limits: {HP.delta: 1/50}", "limits.HP.delta: HP has no delta"),
-        ("limits: {machine.c_max: 1 m/s}", "limits.machine.c_max: the whole machine has no c_max"),
-    ],
-)
-def test_what_nobody_has_is_refused(figures: str, message: str) -> None:
-    status, told = of_two(figures, "check")
-    assert (status, message in told) == (2, True), told
-
-
 def test_no_cylinder_is_called_machine() -> None:
     with pytest.raises(KurbelError, match=r"cylinders\[0\]\.name: 'machine' means the whole machine"):
         loads(TWO.replace("HP", "machine"))
@@ -371,3 +354,11 @@ def test_check_lists_what_pumps_and_compressors_deliver() -> None:
         assert status == 0
         assert all(one in out for one in listed), out
     assert "Delivery" not in run(engine, "check")[1]
+
+
+def test_shipped_machines_keep_their_limits_and_the_figures_that_their_sources_print() -> None:
+    result = CliRunner().invoke(kurbel, ["check", "-f", "json", *map(str, CONFIGS.values())])
+    assert result.exit_code == 0, result.output
+    messages = [(Path(one["file"]).stem, one["message"]) for one in json.loads(result.stdout)["findings"]]
+    compared = {name for name, message in messages if ", expected " in message}
+    assert compared == {"waterworks", "waterworks-two-cranks", "locomotive", "gas-engine"}

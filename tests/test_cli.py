@@ -189,23 +189,3 @@ def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
     shipped = (Path(__file__).parent.parent / "configs" / "waterworks.yaml").read_bytes()
     assert CliRunner().invoke(kurbel, ["example", "waterworks"]).stdout_bytes == shipped
     assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped
-
-
-@pytest.mark.parametrize(
-    ("line", "way_out"),
-    [
-        ("help", "'kurbel --help'"),
-        ("calculate", "'kurbel forces FILE'"),
-        ("forces waterworks", "'kurbel example waterworks > waterworks.yaml'"),
-        ("table 4", "'kurbel table --ratio 4'"),
-        ("keys presure", "pressure"),
-        ("forces configs/waterworks.yaml --columns pressure", "it is in the sentences of p_head"),
-    ],
-)
-def test_what_strangers_type_ends_with_the_line_to_type(
-    line: str, way_out: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(Path(__file__).parents[1])
-    done = CliRunner().invoke(kurbel, line.split())
-    assert done.exit_code == 2
-    assert way_out in " ".join(done.stderr.split())

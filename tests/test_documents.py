@@ -22,9 +22,13 @@ import pytest
 from click.testing import CliRunner
 
 import from_declarations  # docs/from_declarations.py
+import notebook  # docs/notebook.py
+import python_reference  # docs/python_reference.py
 import shipped  # docs/shipped.py
+import validation  # docs/validation.py
 from kurbel.cli import kurbel
 from representative import law_of_each
+from worked_examples import TABLE
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
@@ -128,12 +132,11 @@ def test_python_of_a_page(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.failed == 0
 
 
-def test_the_readme_has_commands() -> None:
-    assert len(COMMAND.findall(text_of(README))) >= 4
-
-
 GENERATED = {
     "machines.md": shipped.page,
+    "validation.md": validation.page,
+    "notebook.md": notebook.page,
+    "reference/python.md": python_reference.page,
     "reference/keys.md": from_declarations.keys,
     "reference/units.md": from_declarations.units,
     "reference/columns.md": from_declarations.columns,
@@ -148,6 +151,16 @@ GENERATED = {
 def test_a_generated_page_is_current(name: str, kept: Callable[[Path, str], str]) -> None:
     text = GENERATED[name]()
     assert kept(ROOT / "docs" / name, text) == text
+
+
+def test_the_page_of_validation_has_every_example() -> None:
+    page = text_of(ROOT / "docs" / "validation.md")
+    assert [example for example in TABLE if f"| {example} |" not in page] == []
+
+
+def test_no_page_begins_with_a_note_for_its_makers() -> None:
+    begins = {named(page): text_of(page)[:500] for page in PAGES}
+    assert [page for page, text in begins.items() if re.search(r"pytest|edit by hand|writes this page", text)] == []
 
 
 # links of the pages beside the site (README and its like) lead to files and headings that there are

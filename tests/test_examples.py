@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -27,26 +25,6 @@ FITS: dict[str, Callable[[Machine], bool]] = {
         and not any(one.mechanism.quick_return for one in machine.cylinders)
     ),
 }
-MECHANISM_OF = {
-    "shaper": "slotted-lever",
-    "crank-rocker": "four-bar",
-    "scotch-yoke-pump": "scotch-yoke",
-    "coupled-axle": "parallel-crank",
-    "yoke-frame-pump": "yoke-frame",
-    "offset-engine": "slider-crank",
-}
-
-
-def answer(command: str, name: str, *more: str) -> dict[str, Any]:
-    path = next(path for path in SHIPPED if path.stem == name)
-    result = CliRunner().invoke(kurbel, [command, str(path), "-f", "json", *more])
-    assert result.exit_code == 0, result.output
-    parsed: dict[str, Any] = json.loads(result.stdout)
-    return parsed
-
-
-def key_values(parsed: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    return {one["id"]: one for one in parsed["cylinders"][0]["key_values"]}
 
 
 EACH = [(command, path) for command in FITS if command in COMMANDS for path in SHIPPED]
@@ -72,10 +50,3 @@ def test_it_runs(command: str, path: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     assert "nan" not in result.stdout
     assert len(result.stdout.splitlines()) > 5
-
-
-@pytest.mark.parametrize("name", MECHANISM_OF)
-def test_every_mechanism_has_its_machine(name: str) -> None:
-    (cylinder,) = load(next(path for path in SHIPPED if path.stem == name)).cylinders
-    assert cylinder.mechanism.name == MECHANISM_OF[name]
-    assert key_values(answer("forces", name))["energy_residual"]["value"] == pytest.approx(0, abs=1e-14)

@@ -139,6 +139,14 @@ def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> No
     assert "this machine has no delta: coefficient" in str(error)
 
 
+@pytest.mark.parametrize(("load", "says"), [(150, "50 N m less resistance"), (50, "50 N m more resistance")])
+def test_a_resistance_of_another_mean(load: int, says: str) -> None:
+    effort = "effort: {unit: N m, points: [[0, 0], [180, 200], [360, 0]]}"
+    load_ = f"load: {{unit: N m, points: [[0, {load}], [360, {load}]]}}"
+    text = f"{{speed: 60 rpm, flywheel: {{inertia: 10 kg m2}}, {effort}, {load_}}}"
+    assert says in run(text, "--key-values").stdout
+
+
 def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None:
     text = ENGINE + "flywheel: {fluctuation: 0.1}\n"
     exact = values(text)["J_exact"]
@@ -194,21 +202,6 @@ def test_a_speed_against_the_kinetic_energy() -> None:
     )
     wanted = math.sqrt(slowest**2 + 2 * 80 * (1 - math.cos(math.radians(50))) / J)
     assert angles_of(f"omega = {wanted!r} rad/s") == pytest.approx([50, 310], rel=1e-11)
-
-
-@pytest.mark.parametrize(
-    ("condition", "status", "message"),
-    [
-        ("M = 1 kN m", 3, "M is nowhere 1 kN m"),
-        ("T = 0", 2, "'T' is left out for this machine"),
-        ("b = 0", 2, "'b' is no column"),
-        ("M = 1 mm", 2, "neither a unit nor a key value of this kind"),
-        ("M", 2, "expected a column and a value"),
-    ],
-)
-def test_what_cannot_be_asked(condition: str, status: int, message: str) -> None:
-    result = asked(condition)
-    assert (result.exit_code, message in result.stderr) == (status, True), result.stderr
 
 
 STAGES = """

@@ -72,21 +72,6 @@ def test_check_tells_that_the_crosshead_locks_itself() -> None:
     assert result.stdout.count("PASS") == 2
 
 
-def test_an_absent_column_is_told_with_those_that_are_there() -> None:
-    result = run(
-        "forces",
-        "-",
-        "--columns",
-        "N,D",
-        text="mechanism: slotted-lever\ncrank: 100 mm\nframe: 250 mm\nlever: 600 mm\nram_force: {work: 1 kN}\n",
-    )
-    assert result.exit_code == 2
-    assert (
-        "'N' is left out for this machine, which has phi (φ), z, x, theta (θ), P_ram (P_r), P, F_pin (F_z), D, T, M"
-        in result.stderr.replace("\n", " ")
-    )
-
-
 @pytest.mark.parametrize("command", ["motion", "forces"])
 def test_a_shaper_has_no_piston(command: str) -> None:
     """Its largest force was called that of a piston; what drives a pump by the same lever still has one."""

@@ -58,21 +58,3 @@ def test_limits() -> None:
     assert forces(locked)["P_up"][1] is None
     assert locked["machine_left_out"][0]["what"] == "P_1/Q horizontal"
     assert forces(answer(20, 0.0))["P_up"] == forces(answer(20, 0.0))["P_held"]
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("90", "0.1"), "--incline 90: a plane is inclined by 0 to less than 90 degrees"),
-        (("-5", "0.1"), "--incline -5: a plane is inclined"),
-        (("30", "-0.1"), "--coefficient -0.1: a coefficient of friction is not negative"),
-        (
-            ("30", "0.1", "--direction", "70"),
-            "--direction 70: must be more than -90 and less than 60 degrees above the",
-        ),
-    ],
-)
-def test_refused(words: tuple[str, ...], message: str) -> None:
-    found = run("--incline", words[0], "--coefficient", *words[1:])
-    assert found.exit_code == 2
-    assert message in " ".join(found.stderr.split())

@@ -9,7 +9,7 @@ import pytest
 
 import kurbel as api
 from command import run
-from kurbel.errors import KurbelError, UsageError
+from kurbel.errors import KurbelError
 from kurbel.machine_file.reader import read_machine
 from kurbel.machine_file.source import decode
 
@@ -84,14 +84,6 @@ def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
     assert rows[2][-1].startswith("rod: 300 mm is shorter than the crank (400 mm)")
     for row in (1, 3):
         assert float(rows[row][3]) == pytest.approx(1.6 * float(rows[row + 3][3]), rel=1e-14)
-
-
-def test_a_case_that_there_is_not(pump: Path) -> None:
-    with pytest.raises(UsageError, match="no such load case; did you mean 'full speed'"):
-        api.load(pump, case="full sped")
-    with pytest.raises(UsageError, match="the file has no 'cases'"):
-        api.load("configs/waterworks.yaml", case="full speed")
-    assert "--cases: the file has no 'cases'" in run("sweep", "configs/waterworks.yaml", "--cases").stderr
 
 
 def test_cases_that_are_no_list_are_not_called_missing(tmp_path: Path) -> None:

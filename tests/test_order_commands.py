@@ -94,38 +94,6 @@ def test_a_shaft_line_alone() -> None:
         assert run(command, "-", text=TWO).exit_code == 2
 
 
-REFUSED = [
-    (
-        "harmonics",
-        BLOWER,
-        ("--orders", "0.5"),
-        "--orders 0.5: the cycle repeats after 360 degrees and has the orders",
-    ),
-    ("torsion", BLOWER, ("--orders", "0"), "--orders 0: an order is more than 0 and at most 1000"),
-    ("torsion", BLOWER, ("--orders", "1,x"), "expected a number, got 'x'"),
-    ("torsion", BLOWER, ("--mode", "2"), "--mode 2: the shaft line has the modes 1 to 1"),
-    ("torsion", BLOWER, ("--speeds", "100"), "100 has no unit; write it with one, such as '100 rpm'"),
-    ("torsion", BLOWER, ("--speeds", "x rpm"), "expected a number with its unit"),
-    ("torsion", BLOWER, ("--speeds", "0 rpm"), "a speed is more than 0"),
-    ("torsion", BLOWER, ("--speeds", "200:100:5 rpm"), "write from, to and step as '300:1500:10 rpm'"),
-    ("torsion", BLOWER, ("--speeds", "1:2:1e-9 rpm"), "more than 10000 steps; take larger ones"),
-    ("torsion", BLOWER, ("--orders", "1:12"), "'1:12': write from, to and step as '0.5:12:0.5'"),
-    ("torsion", BLOWER, ("--orders", "1:12:-1"), "'1:12:-1': write from, to and step as '0.5:12:0.5'"),
-    ("motion", BLOWER, ("--angles", "0:360:1e-9"), "more than 10000 steps; take larger ones"),
-    ("torsion", BLOWER, ("--speeds", "1e200 rpm"), "is too large to compute with"),
-    ("torsion", BLOWER, ("--columns", "tau"), "'tau' is left out for this machine"),
-    ("torsion", str(CONFIGS / "waterworks.yaml"), (), "no 'shaft' is given; write its masses"),
-    ("harmonics", BLOWER, ("--set", "speed=0 rpm", "--speeds", "5 rpm"), "--speeds: the inertia forces are scaled"),
-]
-
-
-@pytest.mark.parametrize(("command", "file", "options", "message"), REFUSED)
-def test_what_is_refused(command: str, file: str, options: tuple[str, ...], message: str) -> None:
-    result = run(command, file, *options)
-    assert message in " ".join(result.stderr.split())
-    assert (result.exit_code, result.stdout) == (2, "")
-
-
 def test_a_cylinder_without_any_inertia_is_refused() -> None:
     text = "crank: 100 mm\nrod: 400 mm\n" + TWO.replace("inertia: 2 kg m2", "cylinder: cylinder 1", 1)
     result = run("torsion", "-", text=text)

@@ -181,7 +181,7 @@ def test_help_names_the_statuses(command: str) -> None:
     assert said.startswith("0 done; ")
     assert all(f" {status} " in said for status in (2, 70, 130))
     assert (" 1 " in said) == (command in ("", "check", "accuracy"))
-    solved = (
+    solved = [
         "forces",
         "flywheel",
         "stress",
@@ -193,7 +193,7 @@ def test_help_names_the_statuses(command: str) -> None:
         "find",
         "check",
         "accuracy",
-    )
+    ]
     assert (" 3 " in said) == (command in ("", *solved))
 
 

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from kurbel import loads
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, UsageError
-from kurbel.machine import Cylinder, Machine
-from kurbel.machine.parts import Masses
 from kurbel.mechanisms import Mechanism
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.report.frame import Frame
 from kurbel.report.whole import report_of
-from kurbel.solver.case import Case
 from representative import case_of
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -27,16 +22,6 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
     members |= {"coordinate": None, "slope": None, "curvature": None}
     with pytest.raises(UsageError, match=rf"mechanism Half does not define {missing}$"):
         type("Half", (Mechanism,), {name: value for name, value in members.items() if name != missing})
-
-
-def test_weight_on_the_guide_of_an_inclined_yoke() -> None:
-    """There is no connecting rod, but the yoke lies on its guide: m g cos 30°."""
-    for inclination, weight in ((30.0, 100 * 9.80665 * np.sqrt(3) / 2), (None, None)):
-        cylinder = Cylinder(ScotchYoke(0.2), masses=Masses(100.0), inclination=inclination)
-        forces = Case(Machine((cylinder,), speed=1.0)).cylinders[0]
-        found = forces.at([0.0, 77.0]).N
-        assert found is None if weight is None else found == pytest.approx([weight] * 2, rel=1e-14)
-        assert forces.at([0.0]).S is None
 
 
 # printed symbols as names

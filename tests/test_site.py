@@ -20,24 +20,8 @@ from kurbel.quantities import every_quantity
 from kurbel.report.keys import every_place
 
 ROOT = Path(__file__).parent.parent
-WIDTHS = (360, 768, 1280)
-HARNESS = """<!doctype html><html><body><pre id="found">waiting</pre><script>
-const pages = PAGES, widths = WIDTHS, found = [];
-async function look(page, width) {
-  const frame = document.createElement("iframe");
-  frame.sandbox = "allow-same-origin";  // looked at as it is laid out, without its scripts
-  frame.style.width = width + "px"; frame.style.height = "800px"; frame.style.border = "0";
-  const loaded = new Promise(done => frame.onload = done);
-  frame.src = page; document.body.append(frame); await loaded;
-  const root = frame.contentDocument.documentElement;
-  if (root.scrollWidth > width) found.push([page, width, root.scrollWidth]);
-  frame.remove();
-}
-(async () => {
-  for (const page of pages) for (const width of widths) await look(page, width);
-  document.getElementById("found").textContent = JSON.stringify(found);
-})();
-</script></body></html>"""
+WIDTHS = (360, 1000, 1400)
+HARNESS = Path(__file__).with_name("site_harness.html").read_text("utf-8")
 
 pytestmark = [
     pytest.mark.slow,

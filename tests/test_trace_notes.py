@@ -119,74 +119,60 @@ def obeyed(note: str, keys: str, pressures: str, cycle: str) -> tuple[str, str, 
     return (keys, pressures, value) if key == "cycle" else (f"{keys}, {key}: {value}", pressures, cycle)
 
 
-WRONG: dict[str, tuple[Any, Any, str, str, str]] = {
-    "90 deg late": (FINE, late(90), "", "absolute", "the peak is 103.6 deg after the firing dead centre"),
-    "180 deg late": (FINE, late(180), "", "absolute", "in the gas exchange: write 'angle_zero: 180 deg'"),
-    "one turn late": (FINE, late(360), "", "absolute", "write 'angle_zero: 360 deg'; p_i stays"),
-    "by no quarter": (FINE, late(61.2), "", "absolute", "the peak is 74.8 deg after the firing dead centre"),
-    "gauge as absolute": (FINE, late(0) - AMBIENT, "", "absolute", "these look like gauge pressures"),
-    "absolute as gauge": (FINE, late(0), "", "gauge", "about the ambient: absolute?"),
-    "ten times": (FINE, late(0) * 10, "", "absolute", "pressures 10 times too large? mend 'unit', or write"),
-    "hundred times": (FINE, late(0) * 100, ", clearance: 1/14", "absolute", "100 times too large"),
-    "a tenth": (FINE, late(0) / 10, "", "absolute", "10 times too small"),
-    "a tenth, gauge": (FINE, (late(0) - AMBIENT) / 10, "", "gauge", "10 times too small"),
-    "backward": (FINE, absolute(ENGINE, -FINE), "", "absolute", "does its angle count against the rotation?"),
-    "on its head": (FINE, AMBIENT - late(0), "", "gauge", "is it inverted? write 'scale: -1'"),
-    "no level": (FINE, late(0) - 7.3, "", "absolute", "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
-    "drift": (FINE, late(0) + 3 * FINE / 720, "", "absolute", "the pressure jumps by -2.9"),
-    "drift of 1 bar": (FINE - 360, late(360) + FINE / 720, "", "absolute", "the pressure jumps by -1"),
-    "drift in noise": (
-        FINE,
-        cycles(ENGINE, 1, 0.4, noise=0.1)[1][0] + 3 * FINE / 720,
-        ", clearance: 1/14",
-        "absolute",
-        "does the sensor drift?",
-    ),
-    "half degrees on whole ones": (
-        np.floor(np.arange(0.0, 720.0, 0.5)),
-        absolute(ENGINE, np.arange(0.0, 720.0, 0.5)),
-        "",
-        "absolute",
+def wrong(
+    samples: Any, said: str, keys: str = "", pressures: str = "absolute", angles: Any = FINE
+) -> tuple[Any, Any, str, str, str]:
+    return angles, samples, keys, pressures, said
+
+
+HALVES, SUNK = np.arange(0.0, 720.0, 0.5), late(0) - AMBIENT
+UNIT = "times too small? mend 'unit' (unit: bar fits)"
+CLEARED = ", clearance: 1/14"
+WRONG = {
+    "90 deg late": wrong(late(90), "the peak is 103.6 deg after the firing dead centre"),
+    "180 deg late": wrong(late(180), "in the gas exchange: write 'angle_zero: 180 deg'"),
+    "one turn late": wrong(late(360), "write 'angle_zero: 360 deg'; p_i stays"),
+    "by no quarter": wrong(late(61.2), "the peak is 74.8 deg after the firing dead centre"),
+    "gauge as absolute": wrong(SUNK, "these look like gauge pressures"),
+    "absolute as gauge": wrong(late(0), "about the ambient: absolute?", pressures="gauge"),
+    "ten times": wrong(late(0) * 10, "pressures 10 times too large? mend 'unit', or write"),
+    "hundred times": wrong(late(0) * 100, "100 times too large", CLEARED),
+    "a tenth": wrong(late(0) / 10, "10 times too small"),
+    "a tenth, gauge": wrong(SUNK / 10, "10 times too small", pressures="gauge"),
+    "backward": wrong(absolute(ENGINE, -FINE), "does its angle count against the rotation?"),
+    "on its head": wrong(-SUNK, "is it inverted? write 'scale: -1'", pressures="gauge"),
+    "no level": wrong(late(0) - 7.3, "the perfect vacuum being at 0 bar; write 'pegging: ambient'"),
+    "drift": wrong(late(0) + 3 * FINE / 720, "the pressure jumps by -2.9"),
+    "drift of 1 bar": wrong(late(360) + FINE / 720, "the pressure jumps by -1", angles=FINE - 360),
+    "drift in noise": wrong(cycles(ENGINE, 1, 0.4, noise=0.1)[1][0] + FINE / 240, "does the sensor drift?", CLEARED),
+    "half degrees on whole ones": wrong(
+        absolute(ENGINE, HALVES),
         "samples have the angle of the one before: rounded angles? write 'angle_step: 0.5 deg'",
+        angles=np.floor(HALVES),
     ),
-    "dead centre": (FINE, late(-6), ", clearance: 1/14", "absolute", "its compression goes by p V^1."),
-    "level": (FINE, late(0) - 0.5, ", clearance: 1/14", "absolute", "its compression goes by p V^1.5"),
-    "marks of one turn as degrees": (
-        np.tile(np.arange(720), 8),
+    "dead centre": wrong(late(-6), "its compression goes by p V^1.", CLEARED),
+    "level": wrong(late(0) - 0.5, "its compression goes by p V^1.5", CLEARED),
+    "marks of one turn as degrees": wrong(
         cycles(ENGINE, 4, 0.5, noise=0.05)[1].ravel(),
-        "",
-        "absolute",
         "does the angle number the samples of one turn? write 'angle_step: 0.5 deg'",
+        angles=np.tile(np.arange(720), 8),
     ),
-    "an injector": (
-        FINE,
+    "an injector": wrong(
         np.column_stack((np.where((FINE > 708) & (FINE < 718), 18.5, 0.02), late(0))),
-        "",
-        "absolute",
         "column 2 is flat over 99% of the cycle, but for a pulse with upright sides",
     ),
-    "closing sample": (
-        np.append(FINE, 720.0),
+    "closing sample": wrong(
         np.append(late(0), late(0)[0] + 3),
-        "",
-        "absolute",
         "and comes back to it just before: leave that sample out",
+        angles=np.append(FINE, 720.0),
     ),
-    "pegged at its peak": (
-        FINE,
+    "pegged at its peak": wrong(
         late(0),
-        ", pegging: {angle: 10 deg, pressure: 0.95 bar}",
-        "absolute",
         "the perfect vacuum being at 0 bar; mend 'pegging'; p_i stays",
+        ", pegging: {angle: 10 deg, pressure: 0.95 bar}",
     ),
-    **{
-        f"{unit} meant as bar, {pressures}": (
-            *(FINE, late(0) - lift, f"{RATIO}, unit: {unit}", pressures),
-            "times too small? mend 'unit' (unit: bar fits)",
-        )
-        for unit in ("Pa", "psi")
-        for pressures, lift in (("absolute", 0.0), ("gauge", AMBIENT))
-    },
+    **{f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}") for unit in ("Pa", "psi")},
+    **{f"{unit} meant as bar, gauge": wrong(SUNK, UNIT, f"{RATIO}, unit: {unit}", "gauge") for unit in ("Pa", "psi")},
 }
 NO_KEY = "an injector", "closing sample", "pegged at its peak", "psi meant as bar, absolute", "psi meant as bar, gauge"
 """Faults whose way out is no key with a value that the note could name."""

@@ -24,7 +24,7 @@ def path_text(path: Path) -> str:
 
 
 class KurbelError(Exception):
-    """Root of all errors that a user can cause; `exit_status` is what the command line answers with."""
+    """Root of all errors that a user can cause; `exit_status` is that of the command line."""
 
     exit_status = 2
 

@@ -11,7 +11,7 @@ attribute is computed on first use. The rows of a class are printed in the order
 
 from __future__ import annotations
 
-import inspect
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import partial
 from typing import Any, Generic, NamedTuple, TypeVar, overload
@@ -29,6 +29,7 @@ GREEK = {
 }  # fmt: skip
 """Sign of a symbol -> what stands for it where the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
+_FIRST_WORDS = re.compile(r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)")
 _ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
     "max": ("Largest", lambda extremes: extremes.largest),
     "min": ("Smallest", lambda extremes: extremes.smallest),
@@ -51,6 +52,7 @@ class Quantity(NamedTuple):
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
     `on_request`: the commands that print it only where it is requested by name.
     `wanted_large`: a bound on it is one from below, as on every smallest value.
+    `heading`: of the key values among which it is listed for people; see `Heading`.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
     """
 
@@ -71,6 +73,17 @@ class Quantity(NamedTuple):
     gauge: bool = False
     mark: str = ""
     group: str = ""
+    heading: str = ""
+
+    @property
+    def short(self) -> str:
+        """Two or three words for axes and legends: what it is called, or the first words of its sentence.
+
+        >>> Quantity("M", "M", "torque", "Torque on the shaft").short
+        'torque'
+        """
+        first = _FIRST_WORDS.match(self.text)
+        return self.called or (first.group().strip() if first else self.text).lower()
 
     @property
     def bounded_below(self) -> bool:
@@ -127,7 +140,10 @@ class Quantity(NamedTuple):
 
 
 def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities in order; several with one place to stand `after` keep theirs among them."""
+    """Return the quantities in order; several with one place to stand `after` keep theirs among them.
+
+    One without a heading has that of the one before it.
+    """
     given = tuple(declared)
     ordered = [one for one in given if not one.after]
     for one in given:
@@ -135,7 +151,7 @@ def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
             place = [other.id for other in ordered].index(one.after) + 1
             while place < len(ordered) and ordered[place].after == one.after:
                 place += 1
-            ordered.insert(place, one)
+            ordered.insert(place, one._replace(heading=one.heading or ordered[place - 1].heading))
     return tuple(ordered)
 
 
@@ -223,6 +239,10 @@ class Row(NamedTuple):
     of: Callable[[Any], Any]
     unless: Condition | None = None
 
+    def under(self, heading: str) -> Row:
+        """Return it under a heading, if its quantity has none of its own."""
+        return self if self.quantity.heading else self._replace(quantity=self.quantity._replace(heading=heading))
+
     def through(self, part: Callable[[Any], Any]) -> Row:
         """Return the same quantity for results of which these are a part, None where they have no such part."""
 
@@ -236,6 +256,12 @@ class Row(NamedTuple):
 
 ITS_OWN = ("those of its class",)
 """Commands of a quantity that does not say which."""
+
+
+class Heading(NamedTuple):
+    """In a class of results: the heading of the key values that are defined after it, up to the next one."""
+
+    text: str
 
 
 class Computed(Generic[V]):
@@ -279,7 +305,7 @@ def key_value(
     """
 
     def made(function: Callable[[Any], V]) -> Computed[V]:
-        text = " ".join(inspect.cleandoc(function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+        text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
         return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
 
     return made
@@ -351,7 +377,10 @@ def in_order(rows: Iterable[Row]) -> dict[str, Row]:
     found: dict[str, Row] = {}
     for row in rows:
         found.setdefault(row.quantity.id, row)
-    return {quantity.id: found[quantity.id] for quantity in placed(row.quantity for row in found.values())}
+    return {
+        quantity.id: found[quantity.id].under(quantity.heading)
+        for quantity in placed(row.quantity for row in found.values())
+    }
 
 
 def printed_by(rows: Iterable[Row], *commands: str) -> Iterator[Row]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import re
@@ -19,8 +17,6 @@ from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
 from kurbel.accuracy.trials import data_errors, model_errors
 from kurbel.cli import kurbel
-from kurbel.render import Look
-from kurbel.render.drawing import draw_file
 from kurbel.report import accuracy
 from kurbel.report.accuracy import accuracy_picture
 from kurbel.report.tables import Column, Part, PlaceTable, Report
@@ -114,15 +110,6 @@ def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engi
     assert min(data) > 1e6 * max(own)
 
 
-def test_csv_has_one_head_for_all_sections(formatted: Callable[..., bytes]) -> None:
-    rows = list(csv.DictReader(io.StringIO(formatted("-f", "csv").decode())))
-    assert {row["table"] for row in rows} == {"numerical_error", "model_error", "data_error", "leaving_out"}
-    assert all(row["scene"] == "engine" for row in rows)
-    numerical = [row for row in rows if row["table"] == "numerical_error"]
-    assert all(float(row["median_ms"]) > 0 and float(row["error"]) >= 0 for row in numerical)
-    assert all(row["cause"] == "" for row in numerical)
-
-
 def test_a_mechanism_without_a_reference_says_so() -> None:
     machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
     result = run("-", "--quick", machine=machine)
@@ -167,21 +154,6 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
     assert [curve.name.symbol for curve in c.curves if curve.kind == "dots"] == ["kurbel"]
 
 
-def test_picture_is_drawn_the_same_every_time(tmp_path: Path) -> None:
-    for name in ("a.svg", "b.svg"):
-        draw_file([accuracy_picture(TWO_SCENES)], Look(), str(tmp_path / name))
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-    svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
-    assert ">book</text>" in svg
-
-
-def test_the_picture_of_the_docs_is_small() -> None:
-    folder = Path(__file__).parent.parent.parent / "docs"
-    assert (folder / "accuracy.svg").stat().st_size <= 60_000
-    text = (folder / "accuracy.svg").read_text(encoding="utf-8")
-    assert all(f">{quantity}</text>" in text for quantity in ("x", "c", "b", "A_i", "T_max, T_min", "A_f", "ΔE"))
-
-
 def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
     result = run("-", "--quick", "--plot", str(tmp_path / "no folder" / "picture.svg"))
     assert result.exit_code == 2
@@ -200,18 +172,6 @@ def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatc
     assert "FAILED" in result.stdout
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases[:1])
     assert run("--extremes").exit_code == 0
-
-
-def test_extremes_take_no_machine() -> None:
-    result = run("-", "--extremes")
-    assert result.exit_code == 2
-    assert "--extremes has its own machines" in result.stderr
-
-
-def test_ascii_output(formatted: Callable[..., bytes]) -> None:
-    printed = formatted(charset="ascii")
-    assert b"dE " in printed
-    assert b"?" not in printed
 
 
 IDLE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
 
-from imported import modules_after
 from kurbel.accuracy import trials
-from kurbel.accuracy.trials import Trial, better, by_fit, by_gauss, equidistant, errors, examined, float_roots, savings
+from kurbel.accuracy.trials import Trial, better, errors, examined, savings
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
@@ -60,43 +56,6 @@ def test_evaluations_are_counted(rows: list[Trial]) -> None:
     assert used["c", "Chebyshev fit", "32"] == 33
     assert 3600 <= used["A_i", "trapezium rule", "3600"] < 3700
     assert 16 < used["T_max, T_min", "kurbel", "roots of T′"] < 1000
-
-
-def of_pieces(x: Any, at: Any) -> Any:
-    """A polynomial on 0 … 1 and another on 1 … 3; angles in degrees."""
-    return np.where(np.asarray(at) < 1, x**7, 5 - x**3)
-
-
-@pytest.mark.parametrize("method", [by_gauss, by_fit])
-def test_methods_are_exact_for_polynomials_of_each_piece(method: Callable[..., Any]) -> None:
-    edges = np.array([0.0, 1.0, 3.0])
-    assert method("A_i", of_pieces, edges, 8) == pytest.approx(math.radians(1 / 8 + 10 - 20))
-    assert np.array(method("T_max, T_min", of_pieces, edges, 16)) == pytest.approx([4.0, -22.0])
-    wave = method("ΔE", lambda x, _: 7 + np.sin(np.radians(x)), np.array([0.0, 90.0, 180.0, 360.0]), 16)
-    assert wave == pytest.approx(2.0)
-
-
-def test_the_trapezium_rule_has_order_two_at_kinks() -> None:
-    """|sin φ| over a turn is 4; its swing about the mean is known from arcsin(2/π)."""
-    edges = np.array([0.0, 360.0])
-
-    def kinked(phi: Any, _: Any) -> Any:
-        return np.abs(np.sin(np.radians(phi)))
-
-    coarse, fine = (abs(equidistant("A_i", kinked, edges, count) - 4) for count in (36, 360))
-    assert math.log10(coarse / fine) == pytest.approx(2, abs=0.01)
-    first = math.asin(2 / math.pi)
-    swing = 2 * math.cos(first) - 2 / math.pi * (math.pi - 2 * first)
-    assert equidistant("ΔE", kinked, edges, 3600) == pytest.approx(swing, rel=1e-5)
-
-
-def test_roots_where_a_function_bends() -> None:
-    """A step of width 1e-9 is steep; a root at one of the steps of the search is found."""
-    edges = np.array([-1.0, 2.0])
-    found, _ = float_roots(lambda x, _: (x - 1 / 3) / (np.abs(x - 1 / 3) + 1e-9), edges, 24)
-    assert found == pytest.approx([1 / 3], abs=1e-12)
-    found, _ = float_roots(lambda x, _: x - 0.25, np.array([0.0, 1.0]), 4)
-    assert found == pytest.approx([0.25])
 
 
 def test_errors_of_arrays() -> None:
@@ -173,10 +132,3 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert found[0].ratio == 1.0
     bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
     assert bare == ["everything", "no speed either: positions alone"]
-
-
-def test_mpmath_belongs_to_accuracy_alone(tmp_path: Path) -> None:
-    bare = tmp_path / "bare.yaml"
-    bare.write_text(BARE, encoding="utf-8")
-    absent = ("kurbel.accuracy", "mpmath", "scipy", "matplotlib", "rich")
-    assert modules_after(["motion", str(bare)], ["forces", str(bare)]).isdisjoint(absent)

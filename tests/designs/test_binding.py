@@ -1,97 +1,55 @@
-"""Machines that are bound to a file by columns of texts are those that are read one by one, and fail as these do."""
+"""Keys on which others hang vary with them: each row of a sweep is the machine that is read with its values."""
 
 from __future__ import annotations
 
-import dataclasses
-import re
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pytest
 
-from kurbel.designs.binding import Binder
-from kurbel.errors import MachineFileError, path_text
-from kurbel.machine import Machine
-from kurbel.machine.batch import values_of
-from kurbel.machine.origin import Origin
-from kurbel.machine_file import source
-from kurbel.machine_file.reader import read_machine
+from kurbel import sweep
 
-
-def described(value: Any) -> Any:
-    """Everything that a record is made of, bit by bit, but for the file that it comes from."""
-    if isinstance(value, np.ndarray):
-        return value.tobytes()
-    if isinstance(value, tuple):
-        return tuple(map(described, value))
-    if dataclasses.is_dataclass(value):
-        return type(value), [(name, described(one)) for name, one in values_of(value).items() if name != "origin"]
-    return repr(value)
-
-
-def bound(file: Origin, keys: Sequence[str], start: Sequence[str], rows: Sequence[Sequence[str]]) -> dict[int, Any]:
-    """What becomes of every row: a machine, or why there is none."""
-    found = Binder(file, keys, start).bound(rows)
-    machines = {row: batch.one(place) for batch in found.batches for place, row in enumerate(batch.rows)}
-    return machines | found.failures
-
-
-def read(file: Origin, keys: Sequence[str], texts: Sequence[str]) -> Machine | str:
-    """The machine of a file with these values, or what is wrong with it."""
-    try:
-        return read_machine(file.set_over(f"{key}={text}" for key, text in zip(keys, texts)))
-    except MachineFileError as error:
-        faults = [f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in error.faults]
-        return "; ".join(re.sub(r" \(with --set .*\)$", "", one) for one in faults)
-
-
-def same(found: Any, wanted: Any) -> bool:
-    """Whether two machines are made of the same, or two failures tell the same, in whatever order."""
-    if isinstance(found, str) and isinstance(wanted, str):
-        return sorted(found.split("; ")) == sorted(wanted.split("; "))
-    return bool(described(found) == described(wanted))
-
-
-TWIN = """\
-cycle: four-stroke
-cylinders: {count: 3, bank_angles: [0 deg, 60 deg, 90 deg], each: {stroke: 80 mm, rod_ratio: 4}}
-"""
-PINS = TWIN.replace("bank_angles", "crank_positions")
-LISTED = "cycle: four-stroke\ncylinders: [{stroke: 8 m, rod_ratio: 4}, {like: cylinder 1, crank_position: 9 deg}]\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "key", "values"),
-    [
-        (TWIN, "cylinders.bank_angles.1", ("60 deg", "120 deg", "-60 deg", "359 deg", "0 deg", "90 deg")),
-        (TWIN, "cycle", ("two-stroke", "four-stroke")),
-        (TWIN, "cylinders.each.stroke", ("80 mm", "90 mm")),
-        (PINS, "cylinders.crank_positions.2", ("90 deg", "240 deg", "450 deg", "360 deg", "-30 deg")),
-        (LISTED, "cylinders.1.crank_position", ("0 deg", "90 deg", "450 deg")),
-    ],
-)
-def test_each_row_fires_in_its_own_turns(text: str, key: str, values: Sequence[str]) -> None:
-    file, rows = source.decode("m.yaml", text.encode()), [(value,) for value in values]
-    found = bound(file, (key,), rows[0], rows)
-    for row, texts in enumerate(rows):
-        assert same(found[row], read(file, (key,), texts)), texts
-
-
+EACH = "{stroke: 80 mm, rod_ratio: 4, bore: 70 mm, masses: {piston: 1 kg}, indicator: {head_end: {otto: %s}}}"
+EACH %= "{intake: 0 bar, exhaust: 0 bar, compression_ratio: 8, peak: 40 bar}"
+TWIN = "{speed: 600 rpm, cycle: %s, cylinders: {count: 3, %s: [0 deg, 60 deg, 90 deg], each: %s}}"
+BANKS, PINS = (TWIN % ("four-stroke", key, EACH) for key in ("bank_angles", "crank_positions"))
+LISTED = f"{{speed: 600 rpm, cycle: four-stroke, cylinders: [{EACH}, {{like: cylinder 1, crank_position: 9 deg}}]}}"
 LIKE = """
+speed: 60 rpm
 cylinders:
-  - {name: a, crank: 1 m, rod: 5 m, bore: 1 m, masses: {piston: 3 kg}}
+  - {name: a, crank: 1 m, rod: 5 m, bore: 1 m, indicator: {head_end: 3 bar}, masses: {piston: 3 kg}}
   - {name: b, like: a, crank_position: 90 deg, masses: {piston: 4 kg}}
   - {name: c, like: b, bore: 2 m, crank_position: 180 deg}
 """
 
 
+@pytest.mark.parametrize(
+    ("text", "inputs", "columns"),
+    [
+        (BANKS, {"cylinders.bank_angles.1": "60 deg,120 deg,-60 deg,359 deg,0 deg,90 deg"}, ["M_max", "dE"]),
+        (BANKS, {"cylinders.each.stroke": "80 mm,90 mm"}, ["M_max", "dE"]),
+        (PINS, {"cylinders.crank_positions.2": "90 deg,240 deg,450 deg,360 deg,-30 deg"}, ["M_max", "dE"]),
+        (LISTED, {"cylinders.1.crank_position": "0 deg,90 deg,450 deg"}, ["M_max", "dE"]),
+        (LIKE, {"cylinders.0.bore": "2 m,3 m,4 m", "cylinders.1.masses.piston": "5 kg,6 kg,-6 kg"}, ["P_max"]),
+    ],
+    ids=["bank angles", "stroke", "crank positions", "a crank position", "like another"],
+)
+def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, str], columns: Sequence[str]) -> None:
+    """What a bank angle leaves open, the turn in which a cylinder fires, each row decides for itself."""
+    rows = {key: values.split(",") for key, values in inputs.items()}
+    together = sweep(text, rows, columns)
+    for row in range(len(together["failure"])):
+        alone = sweep(text, {key: [values[row]] for key, values in rows.items()}, columns)
+        for name, values in together.items():
+            if name == "failure":
+                assert values[row] == alone[name][0]
+            else:
+                assert np.asarray(values[row]) == pytest.approx(np.asarray(alone[name][0]), rel=1e-12, nan_ok=True), (
+                    name
+                )
+
+
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
-    file = source.decode("m.yaml", LIKE.encode())
-    rows = [("2 m", "5 kg"), ("3 m", "6 kg"), ("4 m", "-6 kg")]
-    found = bound(file, ("cylinders.0.bore", "cylinders.1.masses.piston"), ("1 m", "4 kg"), rows)
-    for row in (0, 1):
-        assert same(found[row], read(file, ("cylinders.0.bore", "cylinders.1.masses.piston"), rows[row]))
-    assert [one.pistons[0].bore for one in found[1].cylinders] == [3.0, 3.0, 2.0]
-    assert [one.masses.parts for one in found[1].cylinders] == [3.0, 6.0, 6.0]
-    assert found[2].startswith("cylinders[1].masses.piston: -6 kg is too small")
+    found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
+    areas = [found[f"{name}.A_head"] for name in "abc"]
+    assert areas == [pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])]

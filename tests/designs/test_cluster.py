@@ -6,12 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from swept_rows import until_written
 
 distributed = pytest.importorskip("distributed")
 
@@ -61,9 +62,7 @@ def in_the_midst(cluster: Cluster, file: Path) -> subprocess.Popen[str]:
     cluster.add_workers(2)
     asked = [*SWEEP, "rod_ratio=3:6:0.0002", "--dask", cluster.address, "-o", str(file)]
     process = subprocess.Popen(asked, stderr=subprocess.PIPE, text=True)
-    part = file.with_name("rows.csv.part")
-    while process.poll() is None and not (part.exists() and part.stat().st_size > 1000):
-        time.sleep(0.01)
+    until_written(process, file.with_name("rows.csv.part"), 1000)
     return process
 
 

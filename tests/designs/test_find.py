@@ -88,25 +88,6 @@ def test_parts_of_the_range_that_fail_are_reported() -> None:
     assert len(found.found) == 1
 
 
-@pytest.mark.parametrize(
-    ("vary", "equations", "how", "message"),
-    [
-        ("stroke=600:1000 mm", [], {}, "give --vary"),
-        ("stroke=600:1000 mm", ["T_max = 1 kN", "N_max = 1 kN"], {}, "give --vary"),
-        ("stroke=600:1000", ["T_max = 1 kN"], {}, "has no unit"),
-        ("stroke=1000:600 mm", ["T_max = 1 kN"], {}, "write the smaller one first"),
-        ("stroke=600 mm", ["T_max = 1 kN"], {}, "write KEY=low:high"),
-        ("strok=600:1000 mm", ["T_max = 1 kN"], {}, "stroke"),
-        ("stroke=600:1000 mm", ["T_mux = 1 kN"], {}, "did you mean"),
-        ("stroke=600:1000 mm", ["T_max = 1"], {}, "unit"),
-        ("stroke=600:1000 mm", ["phi_reversal = 3 deg"], {}, "list"),
-    ],
-)
-def test_what_cannot_be_asked(vary: str, equations: list[str], how: dict[str, str], message: str) -> None:
-    with pytest.raises(UsageError, match=message):
-        found_in("waterworks", vary, *equations, **how)
-
-
 def test_nothing_found_ends_in_3_with_what_was_met() -> None:
     done = run("find", str(CONFIGS / "waterworks.yaml"), "--vary", "stroke=600:1000 mm", "T_max = 90 kN")
     assert done.exit_code == 3

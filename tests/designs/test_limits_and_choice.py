@@ -28,18 +28,6 @@ def test_a_limit_that_cannot_be_judged_is_not_kept() -> None:
     assert [(one["keeps"], one["failure"]) for one in judged] == [(False, None), (True, None)]
 
 
-@pytest.mark.parametrize(
-    ("limit", "message"),
-    [
-        ("swing=15 deg", "limits.swing: this machine has no swing"),
-        ("sigma_pin_max=15 N/mm2", "limits.sigma_pin_max: Waterworks engine, high-pressure side: no 'crankshaft'"),
-    ],
-)
-def test_a_limit_on_what_no_design_has(limit: str, message: str) -> None:
-    result = run("--vary", "rod_ratio=4,5", "--columns", "N_max", "--set", f"limits.{limit}")
-    assert (result.exit_code, message in result.output) == (2, True)
-
-
 def test_rows_are_chosen_by_their_texts() -> None:
     asked = (*RATIOS, "--columns", "N_max", "--set", "limits.N_max=20 kN")
     assert numbers(*asked, "--where", "keeps = yes") == [4, 5]
@@ -48,22 +36,6 @@ def test_rows_are_chosen_by_their_texts() -> None:
     assert numbers(*asked, "--where", "failure ≠") == [1]
     wrong = run(*RATIOS, "--where", "keep = yes", "--set", "limits.N_max=20 kN")
     assert "no column 'keep'; did you mean 'keeps'?" in wrong.output
-
-
-@pytest.mark.parametrize(
-    ("condition", "message"),
-    [
-        ("keeps < yes", "keeps has words, of which none is less than another; write = or !="),
-        ("rotation > over", "rotation has words, of which none is less than another"),
-        ("keeps = ja", "keeps is yes, no, or empty where a limit cannot be judged"),
-        ("N_max > 3", "3 has no unit; write it with one, such as '3 N'\n"),
-    ],
-)
-def test_conditions_that_are_none(condition: str, message: str) -> None:
-    """Letters have an order, which is none of designs: 'keeps < yes' kept what breaks limits, or failed."""
-    asked = ("--vary", "rotation=over,under", "--columns", "N_max", "--set", "limits.N_max=20 kN")
-    result = run(*asked, "--where", condition)
-    assert (result.exit_code, f"--where {condition}: {message}" in result.output) == (2, True)
 
 
 def test_an_infinite_rod_is_the_longest() -> None:

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ import pytest
 
 import kurbel
 from kurbel.designs import workers
-from swept_rows import CONFIGS, WATERWORKS, rows, run
+from swept_rows import CONFIGS, WATERWORKS, rows, run, until_written
 
 
 def test_rows_are_what_forces_tells_of_each() -> None:
@@ -149,8 +148,7 @@ def in_the_midst(file: Path, jobs: str) -> subprocess.Popen[str]:
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    while process.poll() is None and not (part(file).exists() and part(file).stat().st_size > 100):
-        time.sleep(0.05)
+    until_written(process, part(file), 100)
     return process
 
 
@@ -184,53 +182,6 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
     assert file.read_text() == "old"
     if suffix == "csv":
         assert part(file).read_text().startswith("row,rod_ratio,T_max_N,failure\n1,3.0,")
-
-
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (("--vary", "rod_ratoi=3,4"), "did you mean 'rod_ratio'"),
-        (("--vary", "rod_ratio=3:6:-1"), "never reaches 6"),
-        (("--vary", "rod_ratio=3,4; bore=400 mm"), "--vary rod_ratio; bore: the lists must be of one length;"),
-        (("--vary", "rod_ratio=3,4; bore=400,5 kg"), "kg is a unit of mass"),
-        (("--vary", "rod_ratio=3,4; bore"), "values are separated by commas; after ';' comes a further KEY=…"),
-        (("--vary", "bore=400,450 kg"), "kg is a unit of mass"),
-        (("--vary", "bore=normal(450 mm, -1 mm)", "--sample", "3"), "must be more than 0, got -1"),
-        (("--vary", "rod_ratio=3:6:1e-4", "--vary", "speed=40:50:0.01 rpm"), "30031001 rows; --yes computes more"),
-        (("--vary", "rod_ratio=uniform(3, 6)", "--sample", "90000000"), "90000000 rows; --yes computes more"),
-        (("--vary", "rod_ratio=uniform(3, 6)", "--sample", "9" * 23, "--yes"), "--sample"),
-        (("--vary", "rod_ratio=3,4", "--columns", "T_mx"), "no key value 'T_mx'; did you mean 'T_max'"),
-        (("--vary", "rod_ratio=3,4", "--columns", "dE", "--where", "dE < 5"), "has no unit"),
-        (("--vary", "rod_ratio=3,4", "--where", "nonsense"), "expected a column, a relation and a value"),
-        (("--vary", "rod_ratio=3,4", "--where", "T_mx < 5 N"), "no column 'T_mx'"),
-        (("--vary", "rod_ratio=3,4", "--top", "3"), "--top N takes the first rows of --sort"),
-        (("--vary", "rod_ratio=3,4", "--resume"), "give --output FILE"),
-        (("--vary", "rod_ratio=3,4", "--shard", "3/2"), "write K/N"),
-        (("--vary", "rod_ratio=3,4", "-f", "parquet"), "Parquet is a file"),
-        (("--vary", "rod_ratio=3,4", "--dask", "tcp://x:1", "-j", "2"), "give only one of"),
-        (("--vary", "rod_ratio=3,4", "--dask", ""), "--dask has no address"),
-        (("--vary", "bore=Normal(450 mm, 1 mm)"), "no distribution 'Normal'; known are normal(mean, deviation)"),
-        (("--vary", "rod_ratio=3,4", "-o", WATERWORKS), "name another file"),
-        ((), "Missing option '--vary'"),
-        (("--vary", "cylinders.3.bore=3,4 mm"), "--vary cylinders.3.bore=3 mm: there is no list 'cylinders'"),
-        (("--vary", "rod_ratio=3,4", "--set", "limits={c_max: 3 kg}"), "Error: --set limits={c_max: 3 kg}: limits"),
-        (("--vary", "bore=3,4", "--set", "expect=5"), "--vary bore=3: bore: 3 has no unit"),
-        (("--vary", "bore=3,4", "--set", "expect=5"), "--set expect=5: expect: expected a mapping"),
-        (("--vary", "rod_ratio=3,4", "--set", "name: =x"), "--set name: =x: write KEY=VALUE, without the colon"),
-        (
-            ("--set", "bore=400 mm", "--vary", "crank=2,3 m; name=a,b"),
-            "stroke: 'crank' and 'stroke' mean the same; give only one of them "
-            "(with --set bore=400 mm, --vary crank=2 m, --vary name=a)",
-        ),
-        (("--vary", "bo..re=3,4 mm"), "--vary bo..re=3 mm: write KEY=VALUE, such as --vary cylinders.0.bore='450 mm'"),
-        (("--vary", "rod_ratio=3,4", "-o", "rows.xyz"), "no format has this suffix; write .csv, .json, .jsonl, .md"),
-    ],
-)
-def test_bad_input(args: tuple[str, ...], message: str) -> None:
-    result = run(*args)
-    assert result.exit_code == 2
-    assert message in " ".join(result.output.split())
-    assert "Traceback" not in result.output
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tls://127.0.0.1:1", "http://x"])

@@ -93,27 +93,6 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     assert "speed" in page
 
 
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (("bor=1 mm",), "bor: the file has no value for this key"),
-        (("bo..re=1 mm",), "bo..re: the file has no value for this key"),
-        (("bore=1 kg",), "kg is a unit of mass"),
-        (("bore=-1 mm",), "write KEY=SPREAD, above 0"),
-        (("bore",), "write KEY=SPREAD"),
-        (("name=1 mm",), "is not a number that could be uncertain"),
-        (("bore=1 mm", "bore=2 mm"), "--uncertainty bore: this key is given twice"),
-        (("tandem.0.bore=1 mm", "tandem[0].bore=2 mm"), "--uncertainty tandem[0].bore: this key is given twice"),
-        (("tandem.bore=1 mm",), "did you mean 'tandem.0.bore'?"),
-    ],
-)
-def test_bad_uncertainties(args: tuple[str, ...], message: str) -> None:
-    options = [part for one in args for part in ("--uncertainty", one)]
-    result = CliRunner().invoke(command, ["forces", str(WATERWORKS), *options])
-    assert result.exit_code == 2
-    assert message in " ".join(result.output.split())
-
-
 @pytest.mark.parametrize("asked", ["check", "forces"])
 def test_all_that_is_wrong_with_uncertainties_is_told_at_its_place(asked: str) -> None:
     text = """\

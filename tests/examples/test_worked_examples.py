@@ -5,112 +5,17 @@
 
 from __future__ import annotations
 
-import json
-import math
 import re
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 from click.testing import CliRunner
 
 from kurbel.cli import kurbel
 from representative import few
+from worked_examples import ASKED, FILES, FOLDER, TABLE, expected, told
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-
-FOLDER = Path(__file__).parent
-TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
-    (FOLDER / "answers.yaml").read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-)
-ROWS = [{"file": example, **row} for example, rows in TABLE.items() for row in rows]
-ASKED = [row for row in ROWS if "ask" in row]
-FILES = sorted(path.stem for path in FOLDER.glob("*.yaml") if path.stem != "answers")
-POUND, POUND_FORCE, FOOT = 0.45359237, 4.4482216152605, 0.3048
-SI = {
-    **dict.fromkeys(("", "deg", "m", "m/s", "m/s2", "rad/s", "rad/s2", "kg", "kg m2", "N", "N m", "Pa", "Hz"), 1.0),
-    **dict.fromkeys(("rpm", "per min"), 1 / 60),
-    **{"mm": 1e-3, "cm": 1e-2, "in/s": FOOT / 12, "kN": 1e3, "kW": 1e3, "percent": 1e-2, "cm3": 1e-6},
-    **{"lb": POUND, "lbf": POUND_FORCE, "lb ft2": POUND * FOOT**2, "ton": 2240 * POUND},
-    **{"hp": 550 * FOOT * POUND_FORCE, "PS": 735.49875},
-}
-QUESTION = re.compile(
-    r"(?P<command>\w+) (?:(?P<table>\w+)\.)?(?P<id>\w+)(?:\[(?P<nth>\d)\])?(?:\[(?P<rows>\w+=.+)\])?"
-    r"(?:(?P<at>@)(?P<angle>\d*))?(?: where (?P<where>.+))?"
-)
-
-
-def question(row: dict[str, Any]) -> dict[str, str | None]:
-    found = QUESTION.fullmatch(row["ask"])
-    assert found, row["ask"]
-    return found.groupdict()
-
-
-@cache
-def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
-    """Run the command once for all the crank angles that the table asks of this file, or where a column has a value."""
-    asked = [question(row) for row in ASKED if row["file"] == file]
-    asked = [one for one in asked if (one["command"], one["where"]) == (command, where)]
-    angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
-    columns = {one["id"]: "" for one in asked if one["angle"] or where}
-    arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json"]
-    if any(one["rows"] for one in asked):
-        return answered(arguments)
-    arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
-    arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
-    return answered(arguments)
-
-
-def answered(arguments: list[str]) -> dict[str, Any]:
-    result = CliRunner().invoke(kurbel, arguments)
-    assert result.exit_code == 0, result.output
-    parsed: dict[str, Any] = json.loads(result.stdout)
-    return parsed
-
-
-def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:
-    """Return the values of a column in the rows of a table of the whole machine where others have these values."""
-    table = next(one for one in parsed["machine_place_tables"] if one["id"] == asked["table"])
-    columns = {one["id"]: one["values"] for one in table["columns"]}
-    rows = list(range(len(columns[str(asked["id"])])))
-    for condition in str(asked["rows"]).split("; "):
-        name, _, values = condition.partition("=")
-        rows = [row for value in values.split(",") for row in rows if columns[name][row] == float(value)]
-    return [columns[str(asked["id"])][row] for row in rows]
-
-
-def told(row: dict[str, Any]) -> Any:
-    """Return what kurbel answers, in SI units: a number or a list of them."""
-    asked = question(row)
-    parsed = answer(row["file"], asked["command"] or "", asked["where"])
-    if asked["rows"]:
-        return of_table(parsed, asked)
-    parts = [{key.removeprefix("machine_"): what for key, what in parsed.items()}, *parsed.get("cylinders", ())]
-    if asked["table"]:
-        table = next(one for part in parts for one in part.get("place_tables", ()) if one["id"] == asked["table"])
-        return next(one for one in table["columns"] if one["id"] == asked["id"])["values"][int(asked["nth"] or 0)]
-    kind = "columns" if asked["angle"] or asked["where"] else "key_values"
-    one = next(one for part in parts for one in part.get(kind, ()) if one["id"] == asked["id"])
-    if asked["angle"]:
-        at = next(one for part in parts for one in part.get(kind, ()) if one["id"] == "phi")["values"]
-        return one["values"][at.index(float(asked["angle"]))]
-    if asked["nth"]:
-        return one["values" if asked["where"] else "value"][int(asked["nth"])]
-    return one["at_deg" if asked["at"] else "value"]
-
-
-def expected(row: dict[str, Any]) -> tuple[Any, Any]:
-    """Return what kurbel has to answer in SI units, and a unit of the last digit of the recalculation."""
-    factor = SI[row["unit"]] * row.get("times", 1)
-    figures = row.get("strict", row["exact"])
-    figures = figures if isinstance(figures, list) else [figures]
-    digits = 12 if "strict" in row else row.get("digits", 12)
-    # nothing is to be nothing
-    last = [10.0 ** (math.floor(math.log10(abs(one))) + 1 - digits) if one else 0.0 for one in figures]
-    return [factor * one + row.get("plus", 0) for one in figures], [abs(factor) * one for one in last]
-
 
 EXAMPLES = list(dict.fromkeys(row["file"] for row in ASKED))
 # what is asked, but for its numbers, and the first example that asks it

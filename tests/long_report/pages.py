@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+from kurbel.cli.request import cases_of
 from kurbel.machine_file.given import given
 from kurbel.render import Look
 from kurbel.render.report_page import report_page
@@ -12,19 +13,19 @@ from kurbel.solver.case import Case
 from representative import case_of
 
 
-def page_of_case(case: Case) -> str:
+def page_of_case(case: Case, cases: tuple[Case, ...] = ()) -> str:
     """The report of one machine."""
     keys = given(case.machine.origin) if case.machine.origin else ()
-    document = whole_report(case, keys, "metric", 15.0, lambda doing: None)
+    document = whole_report(case, keys, "metric", 15.0, lambda doing: None, cases)
     return "".join(report_page(document, Look("html"), "2000-01-01"))
 
 
 @cache
-def page_of(*names: str) -> str:
-    """The report of one shipped machine, or of two."""
-    cases = [case_of(name) for name in names]
-    if len(cases) == 1:
-        return page_of_case(cases[0])
-    keys = [given(case.machine.origin) for case in cases if case.machine.origin]
-    document = side_by_side(cases, keys, "metric", lambda doing: None)
+def page_of(*names: str, cases: bool = False) -> str:
+    """The report of one shipped machine, with its load cases if they are wanted, or of two."""
+    machines = [case_of(name) for name in names]
+    if len(machines) == 1:
+        return page_of_case(machines[0], tuple(cases_of(machines[0].machine)) if cases else ())
+    keys = [given(case.machine.origin) for case in machines if case.machine.origin]
+    document = side_by_side(machines, keys, "metric", lambda doing: None)
     return "".join(report_page(document, Look("html"), "2000-01-01"))

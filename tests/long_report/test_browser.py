@@ -22,41 +22,10 @@ pytestmark = pytest.mark.slow  # each takes seconds to start a browser
 browser = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine")
 PAGES = [("waterworks",), ("gas-engine",), ("waterworks", "compressor")]
 FLAGS = ("--host-resolver-rules=MAP * ~NOTFOUND", "--hide-scrollbars")  # nothing of the page may need the net
-MEASURE = """<script>
-const beyond = [...document.querySelectorAll('body *')].filter(one => {
-  const box = one.getBoundingClientRect();
-  return box.width && box.right > WIDTH + 1 && !(SCROLLED && one.closest('.wide'));
-}).map(one => one.tagName + ' ' + (one.textContent || '').slice(0, 40));
-const unseen = [...document.querySelectorAll('#input tr > :nth-child(2)')].filter(one =>
-  one.getBoundingClientRect().right > WIDTH + 1).map(one => one.textContent);
-const cut = [...document.querySelectorAll('figure .wide')].filter(one => one.scrollWidth > one.clientWidth + 1).length;
-const across = new Set([...document.querySelectorAll('.pair > figure')].map(one =>
-  Math.round(one.getBoundingClientRect().left))).size;
-const letters = Math.min(99, ...[...document.querySelectorAll('.pair text')].map(one =>
-  one.getScreenCTM().a * parseFloat(getComputedStyle(one).fontSize)));
-const channels = colour => (colour.match(/[0-9.]+/g) || []).map(Number);
-const light = colour => { const [r, g, b] = channels(colour).map(c => (c /= 255) <= 0.04045 ? c / 12.92
-  : ((c + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-const ground = one => { for (; one; one = one.parentElement) { const c = getComputedStyle(one).backgroundColor;
-  if (channels(c).length == 3 || channels(c)[3] > 0) return c; } return 'rgb(255, 255, 255)'; };
-let least = 99;
-for (const one of document.querySelectorAll('h1,h2,h3,h4,p,li,td,th,a,caption,figcaption,small,text')) {
-  const own = one.tagName == 'text' ? getComputedStyle(one).fill : getComputedStyle(one).color;
-  const [high, low] = [light(own), light(ground(one))].sort((a, b) => b - a);
-  least = Math.min(least, (high + 0.05) / (low + 0.05));
-}
-const found = {width: WIDTH, wide: document.documentElement.scrollWidth,
-  beyond, unseen, cut, across, letters, least, ground: ground(document.body)};
-parent.postMessage(JSON.stringify(found), '*');
-</script>"""
+MEASURE = Path(__file__).with_name("measure.html").read_text("utf-8")
 FRAME = '<iframe src="measured-WIDTH.html" style="border:0;width:WIDTHpx;height:900px"></iframe>'
 """A window of its own for the page, which may be narrower than the browser allows its windows to be."""
-FRAMES = """<!DOCTYPE html><body style="margin:0">ALL<script>
-const found = {}, count = document.querySelectorAll('iframe').length;
-addEventListener('message', said => { const one = JSON.parse(said.data); found[one.width] = one;
-  if (Object.keys(found).length == count) { document.body.innerHTML = '<pre id="found"></pre>';
-    document.getElementById('found').textContent = JSON.stringify(Object.values(found)); } });
-</script>"""
+FRAMES = Path(__file__).with_name("frames.html").read_text("utf-8")
 
 
 def shown(file: Path, *flags: str) -> tuple[str, list[str]]:
@@ -134,18 +103,8 @@ def test_the_validator_of_the_w3c_has_nothing_to_say(tmp_path: Path) -> None:
     for names in PAGES:
         files.append(tmp_path / f"{names[-1]}.html")
         files[-1].write_text(page_of(*names), encoding="utf-8")
-    command = [
-        "java",
-        "-XX:TieredStopAtLevel=1",
-        "-XX:+UseSerialGC",
-        "-Xss1m",
-        "-jar",
-        str(VALIDATOR),
-        "--format",
-        "json",
-        "--stdout",
-        *map(str, files),
-    ]
+    quick = ("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "-Xss1m")
+    command = ["java", *quick, "-jar", str(VALIDATOR), "--format", "json", "--stdout", *map(str, files)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     said = [one["message"] for one in json.loads(done.stdout)["messages"]]
     # of CSS it does not know what browsers have had since 2016

@@ -9,7 +9,7 @@ import jsonschema
 import pytest
 import yaml
 
-from kurbel.machine import Cylinder, Machine
+from kurbel.machine import Cylinder
 from kurbel.machine_file import loads
 from schemas import whole_schema
 
@@ -94,20 +94,6 @@ def test_a_cylinder_is_like_another_but_for_what_stands_there() -> None:
     assert (second.mechanism.crank, second.mechanism.rod, second.pistons[0].bore) == (0.3, 2, 0.45)
     assert (low.mechanism.rod, low.pistons[0].bore, low.crank_position) == (1.5, 0.7, 90)
     assert low.masses.parts == 100
-
-
-def test_equal_cylinders_are_those_written_out() -> None:
-    keys = "stroke: 80 mm, rod_ratio: 4, bore: 70 mm, masses: {piston: 2 kg}"
-    out = "\n".join(f"  - {{{keys}, crank_position: {120 * i} deg, axial_position: {i} m}}" for i in range(3))
-    at_once = loads(f"name: a\ncylinders: {{count: 3, firing_order: 1-2-3, spacing: 1 m, each: {{{keys}}}}}")
-    assert _numbers(at_once) == _numbers(loads(f"name: a\ncylinders:\n{out}"))
-
-
-def _numbers(machine: Machine) -> list[tuple[object, ...]]:
-    return [
-        (one.name, one.crank_position, one.axial_position, one.mechanism.crank, one.pistons[0].bore, one.masses.parts)
-        for one in machine.cylinders
-    ]
 
 
 # turns of a four-stroke cycle

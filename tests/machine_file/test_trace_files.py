@@ -360,5 +360,5 @@ def test_all_limits_of_size_are_reported_at_once(tmp_path: Path, large: str) -> 
     with pytest.raises(MachineFileError) as caught:
         load(tmp_path / "m.yaml")
     assert _all_limits_in(str(caught.value))
-    page = Path(__file__).parents[2] / "docs" / "traces.md"
+    page = Path(__file__).parents[2] / "docs" / "size.md"
     assert _all_limits_in(page.read_text(encoding="utf-8"))

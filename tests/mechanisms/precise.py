@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import mpmath as mp
@@ -28,8 +27,3 @@ def _exact_angle(degrees, prec):
 def by_radian(function, degrees, order=1):
     """The derivative by φ in radians, at `degrees`, of a function of a CrankAngle."""
     return mp.diff(lambda phi: function(exact_angle(phi / DEGREE)), mp.mpf(degrees) * DEGREE, order)
-
-
-def ulps(got, want, of=None):
-    """How many units in the last place of `of` (default: of what is wanted) the two lie apart."""
-    return abs(mp.mpf(float(got)) - want) / math.ulp(float(abs(want if of is None else of)))

@@ -208,18 +208,6 @@ def resized(machine, scale):
     return type(machine)(**{key: value * scale if value and key in lengths else value for key, value in fields.items()})
 
 
-@law_of_each((machine, scale) for machine in MOVED.values() for scale in (2.0**-1000, 2.0**1000))
-def test_size_does_not_matter(machine, scale):
-    scaled = resized(machine, scale)
-    angle = CrankAngle.of(np.array([0.0, 33.0, 180.0, 271.0]))
-    unit = scale if machine.slides else 1.0
-    assert scaled.dead_centres() == pytest.approx(machine.dead_centres(), rel=1e-15)
-    for function, original in zip(
-        (scaled.coordinate, scaled.slope, scaled.curvature), (machine.coordinate, machine.slope, machine.curvature)
-    ):
-        assert function(angle) / unit == pytest.approx(original(angle), rel=1e-13, abs=1e-15 * machine.stroke)
-
-
 POWERS = {"m": 1, "m/s": 1, "m/s^2": 1, "N m": 1, "J": 1, "W": 1, "Pa": -2}
 """Unit -> the power of a length in it where forces stay; angles and ratios stay with them."""
 POWERS_OF_A_MOMENT = {**POWERS, "N": -1, "N m": 0, "J": 0, "W": 0}

@@ -25,38 +25,6 @@ def test_equal_strokes_take_equal_times_where_the_diagonals_agree():
     assert machine.swing == pytest.approx(math.degrees(2 * math.asin(0.3 / machine.rocker)), rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("lengths", "message"),
-    [
-        (
-            (0.3, 0.36, 0.36, 0.6),
-            "it cannot turn fully: crank 300 mm + frame 600 mm is more than coupler 360 mm + rocker 360 mm (Grashof)",
-        ),
-        ((0.1, 0.2, 0.3, 0.2), "the linkage folds flat once a turn"),
-        ((0.04, 0.08, 0.11, 0.15), "the linkage folds flat once a turn"),
-        ((0.1, 0.1, 0.3, 0.3), "the linkage folds flat once a turn"),
-        ((0.2, 0.15, 0.3, 0.3), "200 mm is longer than the coupler 150 mm; the crank or the frame must be the"),
-        ((0.3, 0.25, 0.2, 0.15), "the linkage folds flat once a turn"),
-        (
-            (0.3, 0.25, 0.2, 0.16),
-            "it cannot turn fully: frame 160 mm + crank 300 mm is more than coupler 250 mm + rocker",
-        ),
-        (
-            (0.9, 0.25, 0.3, 0.1),
-            "the links do not meet: crank 900 mm is no shorter than coupler 250 mm + rocker 300 mm",
-        ),
-        (
-            (0.1, 0.2, 0.3, 0.7),
-            "the links do not meet: frame 700 mm is no shorter than crank 100 mm + coupler 200 mm + rocker 300 mm",
-        ),
-    ],
-)
-def test_loops_that_do_not_turn(lengths, message):
-    with pytest.raises(RuleError) as raised:
-        FourBar(*lengths)
-    assert str(raised.value).startswith("crank: " + message)
-
-
 @given(st.tuples(*[st.integers(1, 60)] * 4))
 @settings(max_examples=3 * settings.default.max_examples)
 def test_grashof_decides(lengths):

@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from kurbel.errors import KurbelError, RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
@@ -32,24 +31,6 @@ def test_working_and_return_angle():
 
 
 @pytest.mark.parametrize(
-    ("lengths", "message"),
-    [
-        ({"frame": 0.3}, "frame: 300 mm is also the crank: the pin would pass through the lever's pivot"),
-        ({"ram_height": 1.0}, "ram_height: has no meaning for a fork head; give 'link' with it"),
-        ({"link": 0.3, "ram_height": 1.7}, "link: 300 mm does not reach the ram at 1700 mm; it must be longer than"),
-        ({"link": 0.19, "ram_height": 1.39}, "link: 190 mm gets into line with the lever within its swing"),
-        ({"frame": 0.2, "link": 1.4, "ram_height": 0.2}, "link: 1400 mm does not reach: as the lever turns fully it"),
-        ({"link": 0.5, "ram_height": math.nan}, "ram_height: must be finite"),
-        ({"link": -0.5}, "link: -0.5 is too small; it must be more than 0"),
-    ],
-)
-def test_levers_that_do_not_run(lengths, message):
-    with pytest.raises(RuleError) as raised:
-        SlottedLever(**{"crank": 0.3, "frame": 0.8, "lever": 1.3, **lengths})
-    assert str(raised.value).startswith(message)
-
-
-@pytest.mark.parametrize(
     ("crank", "frame", "ratio", "swing"),
     [(120, 240, 2.0, 60.0), (75, 50, 2.735, None)],
 )
@@ -69,13 +50,6 @@ def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
     assert not {"stroke", "c_m", "c_work_max", "b_max"} & set(told)
     assert not {"x", "c", "b"} & {column.id for column in report.parts[0].columns}
     assert any("Whitworth" in note for note in report.notes) == (swing is None)
-
-
-def test_a_link_needs_a_lever():
-    with pytest.raises(KurbelError, match="lever"):
-        loads("mechanism: slotted-lever\ncrank: 75 mm\nframe: 50 mm\nlink: 300 mm")
-    with pytest.raises(RuleError, match="lever"):
-        SlottedLever(0.075, 0.05, link=0.3)
 
 
 def test_a_slot_that_ends_before_the_pin_does_is_told() -> None:

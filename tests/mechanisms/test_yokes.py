@@ -20,25 +20,11 @@ def test_values_of_the_book():
     assert yoke.curvature(at) == yoke.block_slope(at) == pytest.approx(0.1, rel=1e-15)
 
 
-def test_crank_or_stroke():
-    assert ScotchYoke.from_keys(stroke=0.6).crank == 0.3
-    with pytest.raises(RuleError, match="'crank' or 'stroke' is missing"):
-        ScotchYoke.from_keys()
-    with pytest.raises(RuleError, match="the same"):
-        ScotchYoke.from_keys(crank=0.3, stroke=0.6)
-
-
 def test_the_arm_grows_as_the_pin_leaves_the_stuffing_box():
     yoke = YokeFrame(0.1, 0.3, gland=0.25)
     assert [yoke.bending_arm(CrankAngle.of(degrees)) for degrees in (0.0, 180.0)] == [0.25, 0.45]
     with pytest.raises(RuleError, match="rod: 90 mm is shorter than the crank"):
         YokeFrame(0.1, 0.09)
-
-
-@pytest.mark.parametrize("gland", [0.0, -0.1, math.inf])
-def test_a_gland_must_be_somewhere(gland):
-    with pytest.raises(RuleError, match=r"gland: (.* too small; it must be more than 0|must be finite)"):
-        YokeFrame(0.1, 0.3, gland=gland)
 
 
 def test_the_transmission_angle_is_that_of_the_cosine_rule():

@@ -11,6 +11,11 @@ from scipy.integrate import trapezoid
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
+from kurbel.render import Look
+from kurbel.render.braille import braille
+from kurbel.render.picture import PanelFrame, axis_text, legend_text
+from kurbel.render.svg import PAPER_SIZES
+from kurbel.render.text import plain
 from kurbel.report.picture import Panel, Picture
 from kurbel.report.picture_source import PictureOptions, sampled
 from kurbel.report.pictures import PICTURES, pictures
@@ -131,7 +136,7 @@ def test_the_tip_of_the_free_force_is_the_solvers() -> None:
     free = case.balance.at(np.linspace(0.0, 719.0, 500))
     tips = (np.asarray(free.F_x) + 1j * np.asarray(free.F_y)) / 1e3
     assert off_line(panel.curves[0], tips) <= 1e-3 * np.abs(tips).max()
-    (mark,) = panel.marks
+    mark, *_ = panel.marks
     largest = case.balance.F_free_max
     assert (mark.figure.value, mark.figure.at_deg) == (largest.value / 1e3, largest.degrees)
     assert np.hypot(mark.x, mark.y) == pytest.approx(largest.value / 1e3, rel=1e-14)
@@ -148,7 +153,7 @@ def test_the_polar_diagrams_of_bearings_are_the_solvers_loads() -> None:
             direction = np.radians(np.nan_to_num(getattr(columns, f"load_{panel.title.partition(':')[0]}")))
             tips = np.asarray(columns.load) / 1e3 * np.exp(1j * direction)
             assert off_line(panel.curves[0], tips) <= 2e-3 * np.abs(tips).max()
-            (mark,) = panel.marks
+            mark, *_ = panel.marks
             assert mark.figure.value == part.load_max.value / 1e3
             assert np.hypot(mark.x, mark.y) == pytest.approx(part.load_max.value / 1e3, rel=1e-9)
 
@@ -163,6 +168,79 @@ def test_modes_are_those_of_holzer_with_their_frequencies() -> None:
         assert np.count_nonzero(np.diff(np.sign(curve.y))) == mode  # a free shaft has as many nodes
     assert curves[0].name.symbol == f"1: {case.torsion.natural_frequency:.4g} Hz"
     assert len(panel.x.names) == len(case.torsion.line.masses)
+
+
+def test_where_an_order_meets_a_mode_the_speed_is_critical() -> None:
+    """n = 60 f/ν, the frequency of the mode over the periods per turn; the working speed is that of the file."""
+    for name, working in (("torsional-damper", 2000), ("marine-diesel", 110)):
+        case, (panel,) = case_of(name), drawn(name, "campbell")[0].panels
+        lines = {one.name.symbol: one for one in panel.curves}
+        frequencies = [float(omega) / (2 * math.pi) for omega in case.torsion.modes.omegas if omega > 1e-6]
+        assert lines["working speed"].x.tolist() == pytest.approx([working, working])
+        orders = sorted(float(symbol.removeprefix("ν = ")) for symbol in lines if symbol.startswith("ν"))
+        for order in orders:
+            line = lines[f"ν = {order:g}"]
+            assert line.y[1] == pytest.approx(order * line.x[1] / 60)  # periods per turn times turns per second
+        met = 0
+        for mark in panel.marks:
+            mode = min(frequencies, key=lambda frequency: abs(frequency - mark.y))
+            assert mark.y == pytest.approx(mode, rel=1e-9)
+            assert min(abs(60 * mode / order - mark.x) for order in orders) <= 1e-9 * mark.x
+            assert (mark.figure.value, mark.figure.unit) == (mark.x, "rpm")
+            met += mark.x <= 1.25 * working
+        assert met == len(panel.marks) > 4
+
+
+@pytest.mark.parametrize("columns", [60, 80, 120])
+def test_names_of_masses_are_whole(columns: int) -> None:
+    """Below the axis where they have room, or else as a list behind their numbers."""
+    masses = [mass.name for mass in case_of("torsional-damper").torsion.line.masses]
+    text = " ".join("".join(plain(braille(drawn("torsional-damper", "modes")[0], Look(width=columns)))).split())
+    assert all(name in text for name in masses)
+
+
+def test_crank_angles_are_on_the_polar_curves() -> None:
+    """Every 30°, each where the columns have the load then; from 0, which is on the picture, too."""
+    part = case_of("gas-engine").bearings.parts[0]
+    panel = drawn("gas-engine", "bearing-loads")[0].panels[0]
+    beads = next(one for one in panel.curves if one.kind == "beads")
+    columns = part.at(np.arange(0.0, 720.0, 30.0))
+    expected = np.asarray(columns.load) / 1e3 * np.exp(1j * np.radians(columns.load_throw))
+    assert beads.x + 1j * beads.y == pytest.approx(expected, rel=1e-9)
+    labelled = [mark for mark in panel.marks if not mark.figure.name.symbol]
+    assert [mark.figure.at_deg for mark in labelled] == [90.0 * number for number in range(8)]
+    assert [complex(mark.x, mark.y) for mark in labelled] == pytest.approx(expected[::3], rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["marine-diesel", "triplex-pump", "diesel-trace"])
+def test_no_polar_diagram_is_flattened(name: str) -> None:
+    """One scale for both axes, and a height that shows it, however flat the curve is."""
+    for id in ("bearing-loads", "free-vectors"):
+        for picture in drawn(name, id):
+            assert len(picture.panels) % picture.across == 0  # no empty quadrant
+            for panel in picture.panels:
+                frame = PanelFrame(panel, Look(), PAPER_SIZES, 660.0 / picture.across, 250.0)
+                assert frame.tall >= min(0.8 * frame.wide, 200.0)
+                across, up = frame.x.high - frame.x.low, frame.y.high - frame.y.low
+                assert across / frame.wide == pytest.approx(up / frame.tall, rel=1e-9)
+
+
+def test_axes_and_legends_have_words() -> None:
+    panel = drawn("waterworks", "forces")[0].panels[0]
+    assert (axis_text(panel.x, Look()), axis_text(panel.y, Look())) == ("Crank angle φ in °", "Force in kN")
+    named = [legend_text(one.name, Look()) for one in panel.curves if one.kind == "line"]
+    assert named == ["S rod force", "N guide force", "D radial force", "T tangential force"]
+    speed = drawn("waterworks", "motion")[0].panels[1]
+    assert axis_text(speed.y, Look()) == "Velocity c in m/s"
+
+
+def test_noise_of_a_trace_has_no_scale_of_its_own() -> None:
+    """All strokes of a traced engine have the scale of the largest, and the gas exchange looks as small as it is."""
+    panels = drawn("diesel-trace", "piston-force-way")[0].panels
+    ends = {(panel.y.low, panel.y.high) for panel in panels}
+    highest = max(float(np.nanmax(curve.y)) for panel in panels for curve in panel.curves)
+    assert len(ends) == 1
+    assert ends.pop()[1] == pytest.approx(highest)
 
 
 def test_rounding_of_a_constant_is_not_refined() -> None:

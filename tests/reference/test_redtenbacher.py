@@ -71,20 +71,6 @@ def test_rings() -> None:
     assert forces.loss_rings == pytest.approx(4 * 0.05 * 0.4e5 * 0.1 / (0.42 * 6e5), rel=1e-14)
 
 
-def test_inclined_plane() -> None:
-    """D 1 to D 5 of the section before."""
-    alpha, f, beta = 20.0, 0.15, 12.0
-    a, b, rho = math.radians(alpha), math.radians(beta), math.atan(f)
-    assert rules.holding_force(alpha, f, beta) == pytest.approx(math.sin(a + rho) / math.cos(b - rho), rel=1e-14)  # D 1
-    assert rules.holding_force(alpha, -f, beta) == pytest.approx(
-        math.sin(a - rho) / math.cos(b + rho), rel=1e-14
-    )  # D 2
-    assert rules.holding_force(alpha, f, -alpha) == pytest.approx(math.tan(a + rho), rel=1e-14)  # D 3
-    assert rules.holding_force(math.degrees(rho), -f) == pytest.approx(0, abs=1e-16)  # D 4
-    with pytest.raises(NoSolutionError, match="locks itself"):
-        rules.holding_force(math.degrees(math.atan(1 / f)) + 1e-9, f, -(math.degrees(math.atan(1 / f)) + 1e-9))  # D 5
-
-
 def test_a_driven_machine_locks_where_f_tan_psi_reaches_one() -> None:
     """D 5 for the crosshead: N = −P tan ψ/(1 − f tan ψ) has no value beyond f tan ψ = 1."""
     piston = Piston(

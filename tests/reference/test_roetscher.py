@@ -11,7 +11,6 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.units import GRAVITY
 from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.parts import Masses, Piston
-from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import AT, STEAM_CARD, largest_velocity, one_cylinder
 
@@ -52,14 +51,6 @@ def test_acceleration_at_the_dead_centres_and_between(lam):
     assert outer == pytest.approx(-(1 - lam), rel=1e-15)
     at_90 = CrankAngle.of(90.0)
     assert formulas.first_order_acceleration(at_90.sin, at_90.cos, lam) == -lam
-
-
-def test_scotch_yoke():
-    """R p. 615: x = R(1 − cos φ), c = v sin φ, b = (v²/R) cos φ; R 287, 289, 295."""
-    yoke, angle = ScotchYoke(0.4), CrankAngle.of(120.0)
-    assert yoke.coordinate(angle) == pytest.approx(0.6, rel=1e-15)
-    assert yoke.slope(angle) == pytest.approx(0.4 * math.sqrt(3) / 2, rel=1e-15)
-    assert yoke.curvature(angle) == pytest.approx(-0.2, rel=1e-14)
 
 
 # f. Rötscher, Die Maschinenelemente (1927), ch. 14, the waterworks engine of Tafel I: forces (pp. 606-613)

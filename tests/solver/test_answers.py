@@ -53,11 +53,6 @@ def json_of(*words: str, text: str = STRAIGHT) -> dict[str, Any]:
     return {column["id"]: column["values"] for column in part["columns"]}
 
 
-def refused(*words: str, text: str = STRAIGHT) -> tuple[int, str]:
-    result = CliRunner().invoke(kurbel, [*words, "-"], input=text)
-    return result.exit_code, result.stderr
-
-
 class TestWhere:
     def test_blau_34_and_35(self) -> None:
         """λ = 1/5: where b has fallen to a sixth of b(0), with x, c and b there."""
@@ -80,25 +75,6 @@ class TestWhere:
         found = json_of("forces", "--where", "P = 0", text=COMPRESSOR)
         assert found["phi"] == list(cylinder(COMPRESSOR).phi_reversal or ())
 
-    @pytest.mark.parametrize(
-        ("condition", "status", "message"),
-        [
-            ("b = 2 b_max", 3, "b is nowhere"),
-            ("b = 2", 2, "has no unit"),
-            ("b = 1/6 stroke", 2, "neither a unit nor a key value of this kind"),
-            ("bb = 0", 2, "'bb' is no column"),
-            ("T = 0", 2, "left out for this machine"),
-            ("b > 0", 2, "expected a column and a value"),
-            ("b = 1/0 b_max", 2, "quotient"),
-            ("", 2, "expected a column and a value"),
-            ("theta = 0", 2, "'theta' is left out for this machine"),
-            ("b\x00 = 0", 2, "expected a column and a value"),
-        ],
-    )
-    def test_what_cannot_be_asked(self, condition: str, status: int, message: str) -> None:
-        found, said = refused("motion", "--where", condition)
-        assert (found, message in said) == (status, True), said
-
 
 class TestOverTheStroke:
     @pytest.mark.parametrize("more", ["", "offset: 100 mm\n", "mechanism: yoke-frame\n"])
@@ -113,10 +89,6 @@ class TestOverTheStroke:
         found = json_of("forces", "--over", "x", "--step", "50", text=STRAIGHT + "cycle: four-stroke\n")
         assert found["z"] == pytest.approx([0, 0.5, 1, 0.5, 0, 0.5, 1, 0.5, 0], abs=1e-15)
         assert found["phi"][-1] == 720.0
-
-    def test_what_turns_on_has_no_stroke(self) -> None:
-        status, said = refused("motion", "--over", "x", text="mechanism: parallel-crank\ncrank: 1 m\nframe: 2 m\n")
-        assert (status, "turns on and has no stroke" in said) == (2, True)
 
 
 class TestCompare:

@@ -11,7 +11,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kurbel import loads
-from kurbel.errors import UsageError
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
@@ -296,22 +295,3 @@ def test_moments_about_another_place() -> None:
     """M changes by the free force times the way."""
     near, far = balance_of(FOUR).at(ANGLES), balance_of(FOUR, "moment_reference=0 mm").at(ANGLES)
     assert_allclose(far.M_x - near.M_x, 0.15 * near.F_x, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("{speed: 600 rpm, crank: 50 mm, rod_ratio: 4}", "no moving masses to balance"),
-        (single().replace("2 kg", "0 kg"), "no moving masses to balance"),
-        ("{crank: 1 m, frame: 2 m, lever: 4 m, mechanism: slotted-lever, masses: {other: 1 kg}}", "are not known"),
-        (
-            FOUR.replace("spacing: 100 mm, ", "").replace(
-                "cycle", "counterweights: {share: 1, planes: [0 m, 1 m]}, cycle"
-            ),
-            "cylinder 1: weights in two planes need",
-        ),
-    ],
-)
-def test_what_cannot_be_balanced_is_refused(text: str, message: str) -> None:
-    with pytest.raises(UsageError, match=message):
-        _ = balance_of(text).free

@@ -13,7 +13,7 @@ from scipy.integrate import fixed_quad
 
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.solver.bearings import Bearing, unreached
+from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from representative import few
 
@@ -179,13 +179,6 @@ def test_unloaded_arcs_against_many_samples() -> None:
             centres = np.unique(np.round(getattr(columns, f"load_{frame}") * 100).astype(int) % 36000)
             edges = np.diff(np.concatenate((centres, [centres[0] + 36000])))
             assert arc == pytest.approx(sum(max(gap / 100 - 120, 0.0) for gap in edges), abs=0.1)
-
-
-def free(*arcs: tuple[float, float]) -> tuple[float, float]:
-    """What arcs from start to end leave free of the circle, and the middle of its widest stretch."""
-    starts, ends = np.array(arcs).T
-    arc, middle = unreached(starts, ends - starts, np.zeros(len(arcs), int), 1)
-    return float(arc[0]), float(middle[0])
 
 
 def test_means_against_scipy() -> None:

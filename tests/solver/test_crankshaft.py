@@ -11,13 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.errors import RuleError, UsageError
-from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card
 from kurbel.machine.parts import ConnectingRod, Masses
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver.case import Case
 from kurbel.solver.shaft import FreeBody, Vector, weight_in_throw
 from kurbel.solver.stress import PARTS, CrankshaftStrength, places
 from machines import STEAM_CARD, constant_pressure
@@ -47,7 +44,7 @@ forces = st.floats(-1e6, 1e6)
 @given(forces, forces, forces, forces, st.floats(-0.15, 2.0))
 def test_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
     """Reactions from six equations of a rigid body, web B from what hangs on it on the side of the flywheel."""
-    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     a, b, e, r = 0.4, 0.42, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft; unknown: A and B on the shaft (x, y), the couple about z
     pin = np.array([T, -D, 0.0]), np.array([0.0, r, a])
@@ -166,33 +163,6 @@ def test_safety_counts_dead_centre_and_cycle() -> None:
         assert safety.value == pytest.approx(60e6 / worst, rel=1e-15)
 
 
-def test_allowable_ratio_weighs_torsion_of_the_webs() -> None:
-    """α₀ = 90/(1.3 · 30) > 1 lets torsion count for more in the webs, and nowhere else."""
-    given = {"allowable_bending": 90e6, "allowable_torsion": 30e6}
-    plain, weighed = (strength(shaft(**allowed)).at_largest_torque for allowed in ({}, given))
-    for one, other in zip(plain, weighed, strict=True):
-        assert other._replace(alpha=one.alpha) == one
-        twisted_web = one.part.startswith("web") and one.torsion is not None
-        assert (other.combined > one.combined) if twisted_web else (other.combined == one.combined)
-
-
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"crankshaft": None}, "no 'crankshaft' is given"),
-        ({"cylinders": 2}, "2 cylinders; the crankshaft that is examined has one throw"),
-        ({"pistons": ()}, "no pressure loads the crankshaft; give 'bore' and 'indicator'"),
-    ],
-)
-def test_refused(changed: dict[str, Any], message: str) -> None:
-    own = strength(shaft()).forces.drive.cylinder
-    cylinder = Cylinder(own.mechanism, pistons=changed.get("pistons", own.pistons))
-    both = tuple(Cylinder(own.mechanism, f"cylinder {i}", own.pistons) for i in range(changed.get("cylinders", 0)))
-    machine = Machine(both or (cylinder,), crankshaft=changed.get("crankshaft", shaft()))
-    with pytest.raises(UsageError, match=message):
-        _ = Case(machine).stress
-
-
 # loads and places of the crank pin, and the lengths round it that contradict one another
 
 
@@ -200,7 +170,7 @@ def test_refused(changed: dict[str, Any], message: str) -> None:
 def test_no_section_of_the_pin_is_strained_more_than_its_places(
     D: float, T: float, G_D: float, G_T: float, f: float, along: float
 ) -> None:
-    found = body(D, T, (G_D, G_T), flywheel_position=f)
+    found = body(D, T, (G_D, G_T), flywheel_position=f, flywheel_mass=1.0, journal_length=None)
     u = 0.11 * along
     before, beyond = (float(np.hypot(*moments)[0]) for moments in (found.moments_at(-u), found.moments_at(u)))
     worst = max(place.normal[0] for place in places(found) if place.part == "pin")
@@ -229,24 +199,6 @@ class TestTurningPartOfTheRod:
         assert solved.equilibrium_residual <= 1e-14
 
 
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"a": 0.2}, "200 mm puts the bearing inside the web .230 mm from the pin."),
-        ({"flywheel_position": -0.3, "flywheel_mass": 1.0}, "-300 mm is not between web and bearing B"),
-        ({"flywheel_position": -1.0, "flywheel_mass": 1.0}, "-1000 mm lies beyond bearing A"),
-        ({"pin_length": 0.24}, "240 mm does not fit between the webs, which leave 220 mm"),
-        ({"journal_length": 0.36}, "half of 360 mm does not fit .* bearing A and web A, which leave 170 mm"),
-        ({"journal_length": 0.36, "a": 0.6, "b": 0.4}, "half of 360 mm .* bearing B and web B, which leave 170 mm"),
-        ({"flywheel_position": 0.1, "flywheel_mass": 1.0}, "half of 300 mm .* bearing B and flywheel, which leave 100"),
-        ({"flywheel_position": -0.1, "flywheel_mass": 1.0}, "half of 300 mm .* B and flywheel, which leave 100 mm"),
-    ],
-)
-def test_lengths_that_contradict(changed: dict[str, Any], message: str) -> None:
-    with pytest.raises(RuleError, match=message):
-        shaft(**changed)
-
-
 # the overhung crank: by two textbooks, by an independent free body, by brute force, and by its rules
 
 OVERHUNG: dict[str, Any] = {"overhung": True, "a": 0.4, "b": 1.2, "journal_length": 0.3}
@@ -273,7 +225,7 @@ def test_khurmi_32_5() -> None:
     H_1 = 155.4 kN, V_1 = 15 kN, at the flywheel M_H = 12.3 and M_V = 3.525, together 12.8 kN m.
     """
     lengths = {"web_distance": 0.12, "web_thickness": 0.07, "pin_length": 0.11, "a": 0.239, "b": 0.709}
-    own = shaft(**OVERHUNG | lengths | {"journal_length": None, "flywheel_position": -0.235})
+    own = shaft(**OVERHUNG | lengths | {"journal_length": None, "flywheel_position": -0.235, "flywheel_mass": 1.0})
     load = 2.1e6 * math.pi / 4 * 0.25**2
     found = FreeBody(own, 0.3, Vector(np.array([load]), np.zeros(1)), Vector(np.zeros(1), np.array([-30e3])))
     assert load == pytest.approx(103e3, rel=1e-3)
@@ -289,7 +241,7 @@ def test_khurmi_32_5() -> None:
 @given(forces, forces, forces, forces, st.floats(-0.75, 2.0))
 def test_overhung_against_a_free_body_in_space(D: float, T: float, G_D: float, G_T: float, f: float) -> None:
     """Reactions from the equations of a rigid body; every section from what lies on the side of the pin alone."""
-    found = body(D, T, (G_D, G_T), **OVERHUNG, flywheel_position=f)
+    found = body(D, T, (G_D, G_T), **OVERHUNG | {"flywheel_position": f, "flywheel_mass": 1.0, "journal_length": None})
     a, b, e, r = 0.4, 1.2, 0.17, 0.3
     # x along T, y toward the pin, z along the shaft from the pin; unknown: A and B on the shaft (x, y)
     loads = [(np.array([T, -D, 0.0]), np.array([0.0, r, 0.0])), (np.array([G_T, -G_D, 0.0]), np.array([0, 0, b + f]))]
@@ -325,22 +277,3 @@ def test_overhung_against_a_free_body_in_space(D: float, T: float, G_D: float, G
         assert at[key].normal[0] * JOURNAL == pytest.approx(math.hypot(*moment[:2]), abs=size), key
         assert at[key].torsion[0] * 2 * JOURNAL == pytest.approx(abs(moment[2]), abs=size), key
     assert {part for part, _ in at} == {"pin", "web_A", "journal_A", "journal_B"}
-
-
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"b": 0.4}, r"400 mm puts B before bearing A \(400 mm\); an overhung pin lies beyond A"),
-        ({"a": 0.2}, "200 mm puts the bearing inside the web .230 mm from the pin."),
-        ({"flywheel_position": -0.8}, "-800 mm lies beyond bearing A; A .* 800 mm from B"),
-        ({"pin_length": 0.24}, "240 mm does not fit beside the web, which leaves 220 mm"),
-        ({"journal_length": 0.36}, "half of 360 mm does not fit .* bearing A and web A, which leave 170 mm"),
-        (
-            {"a": 0.95, "flywheel_position": 0.4},
-            "half of 300 mm .* bearing A and half the way to B, which leave 125 mm",
-        ),
-    ],
-)
-def test_overhung_lengths_that_contradict(changed: dict[str, Any], message: str) -> None:
-    with pytest.raises(RuleError, match=message):
-        shaft(**OVERHUNG | {"flywheel_position": -0.4, "flywheel_mass": 1.0, "journal_length": 0.3} | changed)

@@ -33,13 +33,6 @@ def turning(*cylinders: Cylinder, rpm: float | None = 50, **machine: Any) -> Mac
     return Case(Machine(named, speed=None if rpm is None else rpm / 60, **machine)).flywheel
 
 
-def test_a_crank_that_leads_by_90_degrees_is_ahead_by_90_degrees() -> None:
-    """R p. 612: the torques are added, each shifted by its crank."""
-    alone = turning(ENGINE)
-    both = turning(ENGINE, replace(ENGINE, crank_position=-90.0))
-    assert pytest.approx(alone.at(ANGLES).M + alone.at(ANGLES + 90).M, rel=1e-12, abs=1e-9) == both.at(ANGLES).M
-
-
 def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
     """∮ m x′ x″ dφ = 0: their mean torque is none, where its rounding once stood as a divisor under ΔE."""
     moved = replace(ENGINE, pistons=())
@@ -47,31 +40,6 @@ def test_masses_alone_do_no_work_and_fluctuate_beside_none() -> None:
     assert machine.M_mean == machine.work_shaft == 0.0
     assert machine.dE > 100
     assert machine.energy_fluctuation is None
-
-
-@pytest.mark.parametrize("eta", [1.0, 0.95])
-def test_a_driven_machine_needs_more_than_its_card_shows(eta: float) -> None:
-    """A chamber that draws in at ambient pressure and delivers at 4 bar above it takes p A s in a turn, over η."""
-    delivery = Card.from_keys(unit=(1e5, 1), expansion=[(0, 0), (1, 0)], compression=[(1, 4), (0, 4)])
-    pump = Cylinder(SliderCrank(0.2, 1.0), pistons=(Piston(0.3, indicator=Indicator(delivery)),), masses=Masses(80.0))
-    driven = turning(pump, rpm=120, efficiency=eta)
-    work = 4e5 * math.pi / 4 * 0.3**2 * 0.4 / eta
-    assert driven.power_shaft == pytest.approx(-work * 2, rel=1e-13)
-    assert driven.work_shaft == pytest.approx(-work, rel=1e-13)
-    assert pytest.approx(-work / (2 * math.pi), rel=1e-13) == driven.M_mean
-    assert pytest.approx(-work / (2 * math.pi * 0.2), rel=1e-13) == driven.W
-    lossless = turning(pump, rpm=120)
-    assert driven.lobes == pytest.approx(np.array(lossless.lobes) / eta, rel=1e-12)
-    assert driven.at(ANGLES).T_inertia == pytest.approx(lossless.at(ANGLES).T_inertia / eta, rel=1e-13, abs=1e-9)
-
-
-def test_inertia_line_of_tolle() -> None:
-    """For a fixed λ the inertia T-line is one curve times G v²/(gR), and its mean is zero."""
-    slow, fast = turning(ENGINE), turning(ENGINE, rpm=150)
-    assert fast.at(ANGLES).T_inertia == pytest.approx(9 * slow.at(ANGLES).T_inertia, rel=1e-12, abs=1e-9)
-    assert fast.M_mean == pytest.approx(slow.M_mean, rel=1e-12)
-    without = turning(replace(ENGINE, masses=None))
-    assert slow.at(ANGLES).T - slow.at(ANGLES).T_inertia == pytest.approx(without.at(ANGLES).T, rel=1e-12, abs=1e-8)
 
 
 LYING = Friction(crosshead=0.1, rings=Rings(3, 0.02, 3e4, 0.08))

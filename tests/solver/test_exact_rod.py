@@ -128,29 +128,3 @@ def test_free_body_of_the_rod(friction: Friction | None, offset: float) -> None:
     )
     assert moment == pytest.approx(inertia * psi_ddot, abs=1e-7)
     assert pytest.approx(s.T * CRANK, rel=1e-12) == s.M
-
-
-def test_point_masses_at_the_pins_need_no_couple() -> None:
-    """A rod whose mass sits in its two ends is what `share` describes, but for the centrifugal force in D."""
-    share, mass = 0.4, 90.0
-    card = Piston(0.45, indicator=Indicator(STEAM_CARD))
-    exact = ConnectingRod(mass, center_of_gravity=0.6 * LENGTH, inertia=mass * 0.24 * LENGTH**2)
-    forces, plain = (
-        one_cylinder(SliderCrank(CRANK, LENGTH), RPM, pistons=(card,), masses=Masses(50.0, rod))
-        for rod in (exact, ConnectingRod(mass, share))
-    )
-    degrees = np.arange(0.0, 360.0, 10.0)
-    for column in ("P", "S", "N", "T", "M"):
-        assert getattr(forces.at(degrees), column) == pytest.approx(
-            getattr(plain.at(degrees), column), rel=1e-12, abs=1e-8
-        )
-    pull = mass * 0.6 * CRANK * OMEGA**2
-    assert pytest.approx(plain.at(degrees).D - pull, rel=1e-12) == forces.at(degrees).D
-
-
-def test_a_rod_alone_and_at_rest_hangs_on_its_pins() -> None:
-    """Upright at the dead centre its weight rests on the crank pin, none of it on the crosshead pin."""
-    masses = Masses(0.0, ConnectingRod(250.0, center_of_gravity=0.9, inertia=70.0))
-    state = one_cylinder(SliderCrank(CRANK, LENGTH), None, masses=masses, inclination=90.0).at([0.0, 180.0])
-    assert state.S_crosshead == pytest.approx(0.0, abs=1e-9)
-    assert pytest.approx(250 * GRAVITY) == state.S_crank

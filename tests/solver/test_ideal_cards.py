@@ -8,7 +8,6 @@ import mpmath
 import numpy as np
 import pytest
 
-from kurbel.errors import RuleError
 from kurbel.machine import STANDARD_ATMOSPHERE, Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.indicator import Card, Indicator
@@ -82,34 +81,6 @@ def test_closed_work_against_50_digits(card: IdealCard, lift: float) -> None:
         assert abs(found / expected - 1) <= 1e-14
 
 
-def test_mean_pressure_of_the_book_for_steam() -> None:
-    """Without clearance and compression: p_i = p (ε + ε ln 1/ε) − p′, the rule of every old steam book."""
-    high, low, cut = 8 * BAR, 1.2 * BAR, 0.25
-    tiny = Steam(high, low, cut_off=cut, clearance=0.0)
-    assert process_in(tiny).area == pytest.approx(high * cut * (1 + np.log(1 / cut)) - low, rel=1e-8)
-
-
-@pytest.mark.parametrize("ratio", [4.0, 8.0, 12.0])
-def test_efficiency_of_otto(ratio: float) -> None:
-    """η = 1 − ε^(1−κ); the heat is c_v ΔT m = V_c Δp/(κ − 1)."""
-    kappa, intake, c = 1.4, 1 * BAR, 1 / (ratio - 1)
-    compressed = intake * ratio**kappa
-    heat = c * (3 * compressed - compressed) / (kappa - 1)
-    work = process_in(Otto(intake, 3 * compressed, clearance=c)).area
-    assert work / heat == pytest.approx(1 - ratio ** (1 - kappa), rel=1e-13)
-
-
-@pytest.mark.parametrize("cut", [1.5, 2.0, 3.0])
-def test_efficiency_of_diesel(cut: float) -> None:
-    """η = 1 − ε^(1−κ) (ρ^κ − 1)/(κ (ρ − 1)) with the cut-off ratio ρ; the heat is κ/(κ − 1) p ΔV."""
-    kappa, ratio, intake = 1.4, 16.0, 1 * BAR
-    c = 1 / (ratio - 1)
-    heat = kappa / (kappa - 1) * intake * ratio**kappa * c * (cut - 1)
-    work = process_in(Diesel(intake, cut_off=c * (cut - 1), clearance=c)).area
-    expected = 1 - ratio ** (1 - kappa) * (cut**kappa - 1) / (kappa * (cut - 1))
-    assert work / heat == pytest.approx(expected, rel=1e-13)
-
-
 def test_efficiency_of_the_mixed_cycle() -> None:
     """Seiliger: η = 1 − ε^(1−κ) (α ρ^κ − 1)/(α − 1 + κ α (ρ − 1)) with the pressure ratio α at constant volume."""
     kappa, ratio, intake, cut, rise = 1.4, 14.0, 1 * BAR, 1.8, 1.5
@@ -173,32 +144,3 @@ def test_given_points_joined_polytropically() -> None:
     assert abs(forces.energy_residual or 0.0) < 1e-14
     halfway = forces.drive.mechanism.crank_angles_at(np.array([0.4 * 0.2]), True)
     assert forces.at(halfway).p_head[0] == pytest.approx(12 * BAR * (0.1 / 0.5) ** n, rel=1e-13)
-
-
-def polytropic(clearance: float, expansion: list[tuple[float, float]], compression: list[tuple[float, float]]) -> Card:
-    lines = {"expansion": expansion, "compression": compression}
-    return Card.from_keys(unit=(BAR, 1), interpolate="polytropic", clearance=clearance, **lines)
-
-
-@pytest.mark.parametrize(
-    ("card", "message"),
-    [
-        (Otto(0.0, 10 * BAR, clearance=0.1), "peak: 10 bar is below the end of the compression"),
-        (Otto(0.0, 40 * BAR, clearance=0.2, exhaust=1.0), "a two-stroke engine has no exhaust stroke"),
-        (Diesel(-2 * BAR, cut_off=0.1, clearance=0.1), "intake: -2 bar is not above the vacuum"),
-        (Compressor(0.0, 90 * BAR, clearance=0.1), "such a compressor delivers nothing"),
-        (
-            Card.from_keys(
-                unit=(BAR, 1),
-                expansion=[(0, 3), (1, -1.5)],
-                compression=[(1, 0), (0, 3)],
-                interpolate="polytropic",
-                clearance=0.1,
-            ),
-            "not above the vacuum",
-        ),
-    ],
-)
-def test_cards_that_cannot_be(card: Any, message: str) -> None:
-    with pytest.raises(RuleError, match=message):
-        cylinder(card)

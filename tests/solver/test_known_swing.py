@@ -11,7 +11,6 @@ from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command
-from kurbel.errors import KurbelError
 from kurbel.solver.case import Case
 
 CYLINDERS = """
@@ -68,34 +67,6 @@ def test_swings_in_a_sweep_are_those_of_single_machines() -> None:
     for id in ("dE", "delta", "omega_max"):
         assert np.asarray(rows[id])[:3].tolist() == pytest.approx([one[id] for one in alone], rel=1e-15)
     assert np.isnan(np.asarray(rows["delta"])[3])  # it stalls
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ("effort: {swing: 1 kJ}, load: {slip: 0.1}", "load: needs the effort over the angle"),
-        ("effort: {swing: 1 kJ}, coupling: {stiffness: 1 kN m/rad, inertia: 1 kg m2}", "coupling: needs the effort"),
-        ("effort: {coefficient: 0.2}", "'coefficient' needs 'mean' beside it"),
-        ("effort: {mean: 3, coefficient: 0.2}", "3 has no unit; write it with one, such as '500 N m'"),
-        ("effort: {mean: 3 N m}", "give one of 'points', 'file' or 'harmonics', or 'swing'"),
-        ("effort: {unit: N m, harmonics: [[1, 1, 1]]}", "'harmonics' needs 'mean' beside it"),
-        ("effort: {unit: N m, mean: 3, points: [[0, 1], [360, 1]]}", "'points' has its own"),
-        ("effort: {unit: N m, points: [[0, 1], [1080, 1]]}", "write 'cycle_turns: 3' at the top"),
-        ("cycle_turns: 2, effort: {unit: N m, points: [[0, 1], [1080, 1]]}", "write 'cycle_turns: 3' at the top"),
-        (
-            "effort: {unit: N m, mean: 3, harmonics: [[0.5, 1, 1]]}",
-            "order 0.5 does not repeat after a two-stroke cycle",
-        ),
-        (
-            "effort: {swing: 1 kJ}, load: {unit: N m, harmonics: [[1, 1, 1]]}",
-            "load.harmonics: 'harmonics' needs 'mean' beside it",
-        ),
-    ],
-)
-def test_what_is_refused(keys: str, message: str) -> None:
-    with pytest.raises(KurbelError) as error:
-        kurbel.loads(f"{{speed: 1 Hz, {keys}}}")
-    assert message in str(error.value)
 
 
 def test_check_lists_what_a_swing_leaves_out() -> None:

@@ -87,20 +87,6 @@ def test_no_angle_beats_the_extremes(forces: CylinderForces) -> None:
         return
 
 
-def test_friction_opposes_the_motion_everywhere() -> None:
-    forces = one_cylinder(
-        SliderCrank(0.4, 2.0),
-        60,
-        pistons=(Piston(0.45, indicator=Indicator(STEAM_CARD, STEAM_CARD)),),
-        masses=Masses(800),
-        friction=Friction(0.1),
-        inclination=0.0,
-    )
-    state = forces.at(np.arange(1.0, 360.0, 1.0))
-    assert (state.F_friction * state.c <= 0).all()
-    assert (state.F_friction * state.c < 0).any()
-
-
 def reversals_of(
     expansion: list[tuple[float, float]], compression: list[tuple[float, float]]
 ) -> tuple[float, ...] | None:

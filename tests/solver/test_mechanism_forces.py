@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kurbel.errors import RuleError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Indicator
-from kurbel.machine.parts import ConnectingRod, Friction, Masses, Moment, Piston, RamForce, Rings
+from kurbel.machine.parts import Friction, Masses, Moment, Piston, RamForce, Rings
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
@@ -54,18 +53,6 @@ def every(machines: dict[str, Mechanism]) -> Any:
 
 
 @every(SLIDING)
-def test_torque_is_the_force_times_the_way_by_angle(mechanism: Mechanism) -> None:
-    """P dx = M dφ, with dx from differences of x: the torque asks for no derivative of its own here."""
-    forces = solved(mechanism, pistons=(STEAM,), masses=Masses(80), ram_force=RamForce(900, 100))
-    step = 1e-4
-    state = forces.at(DENSE)
-    way = forces.at(DENSE + step).x - forces.at(DENSE - step).x
-    size = abs(state.M).max()
-    assert pytest.approx(state.P * way / math.radians(2 * step), rel=1e-6, abs=1e-7 * size) == state.M
-    assert state.T * mechanism.crank == pytest.approx(state.M, rel=1e-14, abs=1e-14 * size)
-
-
-@every(SLIDING)
 def test_steam_does_the_work_of_its_cards_in_any_mechanism(mechanism: Mechanism) -> None:
     """∮ M dφ is the area of the cards: the chambers see x from the dead centre, wherever the book counts it from."""
     forces = solved(mechanism, pistons=(STEAM,), masses=Masses(80))
@@ -97,14 +84,6 @@ def test_rings_rub_in_any_mechanism(mechanism: Mechanism) -> None:
     rubbing = 2 * math.pi * 0.2 * 0.01 * 3e4 * 0.1
     assert forces.friction_work == pytest.approx(rubbing * 2 * mechanism.stroke, rel=1e-14)
     assert forces.energy_residual == pytest.approx(0, abs=2e-14)
-
-
-def test_force_on_the_pin_of_a_shaper_by_the_lever_rule() -> None:
-    """At φ = 0 the pin stands e + r from the pivot, at 180° e − r: the ram pulls with P R_l over that."""
-    state = solved(SlottedLever(0.3, 0.8, 1.3), ram_force=RamForce(1100, 500)).at([0.0, 180.0])
-    assert state["F_pin"] == pytest.approx([-1100 * 1.3 / 1.1, 500 * 1.3 / 0.5], rel=1e-14)
-    assert pytest.approx([-1100 * 1.3 / 1.1, -500 * 1.3 / 0.5], rel=1e-14) == state.T
-    assert pytest.approx([0, 0], abs=1e-12) == state.D
 
 
 def test_guides_and_pin_of_a_scotch_yoke() -> None:
@@ -176,51 +155,3 @@ def test_inertia_of_a_coupling_rod() -> None:
     found = forces.extremes_of("F_coupler")
     assert found.largest.value == pytest.approx(9000 / 0.305, rel=1e-14)
     assert "coupler_inertia" not in solved(ParallelCrank(0.305, 2.1), moment=Moment(9000)).key_values()
-
-
-@pytest.mark.parametrize(
-    ("parts", "path"),
-    [
-        ({"pistons": (STEAM,)}, "bore"),
-        ({"masses": Masses(3)}, "masses"),
-        ({"friction": Friction(crosshead=0.1)}, "friction"),
-        ({"inclination": 90.0}, "inclination"),
-        ({"ram_force": RamForce(3)}, "ram_force"),
-    ],
-)
-def test_nothing_hangs_on_what_only_swings(parts: dict[str, Any], path: str) -> None:
-    with pytest.raises(RuleError, match=f"{path}: nothing slides in a four-bar"):
-        Cylinder(TURNING["four-bar"], **parts)
-
-
-@pytest.mark.parametrize(
-    ("mechanism", "parts", "message"),
-    [
-        (ScotchYoke(0.2), {"friction": Friction(crosshead=0.1)}, "friction.crosshead: a scotch-yoke has no connecting"),
-        (
-            YokeFrame(0.1, 0.3),
-            {"friction": Friction(crosshead=0.1)},
-            "friction.crosshead: a yoke-frame has no crosshead",
-        ),
-        (ScotchYoke(0.2), {"masses": Masses(3, ConnectingRod(2))}, "masses.connecting_rod: a scotch-yoke has no"),
-        (ScotchYoke(0.2), {"moment": Moment(3)}, "moment: a scotch-yoke moves its output to and fro"),
-        (ParallelCrank(0.2, 1), {"moment": Moment(3, 1)}, "moment.return: the output of a parallel-crank turns on"),
-    ],
-)
-def test_parts_that_a_mechanism_cannot_have(mechanism: Mechanism, parts: dict[str, Any], message: str) -> None:
-    with pytest.raises(RuleError, match=message):
-        Cylinder(mechanism, **parts)
-
-
-@pytest.mark.parametrize("degrees", [20.0, 70.0, 160.0, 290.0])
-def test_thrust_in_the_coupler_counts_positive(degrees: float) -> None:
-    """Statics of the rocker: the thrust of the coupler on its pin holds the moment on it, R ch. 14 A."""
-    coupler, rocker, frame = 0.4, 0.3, 0.45
-    own = Cylinder(FourBar(crank=0.1, coupler=coupler, rocker=rocker, frame=frame), moment=Moment(100.0, 100.0))
-    state = CylinderForces(Machine((own,)), own).at([degrees])
-    phi, theta = math.radians(degrees), math.radians(state["theta"][0])
-    pin = 0.1 * math.cos(phi), 0.1 * math.sin(phi)
-    end = rocker * math.cos(theta), rocker * math.sin(theta)
-    along = (frame + end[0] - pin[0]) / coupler, (end[1] - pin[1]) / coupler
-    moment = state["F_coupler"][0] * (end[0] * along[1] - end[1] * along[0])
-    assert moment == pytest.approx(-state.M_out[0], rel=1e-12)

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from mpmath import atanh, ellipk
 
-from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -124,8 +123,3 @@ def test_journals_bear_the_flywheel_too() -> None:
     heavy, light = solved(ENGINE + RUBS), solved(without + RUBS)
     assert heavy.friction_works.get("journals") > 1.2 * light.friction_works.get("journals")
     assert heavy.friction_works.get("crank_pin") == pytest.approx(light.friction_works.get("crank_pin"), rel=1e-13)
-
-
-def test_a_diameter_stands_in_one_place_only() -> None:
-    with pytest.raises(MachineFileError, match="'pin_diameter' in 'crankshaft' gives the same; leave one of them out"):
-        loads(ENGINE + "friction: {crank_pin: 0.05, crank_pin_diameter: 210 mm}\n")

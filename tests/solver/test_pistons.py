@@ -10,7 +10,6 @@ from click.testing import CliRunner
 
 import kurbel
 from kurbel.cli import kurbel as command_line
-from kurbel.errors import KurbelError
 
 STEAM = """
 stroke: 800 mm
@@ -78,13 +77,6 @@ def test_against_the_crosshead_ends_change_places() -> None:
     degrees = np.arange(0.0, 360.0, 15.0)
     one, two = (kurbel.solve(each).cylinders[0].at(degrees).T for each in (text, other))
     assert one == pytest.approx(two, rel=1e-12)
-
-
-def test_lever_ratio_of_zero_and_without_tandem_are_refused() -> None:
-    with pytest.raises(KurbelError, match="does not move"):
-        kurbel.loads(engine("0"))
-    with pytest.raises(KurbelError, match="lever_ratio"):
-        kurbel.loads(f"{STEAM}lever_ratio: 2\n")
 
 
 def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:

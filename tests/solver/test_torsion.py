@@ -104,20 +104,6 @@ def test_a_mode_that_leaves_a_mass_at_rest() -> None:
     assert node[0] + node[1] == pytest.approx(1, abs=1e-12)
 
 
-def test_equal_chains_in_closed_form() -> None:
-    """2 √(k/J) sin(i π/2n), i = 0 … n − 1."""
-    count = 25
-    exact = [2 * math.sqrt(300.0 / 3) * math.sin(i * math.pi / (2 * count)) for i in range(count)]
-    assert Modes(undamped([3.0] * count, [300.0] * (count - 1))).omegas == pytest.approx(exact, rel=1e-14)
-
-
-def test_equal_chains_between_two_fixed_ends_in_closed_form() -> None:
-    """2 √(k/J) sin(i π/(2n + 2)), i = 1 … n."""
-    count = 25
-    exact = [2 * math.sqrt(300.0 / 3) * math.sin(i * math.pi / (2 * count + 2)) for i in range(1, count + 1)]
-    assert Modes(undamped([3.0] * count, [300.0] * (count + 1), "both")).omegas == pytest.approx(exact, rel=1e-14)
-
-
 @pytest.mark.parametrize("ground", ENDS)
 def test_holzer_at_a_frequency(ground: str) -> None:
     """At a natural frequency the table of the mode, else what a torque on the last mass, or a moved end, would make."""

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.errors import MachineFileError
 
 R, GUIDES, SPEED, MASS, PIN = 0.06, 0.26, 80 / 60, 36.0, 0.04
 TEXT = """
@@ -92,25 +91,3 @@ def test_a_batch_is_its_machines() -> None:
             value = alone[name]
             assert found[name][row] == pytest.approx(getattr(value, "value", value), rel=1e-12, abs=1e-12)
         assert found["dE"][row] == pytest.approx(alone.flywheel.dE, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        (TEXT.replace("guide_length: 260 mm", "") + "friction: {guides: 0.1}", "'guides' needs their distance"),
-        (TEXT + "friction: {guides: 2.2}", "the guides lock the yoke"),
-        (TEXT + "friction: {crosshead_pin: 0.1, crosshead_pin_diameter: 30 mm}", "a scotch-yoke has no connecting rod"),
-        (TEXT + "friction: {crank_pin: 0.1, crank_pin_diameter: 30 mm}", "'pin_diameter' gives the same"),
-        ("{crank: 60 mm, rod_ratio: 5, speed: 1 Hz, friction: {block: 0.1}}", "a slider-crank is no scotch-yoke"),
-    ],
-)
-def test_contradictions(text: str, message: str) -> None:
-    with pytest.raises(MachineFileError, match=message):
-        kurbel.loads(text)
-
-
-def test_a_batch_varies_the_coefficient_of_the_pin() -> None:
-    machine = kurbel.loads(TEXT + "friction: {crank_pin: 0.05}\n")
-    found = kurbel.sweep(machine, {"friction.crank_pin": [0.0, 0.04, 0.05, 0.06]}, ["work_crank_pin"])
-    alone = [case(f"crank_pin: {f}").cylinders[0].work_crank_pin for f in (0.0, 0.04, 0.05, 0.06)]
-    assert found["work_crank_pin"] == pytest.approx(alone, rel=1e-12, abs=1e-12)

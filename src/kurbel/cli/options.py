@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import wraps
 from typing import Any, NamedTuple, TypeVar
 
@@ -172,9 +172,9 @@ class Output(NamedTuple):
     look: Look
     file_name: str | None
 
-    def write(self, report: Report) -> None:
-        """Write the report."""
-        write_report(report, self.look, self.file_name)
+    def write(self, report: Report, first: Collection[str] | None = None) -> None:
+        """Write the report; first: see `write_report`."""
+        write_report(report, self.look, self.file_name, first)
 
 
 def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
@@ -239,6 +239,13 @@ cylinder_option = click.option(
 part_options = stacked(
     cylinder_option,
     click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
+    click.option(
+        "--all",
+        "everything",
+        is_flag=True,
+        expose_value=False,
+        help="Everything, on a low terminal, too, not a first selection.",
+    ),
 )
 units_option = click.option(
     "--units",

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from kurbel.cli.options import Output, Spreads, with_bar
 from kurbel.errors import UsageError
@@ -19,6 +20,9 @@ from kurbel.report.frame import Frame
 from kurbel.report.rows import over_stroke, rows_where
 from kurbel.report.tables import Report, crank_angles
 from kurbel.solver.case import Case
+
+_OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "decimal", "digits", "width"}
+"""Options that ask for nothing of which a first selection has only a part."""
 
 
 def case_of(file: str, case_name: str, overrides: Iterable[str], *outputs: str | None) -> Case:
@@ -122,4 +126,7 @@ class Request:
 
             bar = partial(with_bar, label="drawn machines")
             report = with_uncertainty(report, case, spreads, self.units, bar)
-        self.output.write(report)
+        context = click.get_current_context()
+        names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
+        given = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)
+        self.output.write(report, None if given else COMMANDS[self.command].first.split())

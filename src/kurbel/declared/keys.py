@@ -3,20 +3,22 @@
 Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`, …).
 """
 
-import dataclasses
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import Field, dataclass, fields
 from types import MappingProxyType, NoneType
 from typing import Any, ClassVar, NamedTuple, Union
 
 import numpy as np
 
 from kurbel.arrays import Flags
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.errors import Fault, Path, Step, refuse, refused
 
 TOO_EXTREME = "these numbers are too large or too small to compute with"
+Values = Mapping[str, Any]
+"""Values by key: what their forms make of them; REFUSED where one could not be read."""
 
 
 class Key(NamedTuple):
@@ -38,7 +40,7 @@ class Key(NamedTuple):
     example: str = ""
     also: tuple[str, ...] = ()
     attribute: str = ""
-    gives: Callable[[Mapping[str, Any]], dict[str, Any]] | None = None
+    gives: Callable[[Values], dict[str, Any]] | None = None
 
     @property
     def description(self) -> str:
@@ -60,52 +62,38 @@ Keys = dict[str, Key]
 
 
 def required(keys: Keys) -> list[str]:
-    """Return the names of the keys that nothing else can stand for."""
+    """Return the names of the keys that must be given, and that no other key can replace."""
     replaced = {key.instead for key in keys.values()}
     return [name for name, key in keys.items() if key.required and name not in replaced]
 
 
-def contradictions(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield which keys say the same thing, or lack one another."""
-    for name, key in keys.items():
-        other = key.instead
-        if name in given and other in given:
-            yield Fault((name,), f"'{other}' and '{name}' mean the same; give only one of them")
-        if name in given and key.needs and key.needs not in given:
-            yield Fault((name,), f"'{name}' needs '{key.needs}' beside it")
-        if other and keys[other].required and not {name, other} & given.keys():
-            shown = other if keys[other].example else name
-            yield Fault((), f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
-
-
-def out_of_bounds(keys: Keys, given: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield which numbers are out of the bounds of their keys."""
-    for name, value in given.items():
-        form = keys[name].form if name in keys else None
-        if isinstance(form, Number) and (wrong := form.out_of_bounds(value)):
-            yield Fault((name,), f"{value:g} {wrong}")
+def without(keys: Keys, name: str) -> str:
+    """Return what holds without a key: that it must be given, it or one of others, or else what `absent` says."""
+    key = keys[name]
+    either = [name, *(other for other, one in keys.items() if one.instead == name)]
+    alone = "must be given" if len(either) == 1 else f"{' or '.join(either)} must be given"
+    return alone if key.required else key.absent
 
 
 class Rule(NamedTuple):
     """What must not be: the entry or path that is wrong, where it is broken, the sentence, and its numbers.
 
     broken: true where it is, of one machine or of many, (machines,); comparisons with an unknown number, NaN, are not.
-    The sentence has entries and numbers in braces: `{bore}` with its unit, `{x:length}` a number with that of a kind;
-    one without numbers, None, is shown as it is.
+    The sentence has entries and numbers in braces: `{bore}` with its unit, `{x:length}` a number with that of a kind.
     """
 
     place: Union[str, Path]
     broken: Union[bool, Flags]
     sentence: str
-    numbers: Mapping[str, Any] | None = MappingProxyType({})
+    numbers: Values = MappingProxyType({})
     at_key: bool = False
 
     @classmethod
     def of(cls, fault: Fault) -> "Rule":
         """Return a fault that was found by itself as a rule that is broken."""
-        return cls(fault.path, True, fault.message, None, fault.at_key)
+        return cls(fault.path, True, fault.message, at_key=fault.at_key)
 
-    def below(self, *path: Any) -> "Rule":
+    def below(self, *path: Step) -> "Rule":
         """Return it as seen from further up."""
         return self._replace(place=(*path, *self.path))
 
@@ -114,40 +102,60 @@ class Rule(NamedTuple):
         """Where it is broken, from its record on."""
         return self.place if isinstance(self.place, tuple) else (self.place,)
 
-    def fault(self, record: "Record | None", row: int = 0) -> Fault:
-        """Return what is wrong with one of the machines, its numbers filled in, also from the entries of a record."""
+    def fault(self, record: "Record | None" = None) -> Fault:
+        """Return what is wrong with a machine, its numbers filled in, also from the entries of a record."""
 
         def filled(found: re.Match[str]) -> str:
-            name, kind = found[1], found[2]
-            if self.numbers and name in self.numbers:
+            name, kind = found[1], found[2] or ""
+            key = record.KEYS.get(name) if record else None
+            if name in self.numbers:
                 value = self.numbers[name]
-            else:
-                key = type(record).KEYS[name]  # type: ignore[union-attr]
+            elif key:
                 value, kind = vars(record)[key.attribute], kind or key.form.kind
-            if isinstance(value, str):
-                return value
-            one = value[row] if isinstance(value, np.ndarray) and value.ndim else value
-            return f"{one:g}" if kind in (None, "", "ratio") else show(one, kind)
+            else:
+                return found[0]
+            return str(value) if isinstance(value, str) else show(value, kind) if kind else f"{value:g}"
 
-        sentence = self.sentence
-        if self.numbers is not None:
-            sentence = re.sub(r"\{(\w+)(?::(\w+))?\}", filled, sentence)
-        return Fault(self.path, sentence, self.at_key)
+        return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
 
 
+def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
+    """Yield which keys give the same quantity, or need another key."""
+    for name, key in keys.items():
+        other = key.instead
+        if name in given and other in given:
+            yield Rule(name, True, f"'{other}' and '{name}' mean the same; give only one of them")
+        if name in given and key.needs and key.needs not in given:
+            yield Rule(name, True, f"'{name}' needs '{key.needs}' beside it")
+        if other in keys and keys[other].required and name not in given and other not in given:
+            shown = other if keys[other].example else name
+            yield Rule((), True, f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
+
+
+def _broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]:
+    """Return what is wrong with one machine; rules on the numbers of many are left to those who have them."""
+    return [rule.fault(record) for rule in rules if np.ndim(rule.broken) == 0 and rule.broken]
+
+
+def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
+    forms = {name: key.form for name, key in keys.items() if name in given}
+    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, NumberForm))
+    return [Fault((name,), f"{given[name]:g} {wrong}") for name, wrong in found if wrong]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Record:
     """A record of the machine file; each entry is said once, by `field` or `alternative`."""
 
     KEYS: ClassVar[Keys] = {}
 
     def __init_subclass__(cls) -> None:
-        own: Keys = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
+        own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
         for name, value in vars(cls).items():
-            if isinstance(value, dataclasses.Field) and "key" in value.metadata:
-                key = value.metadata["key"]
-                own[key.attribute or name] = key._replace(attribute=name)
-            elif isinstance(value, Key):
-                own[value.attribute or name] = value._replace(attribute="")
+            key = value.metadata.get("key") if isinstance(value, Field) else value
+            if isinstance(key, Key):
+                attribute = name if isinstance(value, Field) else ""
+                own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
         cls.KEYS = own
 
     def __post_init__(self) -> None:
@@ -158,31 +166,31 @@ class Record:
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
-        fields: Any = dataclasses.fields(self)  # type: ignore[arg-type]
-        given = [(one.name, vars(self)[one.name]) for one in fields if vars(self)[one.name] is not one.default]
+        given = [(one.name, vars(self)[one.name]) for one in fields(self) if vars(self)[one.name] is not one.default]
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in given)})"
 
     def rules(self) -> Iterator[Rule]:
         """Yield what must not be, beside the bounds of the entries."""
         return iter(())
 
-    def _entered(self) -> dict[str, Any]:
-        """Return the values of the entries that are not the default ones, by key."""
-        defaults = {one.name: one.default for one in dataclasses.fields(self)}  # type: ignore[arg-type]
-        values = {name: (vars(self).get(key.attribute), key.attribute) for name, key in self.KEYS.items()}
-        return {name: value for name, (value, own) in values.items() if own and value is not defaults.get(own)}
+    @classmethod
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+        """Yield what must not be of the values by key, before they become a record; some may be REFUSED."""
+        return iter(())
 
-    def contradictions(self) -> Iterator[Rule]:
-        """Yield which entries say the same thing, or lack one another: for what is also made in Python."""
-        return map(Rule.of, contradictions(self.KEYS, self._entered()))
-
-    def faults(self) -> Iterator[Fault]:
-        """Yield what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
-        scalars = ((name, value) for name, value in self._entered().items() if not isinstance(value, (tuple, NoneType)))
-        given = {name: value for name, value in scalars if np.ndim(value) == 0}
-        found = [*out_of_bounds(self.KEYS, given)]
-        found = found or [rule.fault(self) for rule in self.rules() if np.ndim(rule.broken) == 0 and rule.broken]
-        yield from found or (Fault((name,), "nan is no number") for name, value in given.items() if value != value)
+    def faults(self) -> list[Fault]:
+        """Return what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
+        default = {one.name: one.default for one in fields(self)}
+        keys = {name: key for name, key in self.KEYS.items() if key.attribute}
+        known = {name: (vars(self)[key.attribute], default.get(key.attribute)) for name, key in keys.items()}
+        given = {name: value for name, (value, absent) in known.items() if value is not absent}
+        scalars = {name: value for name, value in given.items() if not isinstance(value, (tuple, NoneType))}
+        numbers = {name: value for name, value in scalars.items() if np.ndim(value) == 0}
+        return (
+            _out_of_bounds(keys, numbers)
+            or _broken((*contradictions(keys, given), *self.rules()), self)
+            or [Fault((name,), "nan is no number") for name, value in numbers.items() if value != value]
+        )
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:
@@ -192,8 +200,8 @@ class Record:
         are out of the bounds of their keys, and for whatever the record refuses.
         """
         given = {name: value for name, value in values.items() if value is not None}
-        refuse(*contradictions(cls.KEYS, given), *out_of_bounds(cls.KEYS, given))
-        refuse(*cls.faults_of_keys(values))
+        refuse(*_broken(contradictions(cls.KEYS, given)), *_out_of_bounds(cls.KEYS, given))
+        refuse(*_broken(cls.rules_of_keys(values)))
         return cls.of_keys(**values)
 
     @classmethod
@@ -208,11 +216,6 @@ class Record:
         return cls(*args, **known)
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with values by key, of which some may be REFUSED."""
-        return [rule.fault(None) for rule in cls.rules_of_keys(values) if rule.broken]
-
-    @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        """Yield what must not be of the values by key, before they become a record; some may be REFUSED."""
-        return iter(())
+    def faults_of_keys(cls, given: Values) -> list[Fault]:
+        """Return what is wrong with values by key, of which some are REFUSED: contradictions, and rules of others."""
+        return _broken((*contradictions(cls.KEYS, given), *cls.rules_of_keys(given)))

@@ -5,14 +5,15 @@ The tree is made of dict, list and texts. Numbers stay text: what a text means i
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum
-from typing import Any, Final
+from typing import Any, Final, Union
 
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.quantity import Quantity
 
-Tree = dict[str, Any]
+Node = Union[str, list["Node"], dict[str, "Node"], "_Reported"]
+"""What stands under a key: a text, a list, a mapping, or REFUSED."""
+Tree = dict[str, Node]
 FAULT_LIMIT = 100
 """A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
 LONGEST_VALUE = 200
@@ -33,23 +34,9 @@ REFUSED: Final = _Reported.REFUSED
 """What stands in place of a value that has been reported already; readers pass over it in silence."""
 
 
-def has_refused(values: Iterable[Any]) -> bool:
+def has_refused(values: Iterable[object]) -> bool:
     """Return whether a value could not be read; others may be arrays, which `in` would compare by their numbers."""
     return any(one is REFUSED for one in values)
-
-
-@dataclass(eq=False)
-class Given:
-    """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.
-
-    values: by key, with others like it and tuples of them in place of records; mapping, path: where it was read.
-    """
-
-    form: Any
-    mapping: Tree
-    path: Path
-    values: Tree
-    made: Any = None
 
 
 class StopReading(Exception):
@@ -129,25 +116,27 @@ class Reading:
 
 def shown(text: str, most: int = 60) -> str:
     """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
+    if text.isprintable() and len(text) <= most:
+        return text
     flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
     return flat if len(flat) <= most else flat[: most - 3] + "…"
 
 
-def kind_of(value: Any) -> str:
+def kind_of(value: Node) -> str:
     """Return what a value of the tree is, for 'got …'."""
     if isinstance(value, dict):
         return "a mapping" if value else "an empty mapping"
     if isinstance(value, list):
         return "a list" if value else "an empty list"
-    return f"'{shown(value)}'"
+    return f"'{shown(str(value))}'"
 
 
-def is_nothing(value: Any) -> bool:
+def is_nothing(value: Node) -> bool:
     """Return whether nothing is written, or what YAML takes for nothing."""
     return isinstance(value, Plain) and value in ("", "~", "null", "Null", "NULL")
 
 
-def glued_hint(value: Any) -> str:
+def glued_hint(value: Node) -> str:
     """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
     found = re.search(r"\b[A-Za-z_]\w*:\S", value) if isinstance(value, str) else None
     return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""

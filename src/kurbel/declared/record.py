@@ -8,14 +8,31 @@ record that is also made in Python yields its `contradictions` among its rules.
 
 import dataclasses
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from kurbel.declared.forms.structures import form_of
-from kurbel.declared.keys import Key, Record, Rule
+from kurbel.declared.keys import Key, Record, Rule, Values
 
-__all__ = ["Record", "Rule", "alternative", "field", "first_of"]
+__all__ = ["Record", "Rule", "Values", "alternative", "field", "first_of", "record"]
+
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+else:  # typing has it from Python 3.11 on
+
+    def dataclass_transform(**_):
+        """Return a decorator that changes nothing."""
+        return lambda made: made
+
+
+Made = TypeVar("Made")
+
+
+@dataclass_transform(frozen_default=True, eq_default=False)
+def record(made: type[Made]) -> type[Made]:
+    """Make a class of entries a record: frozen, equal to nothing but itself, and shown without its defaults."""
+    return dataclasses.dataclass(frozen=True, eq=False, repr=False)(made)
 
 
 def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
@@ -33,8 +50,7 @@ def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more:
     file has none, None unless it is required; key: its name in the file, if not that of the attribute; more: of `Key`
     and `form_of`.
 
-    >>> from dataclasses import dataclass
-    >>> @dataclass(frozen=True, eq=False, repr=False)
+    >>> @record
     ... class Ring(Record):
     ...     height: float = field("length", "Height of the ring", "h", above=0, required=True)
     >>> Ring(height=-0.1)

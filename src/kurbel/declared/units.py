@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterable
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kurbel.declared.numerals import NUMBER, parse_ratio, plain
 from kurbel.errors import UnitError
@@ -18,60 +18,129 @@ Factor = tuple[float, float]
 
 
 class Kind(NamedTuple):
-    """What is said of a kind: sizes in its base, and units, of which none is that of SI.
+    """A kind of quantity: the sizes of its values in its base, its units, and which of them results are shown in.
 
     smallest: above 0; where it is 0, values are sums in which noise is no fault: a measured pressure may be 1e-17 Pa.
-    metric: also several units, of which the size of a value decides. written: a value as a person writes it.
+    units: names, or each of a list times (*) or over (/) each of another, between semicolons. metric, technical,
+    imperial: None for the unit of SI; of several the size of a value decides. written: as a person writes a value.
     """
 
     smallest: float
     largest: float
+    units: str
     si: str
-    metric: Any = None
-    technical: Any = None
-    imperial: Any = None
+    metric: str | tuple[str, ...] | None = None
+    technical: str | None = None
+    imperial: str | None = None
     written: str = ""
 
 
+_LENGTHS = "m, mm, cm, dm, um, km, in, ft"
+_AREAS = "m2, mm2, cm2, dm2, um2, km2, in2, ft2"
+_MASSES = "kg, g, t, lb"
+_FORCES = "N, kN, MN, kgf, kp, tf, lbf"
+_PRESSURES = "Pa, kPa, MPa, GPa, hPa, mbar, bar, at, atm, psi, Torr, mmHg, cmHg, inHg, mmH2O, cmH2O, inH2O, mWS"
+_STRESSES = f"{_FORCES} / {_AREAS}"
+_TORQUES = f"{_FORCES} * {_LENGTHS}"
+
 KINDS = {
-    "length": Kind(1e-9, 1e9, "m", ("mm", "m"), "mm", "in", "450 mm"),
-    "area": Kind(1e-18, 1e18, "m^2", "cm^2", "cm^2", "in^2"),
-    "mass": Kind(1e-12, 1e18, "kg", ("kg", "t"), None, "lb", "120 kg"),
-    "force": Kind(0, 1e18, "N", ("N", "kN", "MN"), "kgf", "lbf"),
-    "pressure": Kind(0, 1e15, "Pa", ("mbar", "bar"), "at", "psi", "5.4 bar"),
-    "stress": Kind(1e-3, 1e15, "Pa", "N/mm^2", "kgf/cm^2", "psi", "60 N/mm2"),
-    "time": Kind(1e-12, 1e12, "s"),
-    "angle": Kind(0, 1e6, "deg", written="90 deg"),
-    "speed": Kind(1e-9, 1e6, "1/s", "rpm", "rpm", "rpm", "50 rpm"),
-    "frequency": Kind(1e-9, 1e9, "Hz"),
-    "angular_velocity": Kind(0, 1e9, "rad/s"),
-    "angular_acceleration": Kind(0, 1e18, "rad/s^2"),
-    "velocity": Kind(0, 1e15, "m/s", imperial="ft/s"),
-    "acceleration": Kind(0, 1e18, "m/s^2", imperial="ft/s^2"),
-    "torque": Kind(0, 1e18, "N m", ("N m", "kN m"), "kgf m", "lbf ft"),
-    "energy": Kind(0, 1e18, "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"),
-    "power": Kind(0, 1e18, "W", ("W", "kW", "MW"), "PS", "hp"),
-    "inertia": Kind(1e-18, 1e18, "kg m^2", imperial="lb ft^2"),
-    "unbalance": Kind(1e-15, 1e18, "kg m", imperial="lb in"),
-    "gd2": Kind(1e-18, 1e18, "kg m^2", None, "kgf m^2", "lb ft^2", "10 kgf m2"),
-    "stiffness": Kind(1e-12, 1e18, "N m/rad", imperial="lbf ft/rad"),
-    "damping": Kind(1e-15, 1e18, "N m s/rad", imperial="lbf ft s/rad"),
-    "pressure_velocity": Kind(0, 1e18, "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"),
-    "volume": Kind(1e-27, 1e27, "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"),
-    "volume_rise": Kind(0, 1e27, "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
-    "pressure_rise": Kind(0, 1e15, "Pa/deg", ("mbar/deg", "bar/deg"), "at/deg", "psi/deg", "10 bar/deg"),
-    "density": Kind(1e-9, 1e9, "kg/m^3"),
-    "temperature": Kind(1e-3, 1e6, "K", written="20 °C"),
-    "flow": Kind(0, 1e18, "m^3/s", ("l/min", "m^3/h"), "m^3/h", "ft^3/min"),
-    "mass_flow": Kind(0, 1e18, "kg/s", "kg/h", "kg/h", "lb/h"),
-    "molar_mass": Kind(1e-9, 1e6, "kg/mol", "g/mol", written="28.96 g/mol"),
-    "gas_constant": Kind(1e-3, 1e9, "J/kg K"),
-    "spring": Kind(1e-15, 1e3, "m/Pa", "mm/bar", "mm/at", "in/psi", "10 mm/at"),
-    "ratio": Kind(1e-15, 1e15, ""),
+    "length": Kind(1e-9, 1e9, _LENGTHS, "m", ("mm", "m"), "mm", "in", "450 mm"),
+    "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2"),
+    "mass": Kind(1e-12, 1e18, f"{_MASSES}; tonne, long ton, short ton", "kg", ("kg", "t"), None, "lb", "120 kg"),
+    "force": Kind(0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf"),
+    "pressure": Kind(
+        0, 1e15, f"{_PRESSURES}; {_STRESSES}; lb/in2, lb/ft2", "Pa", ("mbar", "bar"), "at", "psi", "5.4 bar"
+    ),
+    "stress": Kind(
+        1e-3, 1e15, f"N/mm2; {_STRESSES}; {_PRESSURES}; lb/in2, lb/ft2", "Pa", "N/mm^2", "kgf/cm^2", "psi", "60 N/mm2"
+    ),
+    "time": Kind(1e-12, 1e12, "s, min, h", "s"),
+    "angle": Kind(0, 1e6, "deg, °, rad", "deg", written="90 deg"),
+    "speed": Kind(
+        1e-9,
+        1e6,
+        "1/s, rpm, 1/min, U/min, rev/min, r/min, min-1, rps, s-1, Hz, rad/s",
+        "1/s",
+        "rpm",
+        "rpm",
+        "rpm",
+        "50 rpm",
+    ),
+    "frequency": Kind(1e-9, 1e9, "Hz, 1/s, kHz, 1/min", "Hz"),
+    "angular_velocity": Kind(0, 1e9, "rad/s", "rad/s"),
+    "angular_acceleration": Kind(0, 1e18, "rad/s2", "rad/s^2"),
+    "velocity": Kind(0, 1e15, f"{_LENGTHS} / s, min, h", "m/s", imperial="ft/s"),
+    "acceleration": Kind(0, 1e18, f"{_LENGTHS} / s2", "m/s^2", imperial="ft/s^2"),
+    "torque": Kind(
+        0,
+        1e18,
+        f"{_TORQUES}; Nm, kNm, lb ft, ft lb, ft lbf, lb in, in lb, in lbf",
+        "N m",
+        ("N m", "kN m"),
+        "kgf m",
+        "lbf ft",
+    ),
+    "energy": Kind(0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"),
+    "power": Kind(0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp"),
+    "inertia": Kind(1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2"),
+    "unbalance": Kind(1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in"),
+    "gd2": Kind(
+        1e-18,
+        1e18,
+        "kg, t * m2, cm2; kgf m2, kp m2, tf m2, N m2, lb ft2",
+        "kg m^2",
+        None,
+        "kgf m^2",
+        "lb ft^2",
+        "10 kgf m2",
+    ),
+    "stiffness": Kind(
+        1e-12, 1e18, f"{_FORCES} * m/rad, mm/rad, ft/rad; Nm/rad, kNm/rad", "N m/rad", imperial="lbf ft/rad"
+    ),
+    "damping": Kind(
+        1e-15,
+        1e18,
+        f"{_FORCES} * m s/rad; Nm s/rad, kNm s/rad, N m s, Nm s, kN m s, lbf ft s/rad",
+        "N m s/rad",
+        imperial="lbf ft s/rad",
+    ),
+    "volume": Kind(1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"),
+    "volume_rise": Kind(0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
+    "pressure_rise": Kind(
+        0,
+        1e15,
+        f"{_PRESSURES}, lb/in2, lb/ft2 / deg, rad",
+        "Pa/deg",
+        ("mbar/deg", "bar/deg"),
+        "at/deg",
+        "psi/deg",
+        "10 bar/deg",
+    ),
+    "pressure_velocity": Kind(
+        0, 1e18, "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s", "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"
+    ),
+    "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3"),
+    "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
+    "flow": Kind(0, 1e18, "m3, dm3, l, cm3, ft3, in3 / s, min, h", "m^3/s", ("l/min", "m^3/h"), "m^3/h", "ft^3/min"),
+    "mass_flow": Kind(0, 1e18, f"{_MASSES} / s, min, h", "kg/s", "kg/h", "kg/h", "lb/h"),
+    "molar_mass": Kind(1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"),
+    "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K"),
+    "spring": Kind(
+        1e-15,
+        1e3,
+        f"mm, cm, m, in / {_PRESSURES}, lb/in2, lb/ft2; mm/kgf/cm2, cm/kgf/cm2",
+        "m/Pa",
+        "mm/bar",
+        "mm/at",
+        "in/psi",
+        "10 mm/at",
+    ),
+    "ratio": Kind(1e-15, 1e15, "", ""),
 }
 """A value may be 0, and of either sign. An angle of 1e6° is known to 1e-10°; beyond, nothing of it would be left."""
 
-Point = tuple[float, float]
+Point = tuple[float, ...]
+"""Numbers of a diagram: two, or three."""
 
 MOST_POINTS = 500_000
 """Points or samples of one diagram."""
@@ -85,7 +154,7 @@ def range_of(kind: str) -> str:
     >>> range_of("length")
     '0 or 1e-09 to 1e+09 m'
     """
-    smallest, largest, unit, *_ = KINDS[kind]
+    smallest, largest, _, unit, *_ = KINDS[kind]
     return f"{f'0 or {smallest:g}' if smallest else '0'} to {largest:g} {unit}".rstrip()
 
 
@@ -111,7 +180,8 @@ _FACTORS: dict[str, Factor] = {
     **{"N": (1, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
     **{"lbf": (_LBF, 1), "long_tonf": (2240 * _LBF, 1), "short_tonf": (2e3 * _LBF, 1)},
     **{"Pa": (1, 1), "bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH)},
-    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "inHg": (25.4 * _MMHG, 1), "mWS": (GRAVITY * 1e3, 1)},
+    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "cmHg": (10 * _MMHG, 1), "inHg": (25.4 * _MMHG, 1)},
+    **{"mmH2O": (GRAVITY, 1), "cmH2O": (10 * GRAVITY, 1), "inH2O": (25.4 * GRAVITY, 1), "mWS": (GRAVITY * 1e3, 1)},
     # torque in N m, energy in J, power in W
     **{"Nm": (1, 1), "J": (1, 1), "W": (1, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
 }
@@ -142,50 +212,6 @@ _ELSEWHERE: dict[str, dict[str, Factor]] = {
 }
 """Kind -> single units that mean something else in it. GD2 = 4J counts in kg m2: 1 kgf is the weight of 1 kg."""
 
-_LENGTHS = "m, mm, cm, dm, um, km, in, ft"
-_AREAS = "m2, mm2, cm2, dm2, um2, km2, in2, ft2"
-_MASSES = "kg, g, t, lb"
-_FORCES = "N, kN, MN, kgf, kp, tf, lbf"
-_PRESSURES = "Pa, kPa, MPa, GPa, hPa, mbar, bar, at, atm, psi, Torr, mmHg, inHg, mWS"
-_STRESSES = f"{_FORCES} / {_AREAS}"
-_TORQUES = f"{_FORCES} * {_LENGTHS}"
-
-_UNITS: dict[str, tuple[str, ...]] = {
-    "length": (_LENGTHS,),
-    "area": (_AREAS,),
-    "mass": (_MASSES, "tonne, long ton, short ton"),
-    "force": (_FORCES, "long tonf, short tonf"),
-    "pressure": (_PRESSURES, _STRESSES, "lb/in2, lb/ft2"),
-    "stress": ("N/mm2", _STRESSES, _PRESSURES, "lb/in2, lb/ft2"),
-    "time": ("s, min, h",),
-    "angle": ("deg, °, rad",),
-    "speed": ("1/s, rpm, 1/min, U/min, rev/min, r/min, min-1, rps, s-1, Hz, rad/s",),
-    "frequency": ("Hz, 1/s, kHz, 1/min",),
-    "angular_velocity": ("rad/s",),
-    "angular_acceleration": ("rad/s2",),
-    "velocity": (f"{_LENGTHS} / s, min, h",),
-    "acceleration": (f"{_LENGTHS} / s2",),
-    "torque": (_TORQUES, "Nm, kNm, lb ft, ft lb, ft lbf, lb in, in lb, in lbf"),
-    "energy": ("J, kJ, MJ", _TORQUES, "Nm"),
-    "power": ("W, kW, MW, PS, hp, kgf m/s",),
-    "inertia": (f"{_MASSES} * {_AREAS}", "lbf in s2, lbf ft s2"),
-    "unbalance": (f"{_MASSES}, mg * {_LENGTHS}",),
-    "gd2": ("kg, t * m2, cm2", "kgf m2, kp m2, tf m2, N m2, lb ft2"),
-    "stiffness": (f"{_FORCES} * m/rad, mm/rad, ft/rad", "Nm/rad, kNm/rad"),
-    "damping": (f"{_FORCES} * m s/rad", "Nm s/rad, kNm s/rad, N m s, Nm s, kN m s, lbf ft s/rad"),
-    "density": ("kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3",),
-    "spring": (f"mm, cm, m, in / {_PRESSURES}, lb/in2, lb/ft2", "mm/kgf/cm2, cm/kgf/cm2"),
-    "volume": ("m3, dm3, l, cm3, mm3, in3",),
-    "temperature": ("K, °C, °F",),
-    "flow": ("m3, dm3, l, cm3, ft3, in3 / s, min, h",),
-    "mass_flow": (f"{_MASSES} / s, min, h",),
-    "molar_mass": ("kg/mol, g/mol, kg/kmol",),
-    "gas_constant": ("J/kg K, kJ/kg K, kgf m/kg K",),
-    "volume_rise": ("m3, cm3, in3 / deg, rad",),
-    "pressure_rise": (f"{_PRESSURES}, lb/in2, lb/ft2 / deg, rad",),
-    "pressure_velocity": ("W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s",),
-}
-"""Kind -> its units: names, or each one of a list times (*) or over (/) each one of another."""
 
 ZEROED_UNITS = {
     **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
@@ -198,13 +224,10 @@ ZEROED_UNITS = {
 def _units_of(kind: str) -> dict[str, Factor]:
     """Return the units of a kind by name."""
     names: list[str] = []
-    for listed in _UNITS[kind]:
-        for joint, sign in ((" ", " * "), ("/", " / ")):
-            first, joined, second = listed.partition(sign)
-            if joined:
-                names += [f"{one}{joint}{other}" for one in first.split(", ") for other in second.split(", ")]
-        if " * " not in listed and " / " not in listed:
-            names += listed.split(", ")
+    for listed in KINDS[kind].units.split("; "):
+        first, sign, second, *_ = *re.split(r" ([*/]) ", listed), "", ""
+        joint = sign.replace("*", " ")
+        names += [one + joint + other for one in first.split(", ") for other in second.split(", ")]
     return {name: _factor(name, kind) for name in names}
 
 
@@ -231,6 +254,7 @@ def _normal(unit: str) -> str:
     for sign, ours in (("⁻¹", "-1"), ("²", "2"), ("³", "3"), ("^", ""), ("·", " "), ("*", " "), ("µ", "u"), ("μ", "u")):
         unit = unit.replace(sign, ours)
     unit = re.sub(r"\bdeg ?(?=[CF]$)", "°", unit.replace("/(kg K)", "/kg K"))
+    unit = re.sub(r" (?=(H2O|Hg)\b)", "", unit)
     unit = re.sub(r"\binch(es)?\b", "in", re.sub(r"\b(foot|feet)\b", "ft", unit))
     return re.sub(r"\s*/\s*", "/", " ".join(unit.split()))
 
@@ -361,7 +385,7 @@ def unit_example(kind: str) -> str:
 
 def kinds() -> tuple[str, ...]:
     """Return the kinds of quantities that have units."""
-    return tuple(_UNITS)
+    return tuple(name for name, kind in KINDS.items() if kind.units)
 
 
 def unit_names(kind: str) -> tuple[str, ...]:

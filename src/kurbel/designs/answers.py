@@ -27,8 +27,8 @@ _MOST_POINTS = 40
 """Of a card in a batch."""
 _FEWEST = 3
 """Machines of one structure; fewer are computed as quickly one by one."""
-AT_ONCE = 1000
-"""Machines of a batch: enough to share the overhead of one run; more would only take memory."""
+AT_ONCE = 500
+"""Machines of a batch: enough to share the overhead of one run; more would only take memory, and time to get it."""
 
 _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
 """Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""

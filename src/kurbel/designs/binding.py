@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Maker, too_extreme
-from kurbel.declared.forms.values import Number
+from kurbel.declared.forms.structures import Given, Maker, too_extreme
+from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, Tree, shown
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Path, RuleError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -69,8 +69,11 @@ class Binder:
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
-    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
-        """Return the machines of rows of texts, those of one structure in one record, and why other rows have none."""
+    def bound(self, rows: Sequence[Sequence[str]], wanted: range | None = None) -> Batches:
+        """Return the machines of rows of texts, those of one structure in one record, and why other rows have none.
+
+        wanted: places of the rows that are needed, all of them if None; a row that is read alone is read only then.
+        """
         found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
         for place, row in enumerate(rows):
@@ -82,7 +85,8 @@ class Binder:
                 batches, apart = self._together(np.array(places), rows)
                 found.batches.extend(batches)
             for place in apart:
-                self._bind_alone(place, rows[place], found)
+                if wanted is None or place in wanted:
+                    self._bind_alone(place, rows[place], found)
         return found
 
     def _with(self, texts: Sequence[str]) -> Origin:
@@ -185,7 +189,7 @@ def _values(
     columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
     UsageError for a key whose value is not a number.
     """
-    slots: list[tuple[Given, str, Number, Array]] = []
+    slots: list[tuple[Given, str, NumberForm, Array]] = []
     read = np.ones(count, dtype=bool)
     for key, texts in columns.items():
         owner, name, _ = _owner(path_of(key), every)

@@ -170,8 +170,8 @@ class Sweep:
 
     def chunk(self, together: range, wanted: range) -> list[Design]:
         """Return the wanted rows of a chunk, counted from 0."""
-        bound = self._binder.bound([self.plan.texts(row) for row in together])
         own = range(wanted.start - together.start, wanted.stop - together.start)
+        bound = self._binder.bound([self.plan.texts(row) for row in together], own)
         found = bound.failures | answers_of(bound.batches, self._every, own)
         answered = {row: each for row in own if not isinstance(each := found[row], str)}
         columns = zip(zip(*answered.values()), self.requested, self._units)

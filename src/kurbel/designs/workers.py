@@ -152,13 +152,19 @@ def work() -> None:
 @contextmanager
 def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
     try:
+        import asyncio
+
         from distributed import Client, TimeoutError
-        from distributed.comm import CommClosedError
+        from distributed.comm import CommClosedError, connect
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
 
+    async def reached() -> None:
+        await (await connect(address, timeout=_ANSWERS_WITHIN)).close()
+
     logging.disable()  # of a lost scheduler it writes tracebacks
     try:
+        asyncio.run(reached())  # a client that reaches nothing waits 20 s at its end, and writes a traceback
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
         raise UsageError(f"--dask {address}: no scheduler responds there ({_first_line(error)})") from None

@@ -7,8 +7,8 @@ Records check their own rules and raise RuleError. They hold numbers only; what 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, shown
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.reading import REFUSED, has_refused, shown
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
@@ -50,7 +50,7 @@ def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class LoadCase(Record):
     """A load case: values by dotted key, as in the file, that stand there instead of its own."""
 
@@ -64,7 +64,7 @@ class LoadCase(Record):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Machine(Record):
     """A whole machine.
 
@@ -74,7 +74,7 @@ class Machine(Record):
     name of a cylinder where it is of that one; uncertainty: dotted key -> its standard uncertainty as a text.
     """
 
-    _format = alternative(int, "Version of the file format", least=FORMAT, most=FORMAT, absent="1", key="kurbel")
+    _kurbel = alternative(int, "Version of the file format", least=FORMAT, most=FORMAT, absent="1")
     cylinders: tuple[Cylinder, ...]
     name: str = field(str, "Name of the machine", default="machine", absent="the file name")
     speed: float | None = field(
@@ -117,21 +117,18 @@ class Machine(Record):
         instead="brake_power",
         needs="speed",
         gives=lambda given: {"brake_power": 2 * math.pi * given["speed"] * given["brake_torque"]},
-        key="brake_torque",
     )
-    _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder", key="cylinder")
+    _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder")
     _cylinders = alternative(
         OneOf(Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"), RecordForm(EqualCylinders)),
         "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
         gives=lambda given: {"cylinders": given["cylinders"]},
-        key="cylinders",
     )
     _firing_order = alternative(
         FIRING_ORDER,
         "Order in which the cylinders fire, at equal intervals over the cycle; sets `crank_position`",
         absent="positions as given",
-        key="firing_order",
     )
     flywheel: Flywheel | None = field(Flywheel, "Flywheel", absent="no speed line")
     load: Load | None = field(
@@ -248,13 +245,12 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the shaft line, where other keys could not be read."""
-        shaft: Any = values.get("shaft")
-        cylinders: Any = values.get("cylinders", (values.get("cylinder", REFUSED),))
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+        """Yield what is wrong with the shaft line, where other keys could not be read."""
+        shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        unread = REFUSED in values.values() and isinstance(shaft, tuple) and not unknown
-        return _shaft_faults(shaft, cylinders) if unread else []
+        if has_refused(given.values()) and isinstance(shaft, tuple) and not unknown:
+            yield from map(Rule.of, _shaft_faults(shaft, cylinders))
 
     def rules(self) -> Iterator[Rule]:
         """Yield what must not be of the machine as a whole."""

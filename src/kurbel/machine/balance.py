@@ -1,13 +1,12 @@
 """What is put on a machine to balance it: counterweights on the crank, balance shafts, the wheels of a locomotive."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from kurbel.declared.forms.values import Choice
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field, record
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class _Weight(Record):
     """A weight that turns with a shaft: u = m r."""
 
@@ -27,7 +26,6 @@ class _Weight(Record):
         instead="product",
         needs="radius",
         gives=lambda given: {"product": given["mass"] * given["radius"]},
-        key="mass",
     )
     _radius = alternative(
         "length",
@@ -35,11 +33,10 @@ class _Weight(Record):
         "r_g",
         above=0,
         needs="mass",
-        key="radius",
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Counterweight(_Weight):
     """A weight that turns with the crank; without a place it stands at its cylinder, one of the machine nowhere."""
 
@@ -55,7 +52,7 @@ class Counterweight(_Weight):
     axial_position: float | None = field("length", "Its place along the shaft", "z", absent="that of its cylinder")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class SharedCounterweights(Record):
     """Counterweights opposite each throw, for what turns with it and a share of what goes to and fro.
 
@@ -87,11 +84,11 @@ class SharedCounterweights(Record):
         yield Rule("planes", count not in (0, 2) or same, f"{count} of them, {different} different; {message}")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class BalanceShaft(_Weight):
     """A shaft with a weight that turns `order` times in a turn of the crank, with it or against it."""
 
-    _against = alternative(
+    _sense = alternative(
         Choice(
             ("with", "against"),
             {"same": "with", "forward": "with", "+": "with", "opposite": "against", "backward": "against"},
@@ -99,7 +96,6 @@ class BalanceShaft(_Weight):
         "Sense of rotation: with the crank or against it",
         required=True,
         gives=lambda given: {"against": given["sense"] == "against"},
-        key="sense",
     )
     order: int = field(int, "Its turns per turn of the crank", "n", least=1, most=8, required=True, example="2")
     against: bool = False
@@ -116,7 +112,7 @@ class BalanceShaft(_Weight):
     axial_position: float | None = field("length", "Its place along the shaft", "z", absent="moments left out")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Locomotive(Record):
     """The driven wheels of a locomotive, in which its counterweights stand; the cylinders are in their middle."""
 

@@ -1,18 +1,17 @@
 """One crank throw between two bearings or overhung beyond one, with a flywheel (Öl- und Gasmaschinen)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from kurbel.declared.record import Record, Rule, field
+from kurbel.declared.record import Record, Rule, field, record
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Crankshaft(Record):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
@@ -48,9 +48,9 @@ def counterweights() -> Any:
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Cylinder(Record):
-    """One cylinder with its crank mechanism and everything that hangs on the same rod.
+    """One cylinder with its crank mechanism and all that is on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
     is left out; crank_position: degrees by which this crank follows crank 1, None in a cylinder from a file that gives
@@ -71,15 +71,13 @@ class Cylinder(Record):
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
         absent="none",
-        key=("like"),
     )
-    _piston = alternative(Inline(Piston), "The cylinder's own piston", key="piston")
+    _piston = alternative(Inline(Piston), "The cylinder's own piston")
     _tandem = alternative(
         [RecordForm(TandemPiston, inline_too=True)],
         "Further pistons on the same rod, such as a pump, or driven by a rocker; their two-stroke cards run twice in "
         "720°",
         absent="none",
-        key="tandem",
     )
     pistons: tuple[Piston, ...] = ()
     masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")
@@ -129,7 +127,7 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
         yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"

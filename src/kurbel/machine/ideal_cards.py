@@ -6,19 +6,19 @@ the stroke volume. Exponents are those of p V^n.
 
 import dataclasses
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.declared.forms.values import Number
+from kurbel.arrays import Number
+from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.reading import REFUSED, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 
-CLEARANCE = Number(share_of="the stroke", least=1e-6, most=1e5)
+CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
-CLEARANCE_OR_NONE = Number(share_of="the stroke", least=1e-6, most=1e5, zero=True)
+CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
 """The same where nothing need be compressed into it: then it may be left out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
@@ -34,13 +34,13 @@ def _exponent(text: str, absent: str, default: Any = AIR_EXPONENT) -> Any:
     return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3")
 
 
-def _order(key: str, high: Any, low_name: str, low: Any) -> Rule:
+def _order(key: str, high: Number, low_name: str, low: Number) -> Rule:
     """Return the rule that the pressure under `key` is larger than the other one."""
     sentence = f"{{high:pressure}} is not above the {low_name} pressure ({{low:pressure}})"
     return Rule(key, high <= low, sentence, {"high": high, "low": low})
 
 
-def after_polytrope(pressure: Any, volume: Any, next_volume: Any, exponent: Any) -> Any:
+def after_polytrope(pressure: Number, volume: Number, next_volume: Number, exponent: Number) -> Any:
     """Return P (V/V′)^n: the pressure after a change of volume along P V^n = const; P absolute, V in any unit.
 
     >>> after_polytrope(1.0, 8.0, 1.0, 1.0)
@@ -54,7 +54,7 @@ def after_polytrope(pressure: Any, volume: Any, next_volume: Any, exponent: Any)
     return math.exp(exponent * math.log(volume / next_volume)) * pressure
 
 
-def _above_vacuum(lift: Any, **pressures: Any) -> Iterator[Rule]:
+def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
     """Yield the rule that pressures are above the perfect vacuum; lift makes them absolute."""
     for name, pressure in pressures.items():
         if pressure is not None:
@@ -83,12 +83,12 @@ class _TwoStroke(Record):
     lower: ClassVar[str]
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         high, low = given.get(cls.higher, REFUSED), given.get(cls.lower, REFUSED)
         if has_refused(given.values()) and high is not REFUSED and low is not REFUSED:
             yield _order(cls.higher, high, cls.lower, low)
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or the absolute pressures."""
         two = f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
         yield Rule((), cycle != "two-stroke", two)
@@ -96,7 +96,7 @@ class _TwoStroke(Record):
         yield from _above_vacuum(lift, **{key: vars(self)[key] for key in self.KEYS if key in both})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Steam(_TwoStroke):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
 
@@ -148,7 +148,7 @@ class Steam(_TwoStroke):
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Compressor(_TwoStroke):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
@@ -174,7 +174,7 @@ class Compressor(_TwoStroke):
         """Exponent of the expansion of what is left in the clearance."""
         return self.exponent if self.expansion_exponent is None else self.expansion_exponent
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
         yield from super().rules_in(cycle, lift)
         c = self.clearance
@@ -197,7 +197,6 @@ _RATIO = alternative(
     required=True,
     example="8",
     gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
-    key="compression_ratio",
 )
 
 
@@ -261,7 +260,7 @@ class _Engine(Record):
         """What the diagram factor leaves out."""
         return _factor_notes(self.diagram_factor)
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a peak below the compression."""
         two = "a two-stroke engine has no exhaust stroke; leave it out, or write 'cycle: four-stroke' at the top"
         yield Rule((), self.exhaust is not None and cycle != "four-stroke", f"exhaust: {two}")
@@ -274,7 +273,7 @@ class _Engine(Record):
             yield Rule((), low, below, {"peak": self.peak, "end": end})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume.
 
@@ -284,7 +283,7 @@ class Otto(_Engine):
 
     intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     peak: float = _pressure("Largest pressure, after combustion", required=True)
-    _ratio = _RATIO
+    _compression_ratio = _RATIO
     clearance: float = _clearance()
     exhaust: float | None = _exhaust()
     exponent: float = _compression_exponent()
@@ -292,7 +291,7 @@ class Otto(_Engine):
     diagram_factor: float = _diagram_factor()
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off.
 
@@ -302,7 +301,7 @@ class Diesel(_Engine):
 
     intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1, required=True)
-    _ratio = _RATIO
+    _compression_ratio = _RATIO
     clearance: float = _clearance()
     exhaust: float | None = _exhaust()
     peak: float | None = _pressure(

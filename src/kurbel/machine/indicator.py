@@ -7,11 +7,12 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from kurbel.arrays import Number
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Number, Points, size_faults, unit_name
-from kurbel.declared.reading import REFUSED
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.forms.values import Choice, NumberForm, Points, size_faults, unit_name
+from kurbel.declared.reading import has_refused
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
@@ -43,14 +44,14 @@ class Rectangle:
             "power are correct, forces over the angle are not",
         )
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what is below the vacuum; lift makes the pressure absolute, in Pa."""
         if self.level is not None:
             below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
             yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Drawn(Record):
     """The paper of a card: its length, and the scale of the spring in m/Pa.
 
@@ -59,7 +60,7 @@ class Drawn(Record):
 
     length: float = field(
         # keeps the unit in which it is written, so that the lengths of many cards are read one by one
-        Number("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
+        NumberForm("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
         "Length of the card on the paper",
         "l",
         required=True,
@@ -85,7 +86,7 @@ class Chamber(Protocol):
         """The working cycles that it can be part of."""
         ...
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
         ...
 
@@ -111,7 +112,7 @@ def _line_of(name: str, text: str) -> Any:
     return alternative(_POINTS, text, key=name)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -124,21 +125,18 @@ class Card(Record):
         "Unit of the pressures; or give `drawn`",
         required=True,
         example="bar",
-        key="unit",
     )
     _drawn = alternative(
         Drawn,
         "The paper of the card: all points are then millimetres, or inches where its length is, from the card's own "
         "dead centre and from the atmospheric line",
         instead="unit",
-        key="drawn",
     )
     _area = alternative(
         "area",
         "Area by planimeter, instead of the lines of a drawn card",
         least=0,
         needs="drawn",
-        key="area",
     )
     _mean_height = alternative(
         "length",
@@ -146,7 +144,6 @@ class Card(Record):
         least=0,
         instead="area",
         needs="drawn",
-        key="mean_height",
     )
     _expansion = _line_of("expansion", "Line while the burnt or admitted gas expands")
     _compression = _line_of("compression", "Line while the chamber is compressed or empties")
@@ -199,12 +196,11 @@ class Card(Record):
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
 
     @classmethod
-    def faults_of_keys(cls, values: Mapping[str, Any]) -> list[Fault]:
-        """Return what is wrong with the lines that could be read, where others could not be."""
-        if REFUSED not in values.values():
-            return []
-        lines = {name: value for name, value in values.items() if isinstance(value, list)}
-        return [] if "drawn" in values else _line_faults(lines, 1.0, "")
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+        """Yield what is wrong with the lines that could be read, where others could not be."""
+        if has_refused(given.values()) and "drawn" not in given:
+            lines = {name: value for name, value in given.items() if isinstance(value, list)}
+            yield from map(Rule.of, _line_faults(lines, 1.0, ""))
 
     @property
     def flat(self) -> bool:
@@ -216,7 +212,7 @@ class Card(Record):
         """The one cycle that has so many lines."""
         return tuple(cycle for cycle, lines in STROKES.items() if len(lines) == len(self.lines))
 
-    def rules_in(self, cycle: str, lift: Any) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine, or what no polytropic line can be drawn through."""
         wanted = STROKES[cycle]
         lines = f"a {cycle} cycle needs the lines {', '.join(wanted)}; this card has {len(self.lines)} lines"
@@ -265,7 +261,7 @@ def _order_faults(name: str, points: list[Point], whole: float, unit: str) -> li
     return []
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Constant(Record):
     """Constant pressure on each stroke: an ideal pump."""
 
@@ -285,7 +281,7 @@ class Constant(Record):
 
 _CHAMBER = Keyed(
     cases={
-        "mean_pressure": Number("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
+        "mean_pressure": NumberForm("pressure", becomes=lambda pressure, _: Rectangle(mean=pressure)),
         "constant": RecordForm(Constant),
         "trace": RecordForm(Measured),
         "steam": RecordForm(Steam),
@@ -297,7 +293,7 @@ _CHAMBER = Keyed(
     beside=("diagram_factor", "unloaded"),
     texts={"mean_pressure": "Indicated mean pressure instead of a card: work and power are correct, forces are not"},
 )
-_ONE_PRESSURE = Number(
+_ONE_PRESSURE = NumberForm(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
 )
 
@@ -308,7 +304,7 @@ def _loaded(chamber: Any) -> Any:
     return replace(chamber, unloaded=False) if unloaded else chamber
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Indicator(Record):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 
@@ -321,7 +317,6 @@ class Indicator(Record):
         "limited",
         absent="gauge",
         gives=lambda given: {"absolute": given["pressures"] == "absolute"},
-        key="pressures",
     )
     head_end: Chamber | None = field(
         OneOf(_ONE_PRESSURE, _CHAMBER),
@@ -339,7 +334,7 @@ class Indicator(Record):
     absolute: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         mirrored = given.get("crank_end") == "mirrored"
         none = "head_end" not in given and (mirrored or "crank_end" not in given)
         yield Rule("crank_end" if mirrored else (), none, "the indicator shows no pressure; give 'head_end'")

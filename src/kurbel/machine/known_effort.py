@@ -1,39 +1,26 @@
 """The keys of a turning effort known from elsewhere: points, a file of columns, or harmonics."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms.values import FILE_PATH, Points, unit_name
-from kurbel.declared.keys import Key
+from kurbel.declared.forms.values import Points, unit_name
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative
+from kurbel.declared.record import Rule, Values, alternative
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import refused
-from kurbel.machine.measured import (
-    ANGLE_COLUMN,
-    ANGLE_STEP,
-    ANGLE_UNIT,
-    DECIMAL,
-    DELIMITER,
-    RECORDED_SPEED,
-    SKIP_ROWS,
-    layout_of,
-    layout_rules,
-)
+from kurbel.machine.measured import Columns
 from kurbel.machine.turning import HARMONICS, MEAN_TORQUE, Effort, Harmonics, InUnit, Known, Swing
 from kurbel.traces.cycles import Samples, samples_of_file
+from kurbel.traces.read import Layout
 
 
-def _of_file(key: Key) -> Key:
-    return key._replace(needs="file")
-
-
-class KnownEffort(Record):
+class KnownEffort(Columns):
     """What becomes an `Effort`, `Harmonics` or a `Swing`."""
 
+    what = "torque"
     unit = alternative(unit_name("torque"), "Unit of the torques")
     points = alternative(
         Points("deg", "torque"),
@@ -42,13 +29,10 @@ class KnownEffort(Record):
         instead="file",
         needs="unit",
     )
-    file = alternative(
-        FILE_PATH, "File with a column of angles in degrees and one of torques", needs="unit", example="effort.csv"
+    file = Columns.file._replace(
+        text="File with a column of angles in degrees and one of torques", needs="unit", example="effort.csv"
     )
-    angle_column, angle_unit = _of_file(ANGLE_COLUMN), _of_file(ANGLE_UNIT)
-    recorded_speed, angle_step = _of_file(RECORDED_SPEED), _of_file(ANGLE_STEP)
     torque_column = alternative(int, "Column of the torques, counted from 1", absent="2", needs="file")
-    skip_rows, delimiter, decimal = _of_file(SKIP_ROWS), _of_file(DELIMITER), _of_file(DECIMAL)
     angle_zero = alternative(
         "angle", "Angle of the firing or inner dead centre in the file", absent="0 deg", needs="file"
     )
@@ -70,7 +54,7 @@ class KnownEffort(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if has_refused(given.values()):
             return
         forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
@@ -85,8 +69,7 @@ class KnownEffort(Record):
         if "harmonics" in given:
             lacking = next((name for name in ("unit", "mean") if name not in given), "")
             yield Rule("harmonics", bool(lacking), f"'harmonics' needs '{lacking}' beside it")
-        if "file" in given:
-            yield from layout_rules("torque", given)
+        yield from super().rules_of_keys(given)
 
     @classmethod
     def of_keys(
@@ -98,6 +81,7 @@ class KnownEffort(Record):
         mean: float | None = None,
         swing: float | None = None,
         coefficient: float | None = None,
+        angle_zero: float = 0.0,
         **layout: Any,
     ) -> Known:
         """Return the effort that these keys describe, its file read; raises RuleError."""
@@ -105,12 +89,16 @@ class KnownEffort(Record):
             return Harmonics.of_keys(unit, mean or 0.0, harmonics)
         if swing is not None or coefficient is not None:
             return Swing(swing, coefficient, mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean)
-        return Effort.of_points(unit, points or []) if file is None else _from_file(unit, file, **layout)
+        return (
+            Effort.of_points(unit, points or [])
+            if file is None
+            else _from_file(unit, file, cls.layout(layout), angle_zero)
+        )
 
 
-def _from_file(unit: Factor, file: str, angle_zero: float = 0.0, **layout: Any) -> Effort:
+def _from_file(unit: Factor, file: str, layout: Layout, angle_zero: float) -> Effort:
     up, down = unit
-    samples = samples_of_file(file, layout_of("torque", layout), "torque", lambda torques: torques * up / down)
+    samples = samples_of_file(file, layout, "torque", lambda torques: torques * up / down)
     if len(samples.values) > 1:
         lap = samples.angles[-1] - samples.angles[0]
         refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")

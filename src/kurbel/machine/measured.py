@@ -1,60 +1,77 @@
 """The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from os.path import basename
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
-from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, Number, Points, unit_name
+from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import Factor, Point, unit_factor
-from kurbel.errors import Fault, RuleError, UnitError, refuse, refused
+from kurbel.errors import Fault, RuleError, UnitError, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
 
-# how a file of columns is laid out
 
-ANGLE_COLUMN = alternative(int, "Column of the angles, counted from 1", absent="1")
-ANGLE_UNIT = alternative(("deg", "rad", "s", "ms"), "Unit of the angle column: an angle, or time", absent="deg")
-RECORDED_SPEED = alternative("speed", "Constant speed at which times were recorded", above=0, needs="angle_unit")
-ANGLE_STEP = alternative(
-    "angle", "Crank angle from one row to the next, instead of a column of angles", above=0, instead="angle_column"
-)
-SKIP_ROWS = alternative(Number(whole=True, least=0), "Number of lines before the first data", absent="0")
-DELIMITER = alternative(
-    (*DELIMITERS, *DELIMITERS.values()), "Separator of the columns", absent="comma", also=("separator", "sep")
-)
-DECIMAL = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point")
+class Columns(Record):
+    """How a file of columns is laid out; `what` is measured in it, pressures or torques, beside the angles."""
 
+    what: ClassVar[str]
+    file = alternative(FILE_PATH, "File with a column of angles in degrees", example="indicator.csv")
+    angle_column = alternative(int, "Column of the angles, counted from 1", absent="1", needs="file")
+    angle_unit = alternative(
+        ("deg", "rad", "s", "ms"), "Unit of the angle column: an angle, or time", absent="deg", needs="file"
+    )
+    recorded_speed = alternative("speed", "Constant speed at which times were recorded", above=0, needs="angle_unit")
+    angle_step = alternative(
+        "angle",
+        "Crank angle from one row to the next, instead of a column of angles",
+        above=0,
+        instead="angle_column",
+        needs="file",
+    )
+    skip_rows = alternative(
+        NumberForm(whole=True, least=0), "Number of lines before the first data", absent="0", needs="file"
+    )
+    delimiter = alternative(
+        (*DELIMITERS, *DELIMITERS.values()),
+        "Separator of the columns",
+        absent="comma",
+        also=("separator", "sep"),
+        needs="file",
+    )
+    decimal = alternative(tuple(DECIMALS), "Decimal point or decimal comma", absent="point", needs="file")
 
-def layout_rules(what: str, given: Mapping[str, Any]) -> Iterator[Rule]:
-    """Yield what contradicts in the keys of a layout, of pressures or torques."""
-    key = f"{what}_columns" if f"{what}_columns" in given else f"{what}_column"
-    columns, own = given.get(key, 2), given.get("angle_column", 1)
-    clash = own in (columns if isinstance(columns, tuple) else (columns,)) and "angle_step" not in given
-    yield Rule(key, clash, f"column {own} is that of the angles")
-    timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
-    message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
-    yield Rule("angle_unit", timed and not speed, message)
-    message = "a speed is for times only; write 'angle_unit: s'"
-    yield Rule("recorded_speed", speed and not timed, message)
+    @classmethod
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+        """Yield what contradicts in the layout of a file."""
+        if "file" not in given or has_refused(given.values()):
+            return
+        key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"
+        columns, own = given.get(key, 2), given.get("angle_column", 1)
+        clash = own in (columns if isinstance(columns, tuple) else (columns,)) and "angle_step" not in given
+        yield Rule(key, clash, f"column {own} is that of the angles")
+        timed, speed = given.get("angle_unit") in SECONDS, "recorded_speed" in given
+        message = "times become angles by a speed; write 'recorded_speed: 1500 rpm', say"
+        yield Rule("angle_unit", timed and not speed, message)
+        message = "a speed is for times only; write 'angle_unit: s'"
+        yield Rule("recorded_speed", speed and not timed, message)
 
-
-def layout_of(what: str, keys: dict[str, Any]) -> Layout:
-    """Return the layout that keys describe, those of pressures or torques."""
-    columns = keys.pop(f"{what}_columns", None) or (keys.pop(f"{what}_column", 2),)
-    words = {sign: word for word, sign in DELIMITERS.items()}
-    delimiter = keys.pop("delimiter", "comma")
-    return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
+    @classmethod
+    def layout(cls, keys: dict[str, Any]) -> Layout:
+        """Return the layout that these keys describe."""
+        columns = keys.pop(f"{cls.what}_columns", None) or (keys.pop(f"{cls.what}_column", 2),)
+        delimiter = keys.pop("delimiter", "comma")
+        words = {sign: word for word, sign in DELIMITERS.items()}
+        return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
 
 
 class Pegging(Record):
@@ -69,7 +86,7 @@ class Pegging(Record):
         return KnownLevel(angle, pressure)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
@@ -85,27 +102,23 @@ class Motored(Record):
     )
 
 
-class Measured(Record):
+class Measured(Columns):
     """What becomes a `Trace` once its samples are read and closed to whole cycles."""
 
-    file = alternative(
-        FILE_PATH,
-        "File with a column of angles in degrees and one of pressures; or give `points`",
-        required=True,
-        example="indicator.csv",
+    what = "pressure"
+    file = Columns.file._replace(
+        text="File with a column of angles in degrees and one of pressures; or give `points`", required=True
     )
     points = alternative(Points("deg", "pressure"), "Pressure over the crank angle; or give `file`", instead="file")
     unit = alternative(unit_name("pressure"), "Unit of the pressures", required=True)
-    angle_column, angle_unit, recorded_speed, angle_step = ANGLE_COLUMN, ANGLE_UNIT, RECORDED_SPEED, ANGLE_STEP
-    pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2")
-    skip_rows, delimiter, decimal = SKIP_ROWS, DELIMITER, DECIMAL
+    pressure_column = alternative(int, "Column of the pressures, counted from 1", absent="2", needs="file")
     angle_zero = alternative(
-        OneOf(Number("angle"), RecordForm(Motored)),
+        OneOf(NumberForm("angle"), RecordForm(Motored)),
         "Angle of the firing or inner dead centre in the file; or a motored trace from which it is found",
         absent="0 deg",
     )
     pressure_columns = alternative(
-        COLUMN_RANGE, "Columns of pressures, one for each measured cycle", instead="pressure_column"
+        COLUMN_RANGE, "Columns of pressures, one for each measured cycle", instead="pressure_column", needs="file"
     )
     angle_sense = alternative(
         ("with", "against"), "Direction in which angles count: with the rotation or against it", absent="with"
@@ -130,11 +143,6 @@ class Measured(Record):
         instead="clearance",
         example="17",
     )
-
-    @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
-        if "file" in given and not has_refused(given.values()):
-            yield from layout_rules("pressure", given)
 
     @classmethod
     def of_keys(
@@ -163,13 +171,12 @@ class Measured(Record):
             return figures * up / down * scale + offset
 
         if file is None:
-            refuse(*(Fault((key,), f"'{key}' describes a file; leave it out if 'points' are given") for key in layout))
             angles, figures = np.array(points, dtype=float).T
             values = pressures(figures[np.newaxis])
             samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)
             laid_out = Layout(columns=(0,))
         else:
-            laid_out = layout_of("pressure", layout)
+            laid_out = cls.layout(layout)
             samples = samples_of_file(file, laid_out, "pressure", pressures, against)
         files, notes = (file,) if file else (), samples.notes
         if samples.headed and scale == 1:

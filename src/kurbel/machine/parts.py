@@ -1,15 +1,15 @@
 """What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Form, Number
-from kurbel.declared.record import Record, Rule, alternative, field, first_of
+from kurbel.declared.forms.values import Choice, Form, NumberForm
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
 from kurbel.errors import Fault
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.machine.pumped import Gas
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class ConnectingRod(Record):
     """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
@@ -37,9 +37,6 @@ class ConnectingRod(Record):
     inertia: float | None = field(
         "inertia", "Moment of inertia about the centre of gravity", "I_r", least=0, needs="center_of_gravity"
     )
-
-    def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
 
     @property
     def exact(self) -> bool:
@@ -69,11 +66,11 @@ class ConnectingRod(Record):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-_ONE_OR_MORE: Form = OneOf(Number("mass", least=0), Listing(Number("mass", least=0)))
+_ONE_OR_MORE: Form = OneOf(NumberForm("mass", least=0), Listing(NumberForm("mass", least=0)))
 _PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
 
 
-def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
+def _sum(given: Values) -> dict[str, Any]:
     """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
     each = {name: given[name] for name in _PARTS if given.get(name) is not None}
     sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
@@ -85,7 +82,7 @@ def _sum(given: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _rod(given: Mapping[str, Any]) -> dict[str, Any]:
+def _rod(given: Values) -> dict[str, Any]:
     rod = given["connecting_rod"]
     return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
 
@@ -94,7 +91,7 @@ def _part(text: str, key: str) -> Any:
     return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum, key=key)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Masses(Record):
     """Moving masses in kg: what reciprocates besides the connecting rod, the connecting rod, and what turns.
 
@@ -104,25 +101,23 @@ class Masses(Record):
     `piston` is a list.
     """
 
-    _sum_given = alternative(
+    _reciprocating = alternative(
         "mass",
         "Total reciprocating mass, including its share of the connecting rod; instead of the parts",
         "m",
         least=0,
         gives=_sum,
-        key="reciprocating",
     )
     _piston = _part("Piston, or a list of pistons", "piston")
     _piston_rod = _part("Piston rod", "piston_rod")
     _crosshead = _part("Crosshead", "crosshead")
     _other = _part("Any other reciprocating mass", "other")
     _connecting_rod = alternative(
-        OneOf(Number("mass", least=0), RecordForm(ConnectingRod)),
+        OneOf(NumberForm("mass", least=0), RecordForm(ConnectingRod)),
         "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),
         gives=_rod,
-        key="connecting_rod",
     )
 
     parts: float = 0.0
@@ -140,7 +135,7 @@ class Masses(Record):
     pistons: tuple[float, ...] = ()
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
         yield Rule((), not given, none)
 
@@ -159,7 +154,7 @@ class Masses(Record):
         return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
@@ -168,14 +163,14 @@ class GasOnRings(Record):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Rings(Record):
     """Piston rings."""
 
     count: int = field(int, "Number of rings", least=1, required=True)
     height: float = field("length", "Height of one ring along the bore", "h", above=0, required=True)
     pressure: float | GasOnRings = field(
-        OneOf(Choice(("gas",)), Number("pressure", least=0), RecordForm(GasOnRings)),
+        OneOf(Choice(("gas",)), NumberForm("pressure", least=0), RecordForm(GasOnRings)),
         "Pressure of the ring on the wall; `gas` or `{gas: k}`: k times the pressure difference across the piston",
         "p_r",
         required=True,
@@ -184,7 +179,7 @@ class Rings(Record):
     coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Guide(Record):
     """The shoe with which a crosshead presses on its guide."""
 
@@ -200,7 +195,7 @@ _PINS: dict[str, tuple[str, str]] = {
 """Where pins and journals rub: the keys of their diameters here, and in `crankshaft`."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
@@ -241,7 +236,6 @@ class Friction(Record):
     )
 
     def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
         sliding = (self.crosshead, self.rings, self.constant, self.block, self.guides)
         none = not self.of_pins and all(one is None for one in sliding)
         given = "'crosshead', 'rings', 'constant', 'crank_pin', 'crosshead_pin', 'journals', 'block' or 'guides'"
@@ -272,7 +266,7 @@ class Friction(Record):
                 yield Fault((here,), f"'{there}' in 'crankshaft' gives the same; leave one of them out")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class RamForce(Record):
     """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
@@ -284,11 +278,11 @@ class RamForce(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
@@ -306,7 +300,7 @@ class Moment(RamForce):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
@@ -341,7 +335,7 @@ class RodPoint(Record):
         yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -394,14 +388,14 @@ class Piston(Record):
         fits = all(cycle in each for each in given)
         return cycle if fits or not all("two-stroke" in each for each in given) else "two-stroke"
 
-    def indicator_rules(self, cycle: str, ambient: Any) -> Iterator[Rule]:
+    def indicator_rules(self, cycle: str, ambient: Number) -> Iterator[Rule]:
         """Yield the first thing at each end that does not fit the cycle or the ambient pressure in Pa."""
         lift = 0.0 if self.indicator and self.indicator.absolute else ambient
         for end, chamber in self.chambers.items():
             yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class TandemPiston(Piston):
     """A further piston on the same rod, or driven from the crosshead by a rocker."""
 

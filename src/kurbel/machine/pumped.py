@@ -1,9 +1,8 @@
 """What pumps and compressors move: the gas of a compressor, and liquid, pipes and air vessels of a pump."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, alternative, field, record
 
 GAS_CONSTANT = 8.31446261815324
 """J/(mol K)."""
@@ -11,7 +10,7 @@ WATER = 1000.0, 2339.0
 """Density in kg/m³ of water, and its vapour pressure in Pa at 20 °C."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Gas(Record):
     """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
 
@@ -33,7 +32,6 @@ class Gas(Record):
         above=0,
         instead="gas_constant",
         gives=lambda given: {"gas_constant": GAS_CONSTANT / given["molar_mass"]},
-        key="molar_mass",
     )
     isentropic_exponent: float | None = field(
         "ratio",
@@ -46,7 +44,7 @@ class Gas(Record):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Liquid(Record):
     """What a pump moves."""
 
@@ -60,7 +58,7 @@ class Liquid(Record):
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Vessel(Record):
     """An air vessel; its volume of air, or the swing of pressure for which its volume is wanted."""
 
@@ -83,7 +81,7 @@ class Vessel(Record):
         yield Rule((), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Pipe(Record):
     """A pipe with all chambers of the pump on it."""
 
@@ -96,7 +94,7 @@ class Pipe(Record):
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Pump(Record):
     """What a pump's flow depends on besides its pistons."""
 

@@ -1,20 +1,20 @@
 """Several cylinders: equal ones described at once, where their cranks are, and when they fire."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby, pairwise, product
 from typing import Any
 
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class EqualCylinders(Record):
     """Cylinders that differ in name, crank position and place only.
 
@@ -22,7 +22,7 @@ class EqualCylinders(Record):
     their crank positions are given; shared: every bank has one cylinder, so that all can stand on one crank pin.
     """
 
-    _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4", key="count")
+    _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4")
     firing_order: tuple[int, ...] | None = field(
         FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
@@ -35,14 +35,12 @@ class EqualCylinders(Record):
         absent="from the firing order",
         instead="firing_order",
         example="[0 deg, 120 deg, 240 deg]",
-        key="crank_positions",
     )
     _spacing = alternative(
         "length",
         "Distance between neighbouring cylinders of a bank along the shaft; 0 mm: two rods on one pin",
         least=0,
         absent="unbalanced moments left out",
-        key="spacing",
     )
     _bank_angles = alternative(
         ["angle"],
@@ -52,21 +50,19 @@ class EqualCylinders(Record):
         least=-360,
         most=360,
         absent="in line",
-        key="bank_angles",
     )
     _each = alternative(
         RecordForm(Cylinder, inline_too=True),
         "The keys of one cylinder",
         required=True,
         gives=lambda given: _equal(**given),
-        key="each",
     )
     cylinders: tuple[Cylinder, ...] = ()
     placed: bool = False
     shared: bool = False
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if has_refused(given.values()):
             return
         count, banks = given["count"], given.get("bank_angles", (0.0,))

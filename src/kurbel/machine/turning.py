@@ -1,15 +1,15 @@
 """What turns with the shaft and works on it: flywheel, load, a turning-moment diagram, an elastic coupling."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms.structures import OneOf
-from kurbel.declared.forms.values import Number, Points, size_faults, unit_name
+from kurbel.declared.forms.values import NumberForm, Points, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Reading, has_refused
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.reading import Node, Reading, has_refused
+from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
@@ -23,12 +23,12 @@ _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
     mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
-    _outer = alternative(
+    _outer_diameter = alternative(
         "length",
         "Outer diameter of the rim",
         "D_a",
@@ -39,15 +39,13 @@ class Rim(Record):
             "mean_diameter": (given["outer_diameter"] + given["inner_diameter"]) / 2,
             "depth": (given["outer_diameter"] - given["inner_diameter"]) / 2,
         },
-        key="outer_diameter",
     )
-    _inner = alternative(
+    _inner_diameter = alternative(
         "length",
         "Inner diameter of the rim, 0 of a disc",
         "D_i",
         least=0,
         needs="outer_diameter",
-        key="inner_diameter",
     )
     depth: float = field(
         "length",
@@ -77,7 +75,7 @@ class Rim(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         if "outer_diameter" in given and "inner_diameter" in given and not has_refused(given.values()):
             inner, outer = given["inner_diameter"], given["outer_diameter"]
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
@@ -122,7 +120,7 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
@@ -134,7 +132,6 @@ class Flywheel(Record):
         least=0,
         instead="inertia",
         gives=lambda given: {"inertia": given["gd2"] / 4},
-        key="gd2",
     )
     _mass = alternative(
         "mass",
@@ -144,16 +141,14 @@ class Flywheel(Record):
         instead="inertia",
         needs="radius_of_gyration",
         gives=lambda given: {"inertia": given["mass"] * given["radius_of_gyration"] ** 2},
-        key="mass",
     )
-    _gyration = alternative(
+    _radius_of_gyration = alternative(
         "length",
         "Radius of gyration",
         "k",
         above=0,
         instead="gd2",  # beside `mass`, which is instead of `inertia`
         needs="mass",
-        key="radius_of_gyration",
     )
     fluctuation: float | None = field(
         "ratio",
@@ -171,12 +166,11 @@ class Flywheel(Record):
         gives=lambda given: (
             {"rim": given["rim"]} | ({"inertia": given["rim"].inertia} if given["rim"].sized_by else {})
         ),
-        key="rim",
     )
     rim: Rim | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         rim = given.get("rim")
         if isinstance(rim, Rim) and rim.sized_by:
             message = "the moment of inertia is given and also follows from the sizes of the rim; give only one of them"
@@ -296,14 +290,14 @@ class _MeanTorque(OneOf):
     """A mean torque with its unit, or as a bare number in the unit of the diagram, which becomes `InUnit`."""
 
     def __init__(self) -> None:
-        super().__init__(Number("torque"), Number("ratio"))
+        super().__init__(NumberForm("torque"), NumberForm("ratio"))
         self.number = None
 
-    def kind_as_written(self, text: Any) -> str:
+    def kind_as_written(self, text: Node | None) -> str:
         """Return `ratio` of a bare number, else `torque`."""
         return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read it as what it looks like."""
         bare = self.kind_as_written(value) == "ratio"
         found = self.forms[bare].read(reading, value, path)
@@ -314,7 +308,7 @@ MEAN_TORQUE = _MeanTorque()
 HARMONICS = Points("order", "cos", "sin", least=1)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Load(Record):
     """The resistance at the shaft, in exactly one of four forms.
 
@@ -326,21 +320,19 @@ class Load(Record):
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(unit_name("torque"), "Unit of the torques", key="unit")
+    _unit = alternative(unit_name("torque"), "Unit of the torques")
     _points = alternative(
         Points("deg", "torque"),
         "Torque over the crank angle; two points at one angle are a jump",
         "M",
         needs="unit",
         gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
-        key="points",
     )
     _mean = alternative(
         MEAN_TORQUE,
         "Mean torque, added to the harmonics, in the unit",
         "M_m",
         needs="harmonics",
-        key="mean",
     )
     _harmonics = alternative(
         HARMONICS,
@@ -348,12 +340,11 @@ class Load(Record):
         needs="unit",
         instead="points",
         gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
-        key="harmonics",
     )
     diagram: Effort | Harmonics | None = None
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         lone = "unit" in given and not {"points", "harmonics"} & given.keys()
         yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
         yield Rule("harmonics", "harmonics" in given and "mean" not in given, "'harmonics' needs 'mean' beside it")
@@ -381,7 +372,7 @@ class Load(Record):
         return self.diagram.cycle_fault(cycle, turns) if self.diagram else ""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 

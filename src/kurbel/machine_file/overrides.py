@@ -55,6 +55,19 @@ def read_override(text: str, option: str = "--set") -> Override:
     return Override(given, path, tree)
 
 
+def _read_all(texts: Sequence[str], option: str) -> list[Override]:
+    """Return the overrides that texts of an option are; raises UsageError for all that are none."""
+    found, wrong = [], list[str]()
+    for text in texts:
+        try:
+            found.append(read_override(text, option))
+        except UsageError as error:
+            wrong.append(str(error))
+    if wrong:
+        raise UsageError("; ".join(wrong))
+    return found
+
+
 def _refused(given: str, why: str) -> NoReturn:
     raise UsageError(f"{given}: {why}")
 
@@ -86,8 +99,8 @@ def set_over(tree: Any, origin: Origin) -> list[Override]:
         return []
     overrides = [
         *(_of_case(tree, origin.case) if origin.case else ()),
-        *map(read_override, origin.overrides),
-        *(read_override(one, "--vary") for one in origin.varied),
+        *_read_all(origin.overrides, "--set"),
+        *_read_all(origin.varied, "--vary"),
     ]
     for one in overrides:
         node: Any = tree

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from kurbel.declared.forms.structures import Maker, RecordForm, places
-from kurbel.declared.reading import REFUSED, Given, Plain, Reading, StopReading, glued_hint, kind_of, shown
+from kurbel.declared.forms.structures import Given, Maker, RecordForm, places
+from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, glued_hint, kind_of, shown
 from kurbel.errors import Fault, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin

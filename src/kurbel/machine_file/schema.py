@@ -11,7 +11,7 @@ from typing import Any
 
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, FigureForm, Figures
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.forms.values import Form, Number, Schema, Text
+from kurbel.declared.forms.values import Form, NumberForm, Schema, Text
 from kurbel.declared.keys import required
 from kurbel.declared.numerals import RATIO, WRITTEN
 from kurbel.declared.units import KINDS, MOST_ITEMS, range_of, unit_names
@@ -36,7 +36,7 @@ def json_schema() -> Schema:
 
 def _of(form: Form, definitions: Schema) -> Schema:
     """Return the schema of a value of a form; what is used more than once goes into the definitions."""
-    if isinstance(form, Number):
+    if isinstance(form, NumberForm):
         return _of_number(form, definitions)
     if isinstance(form, Text) and form.unit_of:
         return {"type": "string", "pattern": f"^\\s*{_unit_pattern(form.unit_of)}\\s*$"}
@@ -80,7 +80,7 @@ def _reference(name: str) -> Schema:
     return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
 
 
-def _of_number(form: Number, definitions: Schema) -> Schema:
+def _of_number(form: NumberForm, definitions: Schema) -> Schema:
     """Return the schema of a number with its unit, of a bare one within its bounds, or of a whole one."""
     if form.whole:
         return {"type": "integer", "minimum": form.least} | ({} if form.most is None else {"maximum": form.most})
@@ -115,7 +115,8 @@ def _unit_pattern(kind: str) -> str:
     patterns = []
     for unit in unit_names(kind):
         letters = re.escape(re.sub(r"(?<=[a-z])2", "²", unit)).replace("\\ ", "[ ·*]+").replace("/", "\\s*/\\s*")
-        patterns.append(re.sub("^u(?=m)", "[uµμ]", letters).replace("²", "(?:\\^?2|²)"))
+        letters = re.sub("(?<=m|n)(?=Hg|H2O)", " ?", re.sub("^u(?=m)", "[uµμ]", letters))
+        patterns.append(letters.replace("²", "(?:\\^?2|²)"))
     return f"(?:{'|'.join(patterns)})"
 
 

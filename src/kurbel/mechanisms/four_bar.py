@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, field, record
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     F_COUPLER,
@@ -110,7 +109,7 @@ def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle
     return Closure(sin, cos, slope, curvature, H, foot)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

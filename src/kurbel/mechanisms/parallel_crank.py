@@ -2,11 +2,10 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
@@ -74,20 +73,14 @@ COUPLER_VALUES = (
     ),
     KeyOffer(
         Quantity(
-            "coupler_inertia",
-            "F_b",
-            "force",
-            "Centrifugal force m v²/R of the coupler",
-            "",
-            ("forces",),
-            after="T_min",
+            "coupler_inertia", "F_b", "force", "Centrifugal force m v²/R of the coupler", "", ("forces",), after="T_min"
         ),
         _inertia,
     ),
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

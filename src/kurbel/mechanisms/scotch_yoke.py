@@ -1,14 +1,13 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
@@ -33,7 +32,7 @@ _N_PAIR = own_force(
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 
@@ -69,7 +68,6 @@ class ScotchYoke(Mechanism):
         return yoke_sketch(self.crank, angle)
 
     def rules(self) -> Iterator[Rule]:
-        yield from self.contradictions()
         yield from finite(self, "crank", "guide_length", "pin_diameter", "pin_length")
 
     @property

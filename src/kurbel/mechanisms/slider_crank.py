@@ -1,8 +1,7 @@
 """Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Rule, alternative, field
+from kurbel.declared.record import Rule, Values, alternative, field, record
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
 
@@ -24,7 +23,7 @@ def crank_field() -> Any:
     return field("length", "Crank radius; or give `stroke`", "R", above=0, required=True, example="400 mm")
 
 
-def stroke_instead(gives: Callable[[Mapping[str, Any]], dict[str, Any]]) -> Any:
+def stroke_instead(gives: Callable[[Values], dict[str, Any]]) -> Any:
     """Return the entry of the stroke that stands for the crank; gives: the crank, from all values by key."""
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
@@ -58,7 +57,7 @@ ROD_OFFERS = (
 )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
@@ -102,7 +101,7 @@ class SliderCrank(Mechanism):
     OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
 
     @classmethod
-    def rules_of_keys(cls, given: Mapping[str, Any]) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
         if stroke is None or offset is None or has_refused((stroke, rod, k, offset)):
             return
@@ -314,7 +313,7 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     )
 
 
-def _crank_of_stroke(given: Mapping[str, Any]) -> Any:
+def _crank_of_stroke(given: Values) -> Any:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
     half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset", 0.0)
     length: Any = rod if k is None else k

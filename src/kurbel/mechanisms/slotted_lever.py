@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, alternative, field
+from kurbel.declared.record import Rule, alternative, field, record
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
@@ -51,7 +50,7 @@ class Ram(NamedTuple):
     bend: Any
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 
@@ -110,7 +109,6 @@ class SlottedLever(Mechanism):
     def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)
         yield from finite(self, "crank", "frame", "lever")
-        yield from self.contradictions()
         hanging = not (self.slides or forked)
         yield Rule("link", hanging, "needs the end of the lever; give 'lever' too")
         yield from finite(self, "pin_diameter", "pin_length")

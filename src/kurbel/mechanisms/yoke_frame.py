@@ -6,11 +6,10 @@ slider-crank; the side force N of the rod finds no guide and bends the piston ro
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import Offer, finite, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.arithmetic import some
@@ -25,11 +24,7 @@ _M_BEND = own_force(
 
 
 _BENDING = own_force(
-    "sigma_bend",
-    "σ_b",
-    "stress",
-    "Bending stress of the piston rod by M_b",
-    called="bending stress of the piston rod",
+    "sigma_bend", "σ_b", "stress", "Bending stress of the piston rod by M_b", called="bending stress of the piston rod"
 )
 _PUSHED = own_force(
     "sigma_rod",
@@ -62,7 +57,7 @@ def _fibre(state: Any, side: float) -> Any:
     return None if along is None or across is None or arm is None else along + across * arm * side
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@record
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

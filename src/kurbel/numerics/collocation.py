@@ -180,7 +180,8 @@ class _Solution(NamedTuple):
 
 
 def _joined(parts: Sequence[_Solution]) -> _Solution:
-    return _Solution(*joined([one.pieces for one in parts], [one.y for one in parts]))
+    whole, (y,) = joined([(one.pieces, np.arange(len(one.pieces.half)), [one.y]) for one in parts])
+    return _Solution(whole, y)
 
 
 def _largest(pieces: Pieces, values: Array) -> Array:

@@ -141,6 +141,13 @@ class Pieces:
         some = self.taken(rows)
         return some.parted(np.full(len(some.half), 2))
 
+    def by_crank(self, later: Number) -> Pieces:
+        """Return these pieces by the angles of a crank that lags by so many degrees, a number or (machines,)."""
+        behind = self.of(later)
+        right_angle = 90.0 * np.rint((self.middle - behind) / 90.0)
+        # differences of right angles are exact
+        return replace(self, right_angle=right_angle, offset=(self.right_angle - right_angle - behind) + self.offset)
+
     def parted(self, parts: Indices) -> Pieces:
         """Return every piece cut into so many equal parts, (pieces,), in order."""
         row = np.repeat(np.arange(len(parts)), parts)
@@ -198,6 +205,13 @@ class Pieces:
         keys = self.machine * (2 * self.cycle) + self.low
         found = np.searchsorted(keys, machine * (2 * self.cycle) + np.mod(degrees, self.cycle), side="right") - 1
         return np.maximum(found, self.first[machine])
+
+    def kept_of(self, others: Pieces) -> tuple[Indices, Indices]:
+        """Return which of other pieces are among these as they are, and which of these are new."""
+        row = others.holding(self.machine, self.middle)
+        same = (others.offset[row] == self.offset) & (others.half[row] == self.half)
+        same &= others.right_angle[row] == self.right_angle
+        return row[same], np.flatnonzero(~same)
 
     # integrals, zeros and extremes of samples (nodes, pieces)
 
@@ -282,38 +296,45 @@ class Pieces:
         low, high = ranges = _ranges(values)
         largest = np.maximum.reduceat(np.maximum(high, -low), self.first, axis=-1)
         size = largest if size is None else np.maximum(size, largest)
-        (high, high_at), (low, low_at) = (self.highest(values, ranges, size, sign) for sign in (1.0, -1.0))
+        (high, high_at), (low, low_at) = self.highest(values, ranges, size, (1.0, -1.0))
         # relative to values of the other sign: a zero at a dead centre whose angle is no float, for example
         high, low = (np.where(np.abs(one) > ROUNDING * size, one, 0.0) for one in (high, low))
         return SampledExtremes(high + 0.0, high_at, 0.0 - low, low_at)
 
-    def highest(self, values: Samples, ranges: Array, size: Array, sign: float = 1.0) -> tuple[Array, Array]:
-        """Return the largest values times a sign, and the angles of the first summits there, each (q, machines).
+    def highest(
+        self, values: Samples, ranges: Array, size: Array, signs: Sequence[float] = (1.0,)
+    ) -> list[tuple[Array, Array]]:
+        """Return for each sign the largest values times it, and the angles of the first summits there, (q, machines).
 
         values: each (nodes, pieces); ranges: see `_ranges`; size: (q, machines), of the terms whose sums they are.
         """
-        bottoms, tops = sign * ranges[:: int(sign)]
-        best = np.maximum.reduceat(tops, self.first, axis=-1)
+        slack = _REPEATED * size
+        tops = [sign * ranges[int(sign > 0)] for sign in signs]
+        best = [np.maximum.reduceat(top, self.first, axis=-1) for top in tops]
         # a polynomial exceeds its samples by less than they differ
-        which, piece = np.nonzero(tops + (tops - bottoms) >= (best - _REPEATED * size)[:, self.machine])
-        samples = sign * np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
+        over = ranges[1] - ranges[0]
+        may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
+        which, piece = _where(np.logical_or.reduce(may))
+        samples = np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
+        straight = _STRAIGHT * size[which, self.machine[piece]]
         # where all samples are equal but for rounding, it alone turns
-        bent = np.flatnonzero(np.ptp(samples, axis=0) > _STRAIGHT * size[which, self.machine[piece]])
+        bent = np.flatnonzero(over[which, piece] > straight)
         rows, places, turning = _turning_points(samples[:, bent], self.rule)
         inside = np.abs(places) < _INSIDE
         rows, places, turning = bent[rows[inside]], places[inside], turning[inside]
-        top = samples.max(axis=0)[rows]  # by the rounding of a straight line nothing exceeds its ends
-        turning = np.where(
-            turning > top + _STRAIGHT * size[which, self.machine[piece]][rows], turning, np.minimum(turning, top)
-        )
+        # by the rounding of a straight line nothing exceeds its ends
+        low, high = ranges[:, which[rows], piece[rows]]
+        beyond = (turning > high + straight[rows]) | (turning < low - straight[rows])
+        turning = np.where(beyond, turning, np.clip(turning, low, high))
         value = np.concatenate((samples[0], samples[-1], turning))
-        ends = self.low[piece], self.high[piece], self._at(piece[rows], places)
-        quantity, owner = (
-            np.concatenate((which, which, which[rows])),
-            self.machine[np.concatenate((piece, piece, piece[rows]))],
-        )
-        np.maximum.at(best, (quantity, owner), value)
-        return best, _first_summits(quantity, owner, np.concatenate(ends), value, best, _REPEATED * size)
+        degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
+        quantity = np.concatenate((which, which, which[rows]))
+        owner = self.machine[np.concatenate((piece, piece, piece[rows]))]
+        for sign, one in zip(signs, best):
+            np.maximum.at(one, (quantity, owner), sign * value)
+        return [
+            (one, _first_summits(quantity, owner, degrees, sign * value, one, slack)) for sign, one in zip(signs, best)
+        ]
 
     def _at(self, rows: Indices, places: Array) -> Array:
         """Return the angles in degrees at places in [−1, 1] of these pieces."""
@@ -360,10 +381,13 @@ def resolved(
     return _halved_until_smooth(cut, function, cut.carried(parts, pieces))
 
 
-def refined(pieces: Pieces, sample: Sample) -> tuple[Pieces, Samples]:
-    """Return pieces halved until the samples are polynomials on them, and the samples there, each (nodes, pieces)."""
+def refined(pieces: Pieces, sample: Sample, judged: int | None = None) -> tuple[Pieces, Samples]:
+    """Return pieces halved until the samples are polynomials on them, and the samples there, each (nodes, pieces).
+
+    judged: how many of the samples are, the first ones; the others come along.
+    """
     nothing = np.zeros((0, *pieces.degrees.shape))
-    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing)[:2]
+    return _halved_until_smooth(pieces, lambda some, _: sample(some), nothing, judged=judged)[:2]
 
 
 def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Samples]) -> tuple[Array, Array]:
@@ -373,7 +397,7 @@ def highest(pieces: Pieces, parts: Array, function: Callable[[Pieces, Array], Sa
     """
     fine, values, _ = _halved_until_smooth(pieces, function, parts, only_highest=True)
     ranges = _ranges(values)
-    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))
+    return fine.highest(values, ranges, np.maximum.reduceat(ranges[1], fine.first, axis=-1))[0]
 
 
 def _ranges(values: Samples) -> Array:
@@ -382,39 +406,41 @@ def _ranges(values: Samples) -> Array:
 
 
 def _halved_until_smooth(
-    pieces: Pieces, function: Callable[[Pieces, Array], Samples], parts: Array, only_highest: bool = False
+    pieces: Pieces,
+    function: Callable[[Pieces, Array], Samples],
+    parts: Array,
+    only_highest: bool = False,
+    judged: int | None = None,
 ) -> tuple[Pieces, Samples, Array]:
     """Return pieces halved until the functions of parts are polynomials on them, the functions, and the parts there.
 
-    only_highest: where they may have their largest values; the other pieces are left out.
+    only_highest: where they may have their largest values; the other pieces are left out. judged: see `refined`.
     """
     todo, size = pieces, np.zeros(())
-    done: list[Pieces] = []
-    found: list[Array] = []
+    done: list[tuple[Pieces, Indices, Sequence[Array]]] = []
     while True:
         values = function(todo, parts)
-        low, high = _ranges(values)
-        top, first = np.zeros((len(values), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
+        tested = values[:judged]
+        low, high = _ranges(tested)
+        top, first = np.zeros((len(tested), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
         top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
-        judged = values
         if only_highest:
             values, may = np.asarray(values), ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
             todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
-            judged = values * may[:, None, some]
-        rough = _rough(todo, judged, size, len(done))
+            tested = values * may[:, None, some]
+        rough = _rough(todo, tested, size, len(done))
         if not (done or rough.any()):
             return todo, values, parts
-        done.append(todo.taken(~rough))
-        found.append(np.concatenate((np.asarray(values)[..., ~rough], parts[..., ~rough])))
+        done.append((todo, np.flatnonzero(~rough), [*values, *parts]))
         if not rough.any():
             break
         nodes, halved = len(pieces.rule.nodes), 2 * np.count_nonzero(rough)
         halves = (pieces.rule.halving @ parts[..., rough]).reshape(len(parts), 2, nodes, halved // 2)
         parts = halves.transpose(0, 2, 3, 1).reshape(len(parts), nodes, halved)
         todo = todo.halved(rough)
-    whole, both = joined(done, found)
+    whole, both = joined(done)
     return whole, both[: len(values)], both[len(values) :]
 
 
@@ -431,17 +457,25 @@ def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags
     return np.asarray(rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine]))
 
 
-def joined(parts: list[Pieces], values: list[Array]) -> tuple[Pieces, Array]:
-    """Return pieces that together fill the cycles as one row, in order, and their samples (…, pieces)."""
-    one = parts[0]
-    if len(parts) == 1:
-        return one, values[0]
-    columns = [(part.right_angle, part.offset, part.half, part.machine) for part in parts]
+def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
+    """Return pieces that together fill the cycles as one row, in order, and samples of quantities (q, …, pieces) there.
+
+    parts: pieces, which of them are taken, and the samples of each quantity on all of them.
+    """
+    taken = [pieces.taken(rows) for pieces, rows, _ in parts]
+    columns = [(one.right_angle, one.offset, one.half, one.machine) for one in taken]
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
-    ordered = right_angle[order], offset[order], half[order], machine[order]
-    whole = Pieces(*ordered, one.count, one.cycle, one.rule)
-    return whole, np.concatenate(values, axis=-1)[..., order]
+    whole = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine).taken(order)
+    place = np.empty_like(order)
+    place[order] = np.arange(len(order))
+    places = np.split(place, np.cumsum([len(rows) for _, rows, _ in parts])[:-1])
+    count = len(parts[0][2])
+    found = np.empty((count, *parts[0][2][0].shape[:-1], len(order)))
+    for at, (_, rows, values) in zip(places, parts):
+        for quantity, one in enumerate(values):
+            found[quantity][..., at] = one[..., rows]
+    return whole, found
 
 
 def _first_summits(

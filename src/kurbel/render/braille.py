@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.render import Look
-from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, looks_of, ticks
+from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, legend_text, looks_of, ticks
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, width
 from kurbel.report.picture import Panel, Picture
 
@@ -94,8 +94,10 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
         needed = max((width(text) + 1 for _, text in up), default=0)
     canvas = Canvas(wide - side, int(frame.tall // 2) + 1, has_dots)
     _draw(canvas, frame, dot)
-    axis = "" if panel.plain else axis_text(panel.y, look)
-    yield from (line(one) for one in folded("   ".join(filter(None, (look.text(panel.title), axis))), wide))
+    above = [look.text(panel.title)] if panel.plain else [look.text(panel.title), axis_text(panel.y, look)]
+    named = [legend_text(curve.name, look) for curve in panel.curves if curve.kind == "line" and curve.name.words]
+    above += [", ".join(named)] if len(named) > 1 else []
+    yield from (line(one) for one in folded("   ".join(filter(None, above)), wide))
     rows = canvas.lines()
     if panel.plain:
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
@@ -112,7 +114,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
         under[round(left) : round(left) + len(text)] = text
     yield line(" " * side + "".join(rule), "rule")
     yield line(" " * side + "".join(under).rstrip(), "unit")
-    yield line(padded(axis_text(panel.x, look), wide, True), "unit")
+    yield from (line(padded(text, wide, True), "unit") for text in frame.below)
 
 
 def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
@@ -121,7 +123,11 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
     drawn = []
     for curve, look in zip(panel.curves, looks_of(panel)):
         role = f"curve{look}" if curve.kind in ("line", "dots") else _ROLES.get(curve.kind, "rule")
-        drawn += [(role, frame.place(*piece)) for piece in (*curve.pieces(), *curve.jumps()) if curve.kind != "fixed"]
+        drawn += [
+            (role, frame.place(*piece))
+            for piece in (*curve.pieces(), *curve.jumps())
+            if curve.kind not in ("fixed", "beads", "pole")
+        ]
     # the lines to compare with first, so that curves are over them
     for role, places in sorted(drawn, key=lambda one: one[0] != "rule"):
         canvas.line(places.real / dot[0], places.imag / dot[1], role)

@@ -15,6 +15,7 @@ INK, PAPER, FAINT, RULE, SHADE = (
     ("#f3f4f5", "#1f2428"),
 )
 GOOD, BAD, LINK = ("#1d6b34", "#7fd49a"), ("#a31515", "#ff9d94"), ("#0b5394", "#8cc4f5")
+WARN, WARNED = ("#d9a514", "#b98a10"), ("#fdf3d8", "#33291a")
 """Each in light and in dark, of a contrast of 4.5 to the paper and to the shade."""
 
 
@@ -40,7 +41,7 @@ def page(title: str, main: Iterable[str], more_style: str = "") -> Iterator[str]
 def style() -> str:
     """Return the style sheet of pages: light, dark, and print."""
     names = {"ink": INK, "paper": PAPER, "faint": FAINT, "rule": RULE, "shade": SHADE}
-    names |= {"good": GOOD, "bad": BAD, "link": LINK}
+    names |= {"good": GOOD, "bad": BAD, "link": LINK, "warn": WARN, "warned": WARNED}
     light, dark = (";".join(f"--{name}:{colours[mode]}" for name, colours in names.items()) for mode in (0, 1))
     return (
         f":root{{{light}}}\n@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
@@ -54,10 +55,10 @@ def style() -> str:
         "caption{text-align:left;font-weight:600;padding:.3rem 0}\n"
         "th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}"
         "td.r,th.r{text-align:right}td.r,tbody th.r,thead small,.n{white-space:nowrap}\n"
-        "thead th{border-top:2px solid var(--ink);border-bottom:1px solid var(--ink);vertical-align:bottom}"
-        "tbody tr:last-child>*{border-bottom:2px solid var(--ink)}tbody th{font-weight:400}\n"
+        "thead th{border-bottom:1px solid var(--ink);vertical-align:bottom}"
+        "tbody tr>*{border-bottom:1px solid var(--rule)}tbody th{font-weight:400}td.l{max-width:14rem}\n"
         "@media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}\n"
-        "tbody tr:nth-child(even){background:var(--shade)}small{color:var(--faint)}"
+        "small{color:var(--faint)}"
         ".good{color:var(--good)}.bad{color:var(--bad);font-weight:600}\n"
         "@page{margin:14mm}@media print{body{font-size:9pt}main{max-width:none;padding:0}"
         ".wide{overflow:visible}table{font-size:7.5pt}th,td{padding:.05rem .3rem}"

@@ -5,14 +5,17 @@ others take what has been escaped. LaTeX is to be \input into a document that ha
 """
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 
 from kurbel.render import Look
-from kurbel.render.text import measures
+from kurbel.render.numbers import in_thousands
+from kurbel.render.text import measures, subscripts
 from kurbel.render.text_tables import (
     MARK,
+    TextColumn,
     TextTable,
+    headed,
     key_value_table,
     part_name,
     place_table,
@@ -41,7 +44,7 @@ class Markdown:
         """Return a text with everything escaped that Markdown would take for a mark."""
         return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
 
-    sentence = symbol = text
+    name = sentence = symbol = number = text
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return title, heads and the line that aligns the columns."""
@@ -71,11 +74,35 @@ class Html:
         """Return a text with everything escaped that HTML would take for markup."""
         return escape(plain)
 
-    symbol = text
+    def symbol(self, plain: str) -> str:
+        """Return a text in which what follows the underscore of a symbol is below the line.
+
+        >>> print(Html().symbol("φ_P=0"), Html().symbol("A_1, A_2"))
+        φ<sub>P=0</sub> A<sub>1</sub>, A<sub>2</sub>
+        """
+        return self._lowered(escape(plain))
+
+    def name(self, plain: str) -> str:
+        """Return a name or a value, in which no unit is parted from its number."""
+        text = re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain))
+        return in_thousands(measures().sub(r'<span class="n">\g<0></span>', text), "&#8239;")
 
     def sentence(self, plain: str) -> str:
-        """Return a text in which no unit is parted from its number."""
-        return measures().sub(r'<span class="n">\g<0></span>', escape(plain))
+        """Return a sentence, in which no unit is parted from its number, and symbols have their indices."""
+        return self._lowered(self.name(plain))
+
+    def _lowered(self, escaped: str) -> str:
+        parts = subscripts(escaped)
+        parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
+        return "".join(parts)
+
+    def number(self, plain: str) -> str:
+        """Return a number with thin spaces and a minus sign in place of a hyphen, whatever the encoding.
+
+        >>> print(Html().number("-18066.25"))
+        &minus;18&#8239;066.25
+        """
+        return re.sub(r"^-(?=\d)", "&minus;", in_thousands(escape(plain), "&#8239;"))
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table that a narrow window scrolls."""
@@ -93,7 +120,8 @@ class Html:
         """Return a row; lists of numbers and long names may be folded."""
         shown = []
         for k, (column, cell) in enumerate(zip(table.columns, cells)):
-            right = _right(not column.words and not (number in table.lists and k == 1))
+            listed = number in table.lists and k == 1
+            right = ' class="l"' if listed else _right(not column.words)
             if k >= table.heads:
                 shown.append(f"<td{right}>{cell}</td>")
             else:
@@ -151,7 +179,15 @@ class Latex:
             for one in _LETTER.findall(plain)
         )
 
-    sentence = text
+    name = sentence = text
+
+    def number(self, plain: str) -> str:
+        r"""Return a number with thin spaces.
+
+        >>> print(Latex().number("-18066.25"))
+        $-$18\,066.25
+        """
+        return self.text(in_thousands(plain, "\N{THIN SPACE}")).replace("\N{THIN SPACE}", "\\,")
 
     def symbol(self, plain: str) -> str:
         r"""Return a symbol, what follows its underscore as its index.
@@ -199,15 +235,16 @@ def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
     report = shown_once(report)
     yield out.title.format(out.text(look.text(report.title)))
     yield from (out.paragraph.format(out.sentence(look.text(text))) for text in report.head)
-    for table in _tables(report, look, out.across):
+    for table in (*over_angle(report, look, out.across), *of_places(report, look, out.across)):
         yield from written(table, out)
     notes = [note for note in (report.mirrored, *report.notes) if note]
     yield from (out.paragraph.format(out.sentence(sentence_text(note, look))) for note in notes)
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
-        if part.key_values:
-            yield from written(key_value_table(f"Key values{of}", part.key_values, look), out)
+        for heading, key_values in headed(part.key_values).items():
+            caption = f"Key values{of}{f', {heading.lower()}' if heading else ''}"
+            yield from written(key_value_table(caption, key_values, look), out) if key_values else ()
         left_out = [f"{one.what}: {one.why}" for one in part.left_out]
         yield from listed(f"Left out{of}", left_out, look, out)
         yield from listed(f"Warnings{of}", part.warnings, look, out)
@@ -221,26 +258,38 @@ def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> I
         yield out.list_end
 
 
-def _tables(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables over the crank angle and of places, in parts of so many columns, at least one part."""
+def over_angle(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
+    """Yield the tables over the crank angle, in parts of so many columns."""
     found = [(name, heads, columns, True) for heads, bands in sheets(report, look) for name, columns in bands]
-    for one in report.printed_tables:
-        table = place_table(one, look)
-        found.append((table.caption, [*table.columns[: table.heads]], [*table.columns[table.heads :]], False))
-    for caption, names, columns, headed in found:
+    return _parts_of(found, across)
+
+
+def of_places(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
+    """Yield the tables of places, in parts of so many columns."""
+    tables = [place_table(one, look) for one in report.printed_tables]
+    found = [(one.caption, [*one.columns[: one.heads]], [*one.columns[one.heads :]], False) for one in tables]
+    return _parts_of(found, across)
+
+
+def _parts_of(
+    found: Iterable[tuple[str, Sequence[TextColumn], Sequence[TextColumn], bool]], across: int | None
+) -> Iterator[TextTable]:
+    for caption, names, columns, named in found:
         most = across or max(len(columns), 1)
         for start in range(0, max(len(columns), 1), most):
-            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if headed else 0)
+            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if named else 0)
 
 
 def written(table: TextTable, out: Writer) -> Iterator[str]:
     """Yield a table row by row."""
     heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
     yield out.table_head(table, out.text(table.caption), heads)
-    doors = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    doors = {"number": out.number, "name": out.name, "symbol": out.symbol, "sentence": out.sentence}
     kinds = [doors[one.kind] for one in table.columns]
     for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
         texts = zip(kinds, map(str.strip, row))
-        cells = [out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts]
+        cells = [
+            out.strong.format(out.number(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts
+        ]
         yield out.row(table, number, cells)
     yield out.table_end

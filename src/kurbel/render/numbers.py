@@ -1,6 +1,7 @@
 """How numbers look: as many digits as an engineer reads, the same number of decimals along a row, no negative zero."""
 
 import math
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -69,6 +70,18 @@ def cell(value: Value, scale: Scale, comma: bool = False) -> str:
         value /= 10.0**scale.exponent
     # adding 0.0 turns -0.0 into 0.0
     return decimal(f"{round(value, scale.decimals) + 0.0:.{max(0, scale.decimals)}f}", comma)
+
+
+_LONG = re.compile(r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))")
+
+
+def in_thousands(text: str, space: str = "\N{NARROW NO-BREAK SPACE}") -> str:
+    """Return a text in which numbers from 10,000 on have thin spaces.
+
+    >>> in_thousands("J = 18066.25, -1234567; 1234, 0.123456, run-10000.csv", "_")
+    'J = 18_066.25, -1_234_567; 1234, 0.123456, run-10000.csv'
+    """
+    return _LONG.sub(lambda found: f"{int(found[0]):_}".replace("_", space), text)
 
 
 def decimal(text: str, comma: bool) -> str:

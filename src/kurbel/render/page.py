@@ -9,6 +9,7 @@ from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, plain, 
 from kurbel.render.text_tables import (
     MARK,
     TextColumn,
+    headed,
     key_value_table,
     part_name,
     place_table,
@@ -162,7 +163,10 @@ def fitting_sizes(count: int, most: int) -> list[int]:
 
 
 def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
-    """Yield a line for each key value: symbol, value, unit, crank angle, meaning."""
+    """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together."""
+    groups = headed(key_values)
+    key_values = [one for group in groups.values() for one in group]
+    first_of = {group[0].id: heading for heading, group in groups.items() if heading}
     table = key_value_table("", key_values, look)
     symbols, shown, units, angles, meanings = (one.values for one in table.columns)
     # decimal points below one another; whole numbers end there, too
@@ -176,7 +180,9 @@ def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[L
     if look.width is not None and 2 + symbol + 2 + wide + 2 + unit + 2 + angle > look.width:
         angle = 0
 
-    for name, number, of, at, text in zip(symbols, numbers, units, angles, meanings):
+    for one, name, number, of, at, text in zip(key_values, symbols, numbers, units, angles, meanings):
+        if one.id in first_of:
+            yield from (BLANK, line(first_of[one.id], "unit"))
         start = f"  {padded(name, symbol)}  "
         head = f"{start}{padded(number, wide)}  {padded(of, unit)}  "
         if angle:

@@ -8,12 +8,14 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
 from kurbel.render import Look
-from kurbel.render.numbers import angle, angle_scale, cell, decimal, single
-from kurbel.render.text import width
+from kurbel.render.numbers import angle, angle_scale, cell, decimal, in_thousands, single
+from kurbel.render.text import folded, width
 from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
+_ROUNDING = 1e-9
+"""Over the size of a curve, the height that is its rounding."""
 _AIR = 0.12
 """Share of its height that a panel leaves free above and below its curves."""
 _MOST_MARKED = 12
@@ -30,32 +32,41 @@ def symbol(words: Words, look: Look) -> str:
 
 
 def axis_text(axis: Axis, look: Look) -> str:
-    """Return what is written at the end of an axis."""
-    return " in ".join(filter(None, (symbol(axis.name, look), look.unit(axis.unit))))
+    """Return what is written at the end of an axis: words, symbol, unit."""
+    words = look.text(axis.name.words)
+    name = " ".join(filter(None, (words[:1].upper() + words[1:], symbol(axis.name, look))))
+    return " in ".join(filter(None, (name, look.unit(axis.unit))))
+
+
+def legend_text(words: Words, look: Look) -> str:
+    """Return a symbol with its words."""
+    return " ".join(filter(None, (symbol(words, look), look.text(words.words))))
 
 
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
     at = "" if figure.at_deg is None else angle(figure.at_deg, look.comma) + look.text("°")
     if figure.value is None:
-        return f"{symbol(figure.name, look)} {at}".rstrip()
+        return f"{symbol(figure.name, look)} {at}".strip()
     number, power = single(figure.value, look.digits, look.comma)
-    parts = symbol(figure.name, look), look.counted(_signed(number, look), power), look.unit(figure.unit)
+    parts = symbol(figure.name, look), look.counted(_printed(number, look), power), look.unit(figure.unit)
     return ", ".join(filter(None, (" ".join(filter(None, parts)), at)))
 
 
 def picture_text(picture: Picture, look: Look) -> str:
     """Return a picture in words: what it shows, and every figure in it."""
-    figures = [mark.figure for panel in picture.panels for mark in panel.marks]
+    figures = [mark.figure for panel in picture.panels for mark in panel.marks if mark.figure.name.symbol]
     figures += [shade.figure for panel in picture.panels for shade in panel.shades if shade.figure]
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
 
 
-def _signed(number: str, look: Look) -> str:
-    """Return a number with a minus sign in place of a hyphen."""
-    return f"−{number[1:]}" if number.startswith("-") and look.has("−") else number
+def _printed(number: str, look: Look) -> str:
+    """Return a number with a minus sign in place of a hyphen, and with thin spaces, where the output has them."""
+    if not look.has("−\N{NARROW NO-BREAK SPACE}"):
+        return number
+    return in_thousands(f"−{number[1:]}" if number.startswith("-") else number)
 
 
 # scales
@@ -77,16 +88,20 @@ class AxisScale(NamedTuple):
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
 
-def scale_of(axis: Axis, drawn: list[Array], air: bool) -> AxisScale:
-    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it."""
+def scale_of(axis: Axis, drawn: list[Array], air: bool, around: float = 0.0) -> AxisScale:
+    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it.
+
+    around: what is above and below a level line, if it is not a tenth of its height.
+    """
     every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
     low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
     if axis.log:
         low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
-    elif not high > low:  # a level line is in the middle
-        low, high = low - (0.1 * abs(low) or 1.0), high + (0.1 * abs(high) or 1.0)
+    elif high - low <= _ROUNDING * max(abs(low), abs(high)):  # a level line is in the middle
+        low, high = (end + sign * (around or 0.1 * abs(end) or 1.0) for end, sign in ((low, -1), (high, 1)))
     elif air:
-        low, high = low - _AIR * (high - low), high + _AIR * (high - low)
+        below = 0.0 if low == axis.low else _AIR * (high - low)
+        low, high = low - below, high + _AIR * (high - low)
     return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
 
 
@@ -111,7 +126,7 @@ def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[flo
             texts = [decimal(f"{value:.4g}", look.comma) for value in values]
         else:
             texts = [cell(value, angle_scale(values), look.comma) for value in values]
-        texts = [_signed(text, look) for text in texts]
+        texts = [_printed(text, look) for text in texts]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
@@ -137,6 +152,8 @@ class Medium(NamedTuple):
 class Label(NamedTuple):
     """A text that names a point x + iy; look: of the curve that it names; led: a line leads to it where it is far.
 
+    spare: it is left out rather than be far, or on a curve.
+
     Once it is placed it is between left and right, below top; lead: the end of that line.
     """
 
@@ -144,10 +161,15 @@ class Label(NamedTuple):
     point: complex
     look: int | None = None
     led: bool = False
+    spare: bool = False
     left: float = 0.0
     right: float = 0.0
     top: float = 0.0
     lead: complex | None = None
+
+
+def _is_number(text: str) -> bool:
+    return text.replace(".", "", 1).isdecimal()
 
 
 class PanelFrame:
@@ -159,14 +181,28 @@ class PanelFrame:
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
-        x, y = scale_of(panel.x, across, panel.plain), scale_of(panel.y, up, True)
+        spread = max((float(np.nanmax(one) - np.nanmin(one)) for one in (*across, *up) if one.size), default=0.0)
+        around = 0.1 * spread if panel.equal else 0.0
+        x, y = scale_of(panel.x, across, panel.plain, around), scale_of(panel.y, up, True, around)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
-            tall = min(max(wide * sizes[1] / sizes[0], medium.shortest), medium.tallest)
+            least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
+            tall = min(max(wide * sizes[1] / sizes[0], least), medium.tallest)
             room = np.array([wide, tall])
             spare = (max(sizes / room) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
+        names = panel.x.names
+        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) - medium.letter if names else 0.0
+        if any(width(name) * medium.letter > between for name in names) and not all(map(_is_number, names)):
+            # names that do not fit below the axis have numbers there, and follow it
+            key = ", ".join(
+                f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
+            )
+            numbers = tuple(str(number) for number, _ in enumerate(names, 1))
+            self.panel = panel._replace(x=panel.x._replace(name=Words(key), names=numbers))
+        self.below = folded(axis_text(self.panel.x, look), int(wide / medium.letter))
+        """What is written below the axis, line by line."""
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
@@ -236,8 +272,10 @@ class PanelFrame:
             farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
             yield Label(symbol(curve.name, look), complex(own[farthest]), number)
 
-        for mark in panel.marks[:_MOST_MARKED]:
-            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=True)
+        named_marks = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
+        for mark in (*named_marks, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
+            led = bool(mark.figure.name.symbol)
+            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=led, spare=not led)
 
         # the figures of shades, or their names alone where not each figure has the room
         written = [(shade, shade.figure, figure_text(shade.figure, look)) for shade in panel.shades if shade.figure]
@@ -270,7 +308,7 @@ class PanelFrame:
         cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * on_curves
         cost = np.where(on_labels > 0, np.inf, cost.round(6))
         row, column = np.unravel_index(cost.argmin(), cost.shape)
-        if np.isinf(cost[row, column]):
+        if np.isinf(cost[row, column]) or (label.spare and cost[row, column] > 2 * tall):
             return None
         taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
         start, height = float(left[column]), float(top[row, 0])

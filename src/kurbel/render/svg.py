@@ -1,6 +1,5 @@
 """Pictures as SVG: text stays text, colours and strokes are classes, and what moves, moves without a script."""
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from typing import NamedTuple
@@ -9,8 +8,18 @@ import numpy as np
 
 from kurbel.arrays import ComplexArray
 from kurbel.render import Look
-from kurbel.render.picture import LOOKS, Medium, PanelFrame, axis_text, looks_of, picture_text, symbol, ticks
-from kurbel.render.text import folded, width
+from kurbel.render.picture import (
+    LOOKS,
+    Medium,
+    PanelFrame,
+    axis_text,
+    legend_text,
+    looks_of,
+    picture_text,
+    symbol,
+    ticks,
+)
+from kurbel.render.text import folded, subscripts, width
 from kurbel.report.picture import Curve, Picture
 
 # lengths in points from the upper left corner
@@ -18,13 +27,14 @@ PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=
 WIDTH = 720.0
 _TALL, _SHORT = 250.0, 170.0
 """Height of a panel among at most two and of one among several."""
+_GUTTER = 14.0
+"""Between panels that are next to each other."""
 _BOLD = 8.3
 """Width of a character of a heading."""
 _SECONDS = 6.0
 """Time that a moving mechanism takes for one cycle."""
 _STRAIGHT = 0.1
 """How far a point that is left out may be from the line between its neighbours."""
-_SUBSCRIPT = re.compile("(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|]+?)(?=,?\\s|,?$|\\|)")
 
 
 class Stroke(NamedTuple):
@@ -36,9 +46,9 @@ class Stroke(NamedTuple):
 
 
 STROKES = (
-    Stroke("#0b0b0b", "#f2f2f2", ""),
-    Stroke("#0062a3", "#6cc0f2", "8 3"),
-    Stroke("#a8420a", "#f0a35e", "2 2.5"),
+    Stroke("#0b5394", "#7cc0f5", ""),
+    Stroke("#b04a0c", "#f0a35e", "8 3"),
+    Stroke("#0b0b0b", "#f2f2f2", "2 2.5"),
     Stroke("#00694f", "#3fd1a0", "9 3 2 3"),
     Stroke("#8f2f74", "#eaa0cf", "5 2"),
     Stroke("#6b5900", "#e6d354", "1 3"),
@@ -46,7 +56,7 @@ STROKES = (
 """After Okabe and Ito, whom the colour-blind can tell apart, darkened or lightened to a contrast of 4.5."""
 INK, PAPER = ("#1a1a1a", "#e8e8e8"), ("#ffffff", "#15181b")
 FAINT, GRID = ("#5c5c5c", "#a5a5a5"), ("#dcdcdc", "#33383d")
-GAIN, LOSS = ("#b9cfe2", "#2d4a63"), ("#f1dccd", "#59402c")
+GAIN, LOSS = ("#cfe0f1", "#27425c"), ("#f6ddcc", "#583d28")
 """Each in light and in dark."""
 SHAPES: tuple[tuple[complex, ...], ...] = (
     (),
@@ -58,6 +68,10 @@ SHAPES: tuple[tuple[complex, ...], ...] = (
     (-0.5 - 1.4j, 0.5 - 1.4j, 0.5 + 1.4j, -0.5 + 1.4j),
 )
 """Corners of the figures that mark points, over their radius; none of a circle. Seven of them and six colours."""
+
+
+Entry = tuple[str, float, int, int | None]
+"""Of a line of texts above a panel: a text, its left end, its row, and the stroke before it, if any."""
 
 
 def css(dark: bool = True) -> str:
@@ -95,34 +109,39 @@ def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> st
         parts += f'<g transform="translate(0 {height:g})">\n{items}</g>\n'
         height += tall
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="s" viewBox="0 0 {WIDTH:g} {height:g}" width="{WIDTH:g}" '
-        f'height="{height:g}" role="img">\n<title>{escape(" ".join(texts))}</title>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="s" viewBox="-8 0 {WIDTH + 16:g} {height:g}" '
+        f'width="{WIDTH + 16:g}" height="{height:g}" role="img">\n<title>{escape(" ".join(texts))}</title>\n'
         f"<style>{css(not paper)}</style>\n{parts}</svg>\n"
     )
 
 
 def svg(picture: Picture, look: Look) -> str:
-    """Return a picture as a part of a page that has the style sheet."""
-    tall, items = _drawn(picture, look, False)
+    """Return a picture as a part of a page that has the style sheet, and its heading."""
+    tall, items = _drawn(picture, look, False, headed=False)
     head = f'<svg class="s" viewBox="0 0 {WIDTH:g} {tall:g}" role="img">'
     return f"{head}<title>{escape(picture_text(picture, look))}</title>\n{items}</svg>"
 
 
-def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
-    """Return the height of a picture and its items."""
-    heading = folded(look.text(picture.heading), int((WIDTH - 16) / _BOLD))
-    items = "".join(_text(8, 16 + 17 * number, text, "h", plain=True) for number, text in enumerate(heading))
-    top, each = 7.0 + 17 * len(heading), WIDTH / picture.across
+def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tuple[float, str]:
+    """Return the height of a picture and its items; headed: with its heading."""
+    heading = folded(look.text(picture.heading), int(WIDTH / _BOLD)) if headed else []
+    items = "".join(_text(0, 16 + 17 * number, text, "h", plain=True) for number, text in enumerate(heading))
+    top, each = 7.0 * headed + 17 * len(heading), (WIDTH + _GUTTER) / picture.across - _GUTTER
     tall = _TALL if len(picture.panels) < 3 else _SHORT
     below = top
     for number, panel in enumerate(picture.panels):
         if number % picture.across == 0:
             top, across = below + 4 * (number > 0), 0.0
-        left, right, above, under = (8.0, 8.0, 18.0, 8.0) if panel.plain else (58.0, 16.0, 34.0, 30.0)
+        left, right, above, under = (0.0, 0.0, 18.0, 8.0) if panel.plain else (48.0, 12.0, 20.0, 18.0)
         frame = PanelFrame(panel, look, PAPER_SIZES, each - left - right, tall)
-        inside = "".join(_panel(frame, left, paper))
+        legend = [] if panel.plain else _legend(frame, left)
+        above, under = (
+            above + 14 * max((row for _, _, row, _ in legend), default=-1) + 14,
+            under + 12 * len(frame.below),
+        )
+        inside = "".join(_panel(frame, left, paper, legend))
         items += f'<g transform="translate({across + left:g} {top + above:g})">\n{inside}</g>\n'
-        below, across = max(below, top + above + frame.tall + under), across + each
+        below, across = max(below, top + above + frame.tall + under), across + each + _GUTTER
     top = below + 4
     for number, (name, mark) in enumerate(picture.legend):
         left, base = 12 + number % 4 * (WIDTH - 12) / 4, top + 14 + number // 4 * 16
@@ -131,17 +150,19 @@ def _drawn(picture: Picture, look: Look, paper: bool) -> tuple[float, str]:
     return top + (-(-len(picture.legend) // 4) * 16 + 8 if picture.legend else 0), items
 
 
-def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
+def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry]) -> Iterator[str]:
     """Yield what is on a panel, from below to above; what moves twice, in motion and at rest.
 
     left: the room at its left.
     """
     panel = frame.panel
     if not panel.plain:
-        yield from _around(frame, -left + 12)
+        yield from _around(frame, left, legend)
     for shade in panel.shades:
         low, high = (thinned(frame.place(shade.x, line)) for line in (shade.low, shade.high))
-        yield _shape("p" if shade.gain else "n", _path(np.append(low, high[::-1])) + "Z")
+        # bars are all that there is to see; areas are behind their curves
+        gain, loss = ("p", "n") if panel.curves else ("c0", "c1")
+        yield _shape(gain if shade.gain else loss, _path(np.append(low, high[::-1])) + "Z")
     resting = _text(0, -5, frame.look.text(panel.title), plain=True) if panel.plain else ""
     moving = ""
     for curve, look in zip(panel.curves, looks_of(panel)):
@@ -157,30 +178,43 @@ def _panel(frame: PanelFrame, left: float, paper: bool) -> Iterator[str]:
     yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
 
 
-def _around(frame: PanelFrame, left: float) -> Iterator[str]:
+def _legend(frame: PanelFrame, left: float) -> list[Entry]:
+    """Return what is above a panel: its title, what runs upward, and of several curves each with its stroke."""
+    panel, look, found = frame.panel, frame.look, list[Entry]()
+    at, row = -left, 0
+    named = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
+    texts: list[tuple[str, int | None]] = [(look.text(panel.title), None), (axis_text(panel.y, look), None)]
+    texts += [(legend_text(curve.name, look), number) for curve, number in named] if len(named) > 1 else []
+    for text, number in texts:
+        wide = PAPER_SIZES.letter * width(text) + (30 if number is not None else 0)
+        if text and at + wide > frame.wide + 12 and at > -left:
+            at, row = -left, row + 1
+        if text:
+            found.append((text, at, row, number))
+            at += wide + 18
+    return found
+
+
+def _around(frame: PanelFrame, left: float, legend: Sequence[Entry]) -> Iterator[str]:
     """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
     panel, look, wide, tall = frame.panel, frame.look, frame.wide, frame.tall
-    across = frame.ticks_across(max(3, int(wide / 64)), -50.0, wide + 14)
+    across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 12)
     up = ticks(panel.y, frame.y, int(tall / 30), look)
     lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
     lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
     yield _shape("g", "".join(lines)) + _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))
     yield "".join(_text(start, tall + 14, text, plain=True) for _, start, text in across if text)
     yield "".join(_text(-6, place + 3.5, text, anchor="end") for place, text in up)
-    yield _text(wide, tall + 26, axis_text(panel.x, look), anchor="end")
+    yield "".join(_text(wide, tall + 27 + 12 * k, text, anchor="end") for k, text in enumerate(frame.below))
 
-    for text, plain in ((look.text(panel.title), True), (axis_text(panel.y, look), False)):
-        if text:
-            yield _text(left, -10, text, plain=plain)
-            left += PAPER_SIZES.letter * width(text) + 20
-    named = [(curve, number) for curve, number in zip(panel.curves, looks_of(panel)) if curve.kind == "line"]
-    for curve, number in named if len(named) > 1 else ():
-        name = symbol(curve.name, look)
-        right = left + 46 + PAPER_SIZES.letter * width(name)
-        if right > wide + 16:
-            break
-        yield _shape(f"k{number}", _path(np.array([left - 14j, left + 26 - 14j]))) + _text(left + 30, -10, name)
-        left = right
+    last = max((row for _, _, row, _ in legend), default=0)
+    for text, at, row, number in legend:
+        base = -10.0 - 14 * (last - row)
+        if number is not None:
+            yield _shape(f"k{number}", _path(np.array([at, at + 26]) + 1j * (base - 4)))
+        yield _text(
+            at + (30 if number is not None else 0), base, text, plain=row == 0 and text == look.text(panel.title)
+        )
 
 
 def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
@@ -197,8 +231,9 @@ def _curve(frame: PanelFrame, moments: Sequence[Curve], look: int) -> str:
         elif kind == "dots":
             dots = "".join(_dot(point, shape) for piece in pieces for point in piece)
             outlines.append([(f"j{look}", lines), (f"c{look}", dots)])
-        elif kind in ("joint", "fixed"):
-            dots = "".join(_dot(point, 0, 4.0) for point in pieces[0])
+        elif kind in ("joint", "fixed", "beads", "pole"):
+            radius = {"beads": 1.6, "pole": 3.0}.get(kind, 4.0)
+            dots = "".join(_dot(point, 0, radius) for point in pieces[0])
             outlines.append([("o" if kind == "joint" else "i", dots)])
         elif kind == "arrow":
             tail, tip = pieces[0]
@@ -271,15 +306,6 @@ def _text(
     moves = _animated("x", [_number(one.real) for one in loop]) + _animated("y", [_number(one.imag) for one in loop])
     attributes = (f' class="{look}"' if look else "") + (f' text-anchor="{anchor}"' if anchor else "")
     return f'<text{attributes} x="{_number(x)}" y="{_number(y)}">{words}{moves}</text>\n'
-
-
-def subscripts(text: str) -> list[str]:
-    """Return what is on the line and what is below it as subscripts, in turn.
-
-    >>> subscripts("T_max 5.1 kN"), subscripts("F_x, F_y in N"), subscripts("my_engine")
-    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
-    """
-    return _SUBSCRIPT.split(text)
 
 
 def _animated(attribute: str, values: Sequence[str]) -> str:

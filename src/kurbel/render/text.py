@@ -26,6 +26,9 @@ TURNING = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A
 """Characters that turn the direction of writing: a name with one could make a line read backward."""
 _TURNING = dict.fromkeys(TURNING, "�")
 _NO_BREAK = "\N{NO-BREAK SPACE}"
+_SUBSCRIPT = re.compile(
+    "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;]+?)(?=[,.]?\\s|[,.]?$|[|()/;])"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,3 +151,12 @@ def measures() -> re.Pattern[str]:
     units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
     printed = {"%", "°", *units, *map(Look().unit, units)} - {""}
     return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")
+
+
+def subscripts(text: str) -> list[str]:
+    """Return what is on the line and what is below it as subscripts, in turn.
+
+    >>> subscripts("T_max 5.1 kN"), subscripts("F_x, F_y in N"), subscripts("my_engine")
+    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
+    """
+    return _SUBSCRIPT.split(text)

@@ -13,6 +13,8 @@ from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Val
 
 MARK = "*"
 _MOST_LISTED = 12
+_FEW = 12
+"""Key values that need no headings."""
 
 
 class TextColumn(NamedTuple):
@@ -149,6 +151,14 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
     columns = [texts(head, "", cells, kind) for (head, kind), cells in zip(heads, zip(*rows))]
     lists = {row for row, one in enumerate(found) if isinstance(one.value, tuple) and one.value}
     return TextTable(caption, columns, 1, lists=lists)
+
+
+def headed(found: Collection[KeyValue]) -> dict[str, list[KeyValue]]:
+    """Return key values by their headings, in the order of the first of each; a few, or those of one, all by ""."""
+    groups: dict[str, list[KeyValue]] = {}
+    for one in found:
+        groups.setdefault(one.heading, []).append(one)
+    return groups if len(groups) > 1 and len(found) > _FEW else {"": list(found)}
 
 
 def _number(one: KeyValue, look: Look) -> str:

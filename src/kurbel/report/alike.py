@@ -1,7 +1,7 @@
-"""Equal cylinders, pins and bearings, which tables and pages show once; CSV and JSON list every one."""
+"""What people are shown of a report: equal cylinders, pins and bearings once; on a low terminal a first selection."""
 
 import re
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Sequence
 from itertools import groupby
 from typing import TypeVar
 
@@ -72,6 +72,38 @@ def shown_once(report: Report) -> Report:
     title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
     notes = (*report.notes, _SHIFTED) if bearings else report.notes
     return report._replace(parts=tuple(parts), title=title, notes=notes)
+
+
+def first_selection(report: Report, ids: Collection[str], across: int, rows: int) -> Report:
+    """Return these columns, key values and tables, with the warnings.
+
+    across: the most crank angles of a column; rows: the first ones of a table that are shown. Without ids all columns
+    and key values stay, and the tables of the whole machine, if it has any.
+    """
+    report = shown_once(report)
+    of_whole = report.whole is not None and report.whole.place_tables
+
+    def chosen(part: Part) -> Part:
+        columns = [one for one in part.columns if not ids or one.id in ids or one is part.columns[0]]
+        last = len(part.columns[0].values) - 1 if len(columns) > 1 else 0
+        by = next((k for k in range(1, last) if last % k == 0 and last // k < across), 1)
+        tables = [one for one in part.place_tables if (one.id in ids if ids else not of_whole or part is report.whole)]
+        return part._replace(
+            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns) if last else (),
+            key_values=tuple(one for one in part.key_values if not ids or one.id in ids),
+            place_tables=tuple(
+                one._replace(
+                    names=one.names[:rows],
+                    columns=tuple(each._replace(values=each.values[:rows]) for each in one.columns),
+                )
+                for one in tables
+            ),
+            left_out=(),
+        )
+
+    whole = chosen(report.whole) if report.whole else None
+    way_on = f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
+    return report._replace(parts=tuple(map(chosen, report.parts)), whole=whole, notes=(), head=(*report.head, way_on))
 
 
 _SHIFTED = (

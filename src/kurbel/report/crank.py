@@ -7,6 +7,7 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.report.alike import equal_loads, grouped
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values, subjects_of
@@ -171,6 +172,22 @@ def equal_bearings(case: Case) -> list[list[Bearing]]:
 
     pairs = zip(subjects_of(case, "bearings"), case.bearings.parts)
     return [[part for _, part in group] for group in grouped(pairs, load)]
+
+
+def equal_cylinders(case: Case, command: str, name: str | None = None) -> list[list[CylinderForces]]:
+    """Return the cylinders, or the one of this name, those together whose key values of a command are equal."""
+    wanted = [one for one in case.cylinders if name in (None, one.drive.name)]
+    classes = gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
+    if len(classes) < 2:
+        return classes
+    subjects = {one.name: one for one in subjects_of(case, command)}
+
+    def figures(equal: list[CylinderForces]) -> Hashable:
+        one = subjects[equal[0].drive.name]
+        return equal_loads("", "", shown_key_values(one.key_values(command), "si"))
+
+    groups = [{one.drive.name for equal in group for one in equal} for group in grouped(classes, figures)]
+    return [[one for one in wanted if one.drive.name in names] for names in groups]
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:

@@ -363,6 +363,6 @@ def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list
         noise = any(map(quantity.is_noise, numbers))
         symbols = quantity.symbol, quantity.ascii_symbol
         shown_values.append(
-            KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise),
+            KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise, quantity.heading),
         )
     return shown_values

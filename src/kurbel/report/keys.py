@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, RecordForm, records
 from kurbel.declared.forms.values import Form
-from kurbel.declared.keys import Key, required
+from kurbel.declared.keys import Key, without
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -13,18 +13,18 @@ from kurbel.near_words import did_you_mean, near
 
 
 class ListedKey(NamedTuple):
-    """A key with its dotted path, whether it must be given, what may stand for it, and the word that it is beside."""
+    """A key with its dotted path, what holds without it, what may stand for it, and the word that it is beside."""
 
     path: str
     key: Key
-    needed: bool
+    absent: str
     others: tuple[str, ...] = ()
     beside: str = ""
 
     @property
     def line(self) -> str:
         """What is written, what it means, and what holds without it."""
-        return f"{self._form}: {self.key.description}" + ("; must be given" if self.needed else "")
+        return f"{self._form}: {self.key.description}" + (f"; {self.absent}" if self.key.required else "")
 
     @property
     def full(self) -> list[tuple[str, str]]:
@@ -33,14 +33,13 @@ class ListedKey(NamedTuple):
         item = key.form.item if isinstance(key.form, Listing) else None
         inner = _of_record(item, self.path) if isinstance(item, RecordForm) else _below(key.form, self.path)
         name = self.path.rpartition(".")[2]
-        either = f"{' or '.join((name, *self.others))} must be given" if key.required and self.others else ""
         below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
         found = {
             "beside": self.beside,
             "meaning": key.text.replace("`", ""),
             "symbol": key.symbol,
             "form": self._form,
-            "absent": "must be given" if self.needed else either or key.absent or "left out",
+            "absent": self.absent or "left out",
             "or give": key.instead or ", ".join(self.others),
             "needs": key.needs,
             "example": key.line(name),
@@ -100,12 +99,11 @@ def _steps(path: str) -> list[str]:
 
 
 def _of_record(record: RecordForm, path: str, beside: str = "") -> Iterator[ListedKey]:
-    needed = required(record.keys)
     for name, key in record.keys.items():
         if not isinstance(key.form, Inline):
             here = f"{path}.{name}" if path else name
             others = tuple(other for other, one in record.keys.items() if one.instead == name)
-            yield ListedKey(here, key, name in needed, others, beside)
+            yield ListedKey(here, key, without(record.keys, name), others, beside)
             yield from _below(key.form, here)
         for word, inner in records(key.form, name) if key.form.inline else ():
             yield from _of_record(inner, path, "" if isinstance(key.form, Inline) else word)
@@ -117,7 +115,7 @@ def _below(form: Form, path: str) -> Iterator[ListedKey]:
         yield from () if form.inline_too else _of_record(form, path)
         return
     if isinstance(form, Keyed):
-        yield from (ListedKey(f"{path}.{name}", key, False) for name, key in form.single.items())
+        yield from (ListedKey(f"{path}.{name}", key, key.absent) for name, key in form.single.items())
     if not form.inline:
         for name, inner in form.parts:
             yield from _below(inner, f"{path}.{name}" if name else path)

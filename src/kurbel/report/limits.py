@@ -25,13 +25,17 @@ class Entry(NamedTuple):
     """One line of a section of a check.
 
     severity: `error` of a limit that is broken or a figure that is off, `warning`, `info`, or '' of a plain statement;
-    path: of what it is about in the machine file.
+    path: of what it is about in the machine file. Of a verdict also the value with its unit, the bound and whose it is.
     """
 
     what: str
     text: str
     severity: str = ""
     path: Path = ()
+    value: float | None = None
+    unit: str = ""
+    bound: str = ""
+    where: str = ""
 
 
 class Unjudged(NamedTuple):
@@ -89,12 +93,16 @@ def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str
         off = f"FAIL, {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
         wanted = bound.text or f"{_shown(bound.low, kind, '')} to {_shown(bound.high, kind, '')}"
         text = f"{size}, expected {wanted}  {'PASS' if ok else off}"
+        limit = wanted
     else:
         ok = not breaks(quantity, bound, value)
         size = f"|{size}|" if quantity.id.endswith("_residual") and not quantity.is_noise(value) else size
         sign = ("≥" if ok else "<") if quantity.bounded_below else ("≤" if ok else ">")
         text = f"{size} {sign} {_shown(bound, kind, unit)}  {'PASS' if ok else 'FAIL'}"
-    return Entry(str(path[-1]), f"{text}  ({where})", "info" if ok else "error", path)
+        limit = f"{'≥' if quantity.bounded_below else '≤'} {_shown(bound, kind, unit)}"
+    number = 100 * value if unit == "%" else float(convert(value, kind, unit))
+    verdict = "info" if ok else "error"
+    return Entry(str(path[-1]), f"{text}  ({where})", verdict, path, number, unit or SI[kind], limit, where)
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:

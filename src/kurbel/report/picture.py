@@ -9,14 +9,15 @@ from typing import NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.report.tables import Provenance, Report
+from kurbel.report.tables import PlaceTable, Provenance, Report
 
 
 class Words(NamedTuple):
-    """A symbol as it is printed, and its form without Greek letters where that is not each sign by itself."""
+    """A symbol as it is printed, its form without Greek letters if that is not each sign by itself, and its words."""
 
     symbol: str
     ascii_symbol: str = ""
+    words: str = ""
 
 
 class Axis(NamedTuple):
@@ -40,8 +41,8 @@ class Axis(NamedTuple):
 class Curve(NamedTuple):
     """Points x, y (n,), one nan at a jump, more at a gap; of a moving curve (1 + m, n): at rest, then m in a loop.
 
-    kind: `line`, `faint` (to compare with, such as a mean), or `dots` joined by a thin line; in mechanisms `guide`,
-    `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
+    kind: `line`, `faint` (to compare with, such as a mean), `dots` joined thinly, `beads`, `pole`; of mechanisms
+    `guide`, `member`, `block`, the points `joint` and `fixed`, and `arrow`, a force from its first point to its second.
     look: its colour and stroke, where that is not its place among the lines of its panel.
     """
 
@@ -83,11 +84,12 @@ class PageFigure(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A point with its figure."""
+    """A point with its figure, a value of the upright axis or of the other one."""
 
     x: float
     y: float
     figure: PageFigure
+    of_x: bool = False
 
 
 class Shade(NamedTuple):
@@ -156,31 +158,45 @@ class Picture(NamedTuple):
 # a long report
 
 
+Shown = Union[str, float, tuple[float, str]]
+"""A text, a number, or a number with its unit."""
+
+
 class Grid(NamedTuple):
-    """A table of texts; numbers, units: which of its columns are that; verdicts: which rows are good, and which bad."""
+    """A table of texts and numbers; numbers: its columns of these; verdicts: which rows are `good`, and which `bad`.
+
+    Of each number four digits are shown, unless others are wanted.
+    """
 
     title: str
     heads: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+    rows: tuple[tuple[Shown, ...], ...]
     numbers: tuple[int, ...] = ()
-    units: tuple[int, ...] = ()
     verdicts: tuple[str, ...] = ()
 
 
 class Fact(NamedTuple):
-    """A key value that says much of a machine: what it is, its number and unit, its symbol, its crank angle or part."""
+    """A key value that says much of a machine: title, number and unit, symbol, the part that has it, crank angle."""
 
     title: str
-    value: str
+    value: float
     unit: str
     symbol: str
     where: str = ""
+    at_deg: float | None = None
 
 
 class Facts(NamedTuple):
     """Key values next to one another."""
 
     facts: tuple[Fact, ...]
+
+
+class Notice(NamedTuple):
+    """A sentence that is to be seen; kind: `good`, `bad` or `warning`."""
+
+    text: str
+    kind: str
 
 
 class Pair(NamedTuple):
@@ -190,7 +206,20 @@ class Pair(NamedTuple):
     right: Picture | None
 
 
-Item = Union[str, Grid, Facts, Report, Picture, Pair]
+class Answers(NamedTuple):
+    """The key values, tables of places and notes of a report, without what is left out, warnings, and its columns."""
+
+    report: Report
+
+
+class OverAngle(NamedTuple):
+    """The columns of a report over the crank angle."""
+
+    report: Report
+    title: str
+
+
+Item = Union[str, Notice, Grid, Facts, PlaceTable, Answers, OverAngle, Picture, Pair]
 
 
 class Section(NamedTuple):
@@ -202,9 +231,13 @@ class Section(NamedTuple):
 
 
 class Document(NamedTuple):
-    """A report on one machine, or on several next to one another; subtitle: what kind of machine it is."""
+    """A report on one machine, or on several next to one another.
+
+    subtitles: what kind of machine each is; summary: what is on the first page.
+    """
 
     title: str
-    provenance: tuple[Provenance, ...]
+    subtitles: tuple[str, ...]
+    summary: tuple[Item, ...]
     sections: tuple[Section, ...]
-    subtitle: str = ""
+    provenance: tuple[Provenance, ...]

@@ -1,5 +1,6 @@
 """Where pictures take their curves from: results sampled so finely that no line of points leaves its curve visibly."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -18,6 +19,8 @@ FINENESS = 1 / 2000
 """By what of its height a line of points may miss a curve: less than can be seen on paper."""
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
 _HALVINGS = 12
+_BEADS = 30.0
+"""Degrees from one mark to the next along the locus of a tip; every third one has its angle."""
 ZERO = "0 at every angle"
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 
@@ -127,7 +130,7 @@ class Source:
     def words(self, id: str) -> Words:
         """Return the symbol of a column, or of a key value."""
         quantity = self.quantities.get(id) or self.key_values[id]
-        return Words(quantity.symbol, quantity.ascii_symbol)
+        return Words(quantity.symbol, quantity.ascii_symbol, quantity.short)
 
     def marks(self, id: str, place: Callable[[float], Any]) -> tuple[Mark, ...]:
         """Return the extremes of a column, none of a level line; place: takes the crank angle, returns x, or x and y.
@@ -153,22 +156,44 @@ class Source:
         curves = [samples.curve(self.words(id), x, line) for id, line in zip(ids, lines)]
         curves += [level(x)] if zero else []
         marks = [mark for id in ids for mark in self.marks(id, lambda angle: self.values((over,), angle)[0])]
-        every = Words(*(", ".join(symbols) for symbols in zip(*map(self.words, ids))))
-        title = "" if np.any(lines) else ZERO
-        return Panel(
-            self.axis(over), self.axis(ids[0])._replace(name=every), tuple(curves), (), tuple(marks), title=title
-        )
+        axis, title = self.axis(ids[0]), "" if np.any(lines) else ZERO
+        up = axis if len(ids) == 1 else axis._replace(name=kind_words(axis.kind))
+        return Panel(self.axis(over), up, tuple(curves), (), tuple(marks), title=title)
 
     def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, as far as there are any."""
         if over == PHI or self.having(over):
             yield from (self.panel(ids, over) for group in groups if (ids := self.having(*group)))
 
-    def locus(self, ids: Sequence[str], tip: Values, name: Words, marks: tuple[Mark, ...], title: str = "") -> Panel:
-        """Return the path of a point (2, n), made from these columns, with one scale for both axes."""
+    def locus(
+        self,
+        ids: Sequence[str],
+        tip: Values,
+        name: Words,
+        marks: tuple[Mark, ...],
+        title: str = "",
+        cycle: float = math.inf,
+    ) -> Panel:
+        """Return the path of a point (2, n), made from these columns, with one scale for both axes and crank angles.
+
+        cycle: degrees after which it repeats, if before the end of the cycle of the machine.
+        """
         samples = self.samples(ids, values=tip)
         curve, axis = samples.curve(name, *samples.values), Axis(Words("F"), "force")
-        return Panel(axis, axis, (curve,), marks=marks, equal=True, title=title)
+        angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
+        x, y = tip(angles, angles)
+        labelled = [Mark(*place) for place in zip(x[::3].tolist(), y[::3].tolist(), map(_at, angles[::3].tolist()))]
+        curves = (curve, Curve(Words(""), x, y, "beads"), Curve(Words(""), np.zeros(1), np.zeros(1), "pole"))
+        return Panel(axis, axis, curves, marks=(*marks, *labelled), equal=True, title=title)
+
+
+def kind_words(kind: str) -> Words:
+    """Return the words of an axis on which there are several quantities of a kind."""
+    return Words("", words=kind.replace("_", " "))
+
+
+def _at(degrees: float) -> PageFigure:
+    return PageFigure(Words(""), at_deg=degrees)
 
 
 def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
@@ -179,6 +204,7 @@ def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # n
 def in_units(panel: Panel, system: str) -> Panel:
     """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
     across, up = panel.places
+    up.append(np.array([end for end in (panel.y.low, panel.y.high) if end is not None]))  # shared by several panels
     if panel.equal:
         across = up = [*across, *up]
     works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
@@ -194,14 +220,21 @@ def in_units(panel: Panel, system: str) -> Panel:
     def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
         return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
 
+    def scaled(axis: Axis, number: int, unit: str) -> Axis:
+        low, high = (None if end is None else float(to(number, end)) for end in (axis.low, axis.high))
+        return axis._replace(unit=unit, low=low, high=high)
+
     y_unit = f"{units[1]} {panel.y.mark}".rstrip()
     return panel._replace(
-        x=panel.x._replace(unit=units[0]),
-        y=panel.y._replace(unit=y_unit),
+        x=scaled(panel.x, 0, units[0]),
+        y=scaled(panel.y, 1, y_unit),
         curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
         shades=tuple(
             Shade(to(0, x), to(1, low), to(1, high), gain, figure and shown(figure, 2, units[2]))
             for x, low, high, gain, figure in panel.shades
         ),
-        marks=tuple(Mark(float(to(0, x)), float(to(1, y)), shown(of, 1, y_unit)) for x, y, of in panel.marks),
+        marks=tuple(
+            Mark(float(to(0, x)), float(to(1, y)), shown(of, 0, units[0]) if of_x else shown(of, 1, y_unit))
+            for x, y, of, of_x in panel.marks
+        ),
     )

@@ -11,12 +11,11 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
-from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
 from kurbel.report.constructions import construction, polar_force
-from kurbel.report.crank import equal_bearings
+from kurbel.report.crank import equal_bearings, equal_cylinders
 from kurbel.report.frame import subjects_of
 from kurbel.report.mechanism_picture import mechanism
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Shade, Words
@@ -34,9 +33,10 @@ _MOST_SHADES = 100
 _HIGHEST = 12
 """Order up to which bars are drawn: beyond it they are too small to be seen."""
 _MODES = 4
+_FASTEST, _MOST_ORDERS = 1.25, 8
+"""Of a Campbell diagram: its highest speed over the working speed, and how many orders it has."""
 _MOST_CRANKS = 4
 """Each has a stroke of its own, next to the sum with and without losses."""
-_LONGEST_NAME = 14
 _FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
 
 # one cylinder
@@ -66,8 +66,9 @@ def _remaining_force(source: Source, ids: Sequence[str], over: str, **how: Any) 
     samples = source.samples((over, *ids), **how)
     x, force, *inertia = samples.values
     base = -inertia[0] if inertia else np.zeros_like(x)
-    curves = [samples.curve(Words("P_0" if inertia else "P"), x, force)]
-    curves += [samples.curve(Words("−P_b"), x, base)] if inertia else []
+    name = Words("P_0", words="without inertia") if inertia else Words("P")
+    curves = [samples.curve(name, x, force)]
+    curves += [samples.curve(Words("−P_b", words="inertia line"), x, base)] if inertia else []
     return Panel(source.axis(over), source.axis("P"), (*curves, level(x)), tuple(_between(x, base, force)))
 
 
@@ -93,8 +94,13 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
         return
     parts = source.having("P_start", "P_inertia")
     ids = parts if len(parts) == 2 else ("P",)
-    for how, title in _strokes(source, partial(source.values, ("x", *ids)), source.results.phi_reversal or ()):
-        yield _remaining_force(source, ids, "x", **how)._replace(title=title)
+    strokes = _strokes(source, partial(source.values, ("x", *ids)), source.results.phi_reversal or ())
+    panels = [_remaining_force(source, ids, "x", **how)._replace(title=title) for how, title in strokes]
+    if any(gas.traced for gas in source.results.drive.gas):  # or the noise of the gas exchange would have its own scale
+        heights = np.concatenate([one for panel in panels for one in panel.places[1]])
+        low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+        panels = [panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels]
+    yield from panels
 
 
 def _strokes(source: Source, of: Values, also: Sequence[float] = ()) -> Iterator[tuple[dict[str, Any], str]]:
@@ -163,12 +169,13 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
                 swept = (x if own else gas.stroke - x) + clearance * gas.stroke
                 place = np.asarray(swept * gas.areas[0 if head else 1])
             places.append(place)
-            curves.append(samples.curve(source.words(id), place, pressure))
+            end = source.words(id)._replace(words=id.replace("p_", "") + " end")
+            curves.append(samples.curve(end, place, pressure))
         marks: tuple[Mark, ...] = ()
         if number == 0 and not over_volume and (highest := results.p_max):
             marks = (source.mark("p_max", highest, float(results.at(np.array([highest.degrees])).way[0])),)
-        across = Axis(Words("V"), "volume") if over_volume else source.axis("x")
-        up = Axis(Words("p"), "pressure", mark="abs" if gas.absolute else "")
+        across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
+        up = Axis(Words("p", words="pressure"), "pressure", mark="abs" if gas.absolute else "")
         title = gas.piston.name if len(results.drive.gas) > 1 else ""
         curves.append(level(np.concatenate(places), gas.base))
         yield Panel(across, up, tuple(curves), marks=marks, title=title)
@@ -208,8 +215,8 @@ def polar_effort(source: Source) -> Iterator[Panel]:
         rings.append((Words(f"φ = {angle}°", f"phi = {angle}"), spoke))
     faint = [Curve(name, places.real, places.imag, "faint") for name, places in rings]
     marks = source.marks("T", lambda angle: tip(angle)[:, 0])
-    panel, axis = source.locus(("T", "T"), tip, source.words("T"), marks), Axis(Words(""), "force")
-    yield panel._replace(x=axis, y=axis, curves=(*panel.curves, *faint), plain=True)
+    panel, axis = source.locus(("T", "T"), tip, source.words("T"), ()), Axis(Words(""), "force")
+    yield panel._replace(x=axis, y=axis, curves=(*panel.curves, *faint), marks=marks, plain=True)
 
 
 def motion(source: Source) -> Iterator[Panel]:
@@ -307,7 +314,7 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     lines = [(source.words("T"), 0, effort.sampled([Term(1.0, group) for group in effort.groups]))]
     lines += [(Words("T with η", "T with eta"), 1, effort.M)] if lossy else []
     for number, one in enumerate(acting if len(acting) > 1 else ()):
-        lines.append((Words(one.drive.name[:_LONGEST_NAME]), 2 + number, effort.sampled([Term(1.0, [one])])))
+        lines.append((Words(one.drive.name), 2 + number, effort.sampled([Term(1.0, [one])])))
     samples = _efforts(source, [torque for *_, torque in lines])
     x, *found = samples.values
     curves = [samples.curve(name, x, y)._replace(look=look) for (name, look, _), y in zip(lines, found)]
@@ -325,7 +332,8 @@ def effort_of_sides(source: Source) -> Iterator[Panel]:
     resistance = -effort.sampled([Term(1.0, group, lambda one: driven_force(one) * one.slope) for group in driven])
     samples = _efforts(source, [effort.M + resistance, resistance])
     x, driving, against = samples.values
-    curves = samples.curve(Words("T_driving"), x, driving), samples.curve(Words("−T_driven"), x, against)
+    names = Words("T_driving", words="driving pistons"), Words("−T_driven", words="driven pistons")
+    curves = [samples.curve(name, x, line) for name, line in zip(names, (driving, against))]
     shades = tuple(_between(x, against, driving))
     yield Panel(source.axis(PHI), source.axis("T"), (*curves, level(x)), shades)
 
@@ -348,14 +356,18 @@ def _efforts(source: Source, torques: Sequence[Array]) -> Sampled:
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    return source.panels(tuple(f"sigma_{part}" for part in PARTS))
+    for panel in source.panels(tuple(f"sigma_{part}" for part in PARTS)):
+        called = {f"σ_{index}": part.removeprefix("the ") for index, part in PARTS.values()}
+        names = [one.name._replace(words=called.get(one.name.symbol, "")) for one in panel.curves]
+        curves = tuple(one._replace(name=name) for one, name in zip(panel.curves, names))
+        yield panel._replace(curves=curves, y=panel.y._replace(name=Words("", words="combined stress")))
 
 
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
     gas, whole = (np.abs(one.amplitudes)[drawn] for one in (found.gas, found.whole))
-    orders, name = source.results.orders[drawn], Words("|M_ν|")
+    orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
     yield _bars(orders, [whole], name, "torque", "all")
     if found.inertia is not None:
         inertia = np.abs(found.inertia.amplitudes)[drawn]
@@ -370,7 +382,7 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
             if vector is not None and free.orders:
                 sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
                 title = "left: circles with the rotation, right: against it"
-                yield _bars(free.orders, sizes, Words(name), kind, title)
+                yield _bars(free.orders, sizes, Words(name, words="radius"), kind, title)
 
 
 def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: str, title: str) -> Panel:
@@ -382,7 +394,7 @@ def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: st
             left = place - 0.38 + number * wide
             shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x = Axis(Words("n"), low=-0.6, high=len(names) - 0.4, names=names)
+    x = Axis(Words("n", words="order"), low=-0.6, high=len(names) - 0.4, names=names)
     return Panel(x, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
 
 
@@ -395,8 +407,41 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
         frequency = float(found.modes.omegas[mode - found.first]) / (2 * math.pi)
         curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max()))
     if curves:
-        names = tuple(mass.name[:_LONGEST_NAME] for mass in found.line.masses)
-        yield Panel(Axis(Words(""), names=names), Axis(Words("θ")), (*curves, level(places)))
+        names = tuple(mass.name for mass in found.line.masses)
+        yield Panel(
+            Axis(Words(""), names=names), Axis(Words("θ", words="angle over the largest")), (*curves, level(places))
+        )
+
+
+def campbell(source: Source) -> Iterator[Panel]:
+    """Natural frequencies against the speed with the lines of the orders that excite them; where they cross the speed
+    is critical. The upright line is the working speed."""
+    found = source.results
+    modes = [float(omega) / (2 * math.pi) for omega in found.modes.omegas[1 - found.first :][:_MODES]]
+    working = found.machine.speed
+    if not modes or not working:
+        return
+    fastest = _FASTEST * working
+    critical = found.critical_speeds(_MODES, _HIGHEST)
+    reached = [one for one in critical if one.speed <= fastest and one.share > 0]
+    orders = sorted({one.order for one in sorted(reached, key=lambda one: -one.share)[:_MOST_ORDERS]})
+    drawn = [one for one in reached if one.order in orders and one.mode <= len(modes)]
+    top = max((one for one in modes if one <= fastest * max(orders, default=0.0)), default=modes[0]) * 1.15
+    ends = np.array([0.0, fastest])
+    curves = []
+    for number, frequency in enumerate(modes, 1):
+        if frequency <= top:
+            curves.append(Curve(Words(f"f_{number}", words=f"mode {number}"), ends, np.full(2, frequency)))
+    for order in orders:
+        end = min(fastest, top / order)
+        curves.append(Curve(Words(f"ν = {order:g}"), np.array([0.0, end]), np.array([0.0, order * end]), "faint"))
+    curves.append(Curve(Words("working speed"), np.full(2, working), np.array([0.0, top]), "faint"))
+    marks = [
+        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed), of_x=True)
+        for one in sorted(drawn, key=lambda one: -one.share)
+    ]
+    x, y = Axis(Words("n", words="speed"), "speed", low=0.0), Axis(Words("f", words="frequency"), "frequency", low=0.0)
+    yield Panel(x, y, tuple(curves), marks=tuple(marks))
 
 
 # tips of vectors over the cycle
@@ -405,21 +450,22 @@ def shaft_modes(source: Source) -> Iterator[Panel]:
 def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the unbalanced force, and of the unbalanced moment, over one revolution."""
     results = source.results
-    for ids, id, largest in (
-        (("F_x", "F_y"), "F_free_max", results.F_free_max),
-        (("M_x", "M_y"), "M_free_max", results.M_free_max),
-    ):
-        if source.having(*ids) == ids:
-            tip = partial(source.values, ids)
-            has_mark = largest and largest.value
-            marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if has_mark else ()
-            panel = source.locus(ids, tip, source.words(ids[1]), marks)
-            yield panel._replace(x=source.axis(ids[0]), y=source.axis(ids[1]))
+    each = ("F_x", "F_y", "F_free_max", results.F_free_max), ("M_x", "M_y", "M_free_max", results.M_free_max)
+    known = [one for one in each if source.having(*one[:2]) == one[:2]]
+    # what is balanced is a point, which is shown only where all is
+    for x, y, id, largest in [one for one in known if one[3] and one[3].value] or known[:1]:
+        tip = partial(source.values, (x, y))
+        marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if largest and largest.value else ()
+        panel = source.locus((x, y), tip, source.words(y), marks, cycle=360.0)
+        yield panel._replace(x=source.axis(x), y=source.axis(y))
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
     """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
-    return source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",))
+    words = {"F_x": "along the stroke", "F_y": "across it", "M_x": "along the stroke", "M_y": "across it"}
+    for panel in source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",)):
+        names = [one.name._replace(words=words.get(one.name.symbol, "")) for one in panel.curves]
+        yield panel._replace(curves=tuple(one._replace(name=name) for one, name in zip(panel.curves, names)))
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:
@@ -482,6 +528,7 @@ PICTURES = (
     PictureKind("bearing-loads", "Bearing loads in polar form", "bearings", polar_loads, across=2),
     PictureKind("orders", "Turning effort by order", "harmonics", torque_orders),
     PictureKind("modes", "Natural modes of the shaft", "torsion", shaft_modes),
+    PictureKind("campbell", "Campbell diagram", "torsion", campbell),
     PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
     PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
@@ -560,7 +607,8 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
     with np.errstate(all="ignore"):
         for source, name in _sources(case, kind, options):
             if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
-                across = min(kind.across, len(panels))
+                # three of which two are next to each other would leave a quadrant empty
+                across = 3 if kind.across > 1 and len(panels) == 3 else min(kind.across, len(panels))
                 found.append(Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across))
     return found
 
@@ -575,9 +623,9 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
         for bearings in equal_bearings(case):
             yield Source(bearings[0], options.angles), together([one.name for one in bearings])
     else:
-        wanted = [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
-        for equal in gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder)):
-            if command == "forces":
-                equal[0].refuse_locking()
+        for one in case.cylinders if command == "forces" else ():
+            if options.cylinder in (None, one.drive.name):
+                one.refuse_locking()
+        for equal in equal_cylinders(case, command, options.cylinder):
             names = together([one.drive.name for one in equal]) if len(case.cylinders) > 1 else ""
             yield Source(equal[0], options.angles), names

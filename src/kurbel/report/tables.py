@@ -36,7 +36,7 @@ class Column(NamedTuple):
 class KeyValue(NamedTuple):
     """One key value, already in its unit; a tuple for a list of angles; `at_deg`: crank angle of an extreme.
 
-    noise: the value is a residual of rounding alone, which has digits in json only.
+    noise: the value is a residual of rounding alone, which has digits in json only; heading: see `Quantity`.
     """
 
     id: str
@@ -47,6 +47,7 @@ class KeyValue(NamedTuple):
     text: str
     at_deg: float | None = None
     noise: bool = False
+    heading: str = ""
 
 
 class LeftOut(NamedTuple):

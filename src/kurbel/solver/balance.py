@@ -32,7 +32,7 @@ from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, sqrt, unless_cancelled, where
 from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.quantity import Computed, value
+from kurbel.quantity import Computed, Heading, value
 from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
@@ -248,6 +248,7 @@ class MachineBalance(Results):
     command = "balance"
     state = BalanceColumns
 
+    _unbalanced = Heading("Unbalanced forces and moments")
     _book = "The same by the acceleration of first order (R 291)"
     F_free_max = value("F_max", "force", "Largest unbalanced force", lambda one: one.farthest["force"])
     F_free_max_book = value("F_0,max", "force", _book, lambda one: one.farthest_of_book[0])
@@ -267,6 +268,7 @@ class MachineBalance(Results):
         lambda one: one.rolling and one.rolling.smallest,
         unless=lambda one: one.rolls_as_it_turns,
     )
+    _counterweights = Heading("Counterweights")
     counterweight_given = value(
         "u",
         "unbalance",
@@ -294,6 +296,7 @@ class MachineBalance(Results):
     )
     F_free_best = value("F_min", "force", "Largest unbalanced force with it", lambda one: one.least_and_force[1])
 
+    _locomotive = Heading("Locomotive")
     counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
     train_speed = value("v_z", "velocity", "Speed of the train")
     traction_variation = value("F_z", "force", "Largest variation of the tractive force")

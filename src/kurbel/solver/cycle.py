@@ -7,18 +7,19 @@ crosshead rubs, it is cut also where the guide force changes sides; where pins o
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array
+from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
-from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, refined
+from kurbel.numerics.pieces import NARROWEST, Angles, Pieces, Samples, joined, refined
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import told
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
@@ -57,32 +58,31 @@ class SampledCylinder:
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, State]:
-        drive, cut = self.drive, self._cut
-        _refuse_locking(drive, cut)
-        whole = State.on(drive, cut)
-        pieces, _ = refined(cut, lambda some: _smooth(whole if some is cut else State.on(drive, some), some))
-        return pieces, whole if pieces is cut else State.on(drive, pieces)
+        drive, (cut, state) = self.drive, self._cut
+        _refuse_locking(state, cut)
+        return _smoothed(drive, cut, state, _smooth)[:2]
 
     @cached_property
-    def _cut(self) -> Pieces:
-        """The cycle cut only where something bends or jumps, and at multiples of 45°."""
+    def _cut(self) -> tuple[Pieces, State]:
+        """The cycle cut only where something bends or jumps, and at multiples of 45°, and the state there."""
         drive, pieces = self.drive, self.drive.pieces
+        state = State.on(drive, pieces)
         if drive.has_force and some(drive.ring_surface != 0):
-            pieces, (across,) = refined(pieces, lambda one: _known(one, State.on(drive, one).across_piston))
-            pieces = pieces.split(pieces.zeros(across))
+            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.across_piston,))
+            pieces, state = _split(drive, pieces, state, pieces.zeros(across))
         by_load = drive.rubs or drive.yoke_rubs or drive.pin_friction
-        return _cut_at_sides(drive, pieces) if drive.has_force and by_load else pieces
+        return _cut_at_sides(drive, pieces, state) if drive.has_force and by_load else (pieces, state)
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._cut
+        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._cut[0]
         return np.append(cut.low, self.drive.cycle)
 
     @property
     def tail(self) -> float:
         """Largest tail of the Chebyshev series on a piece that could be halved, relative to the largest value."""
-        values = np.stack(_smooth(self.samples, self.pieces))
+        values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
         tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
         return float((tails.max(axis=1) / size).max())
@@ -107,30 +107,72 @@ class SampledCylinder:
         return None if values is None else where_is(self.pieces, values, value)
 
 
-def _cut_at_sides(drive: Drive, pieces: Pieces) -> Pieces:
-    """Return the pieces cut where the guide force changes sides, with and without friction in pins."""
+def _smoothed(
+    drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Any]]
+) -> tuple[Pieces, State, Samples]:
+    """Return the pieces halved until columns are polynomials there, the state and the columns on them."""
 
-    def before(some: Pieces) -> list[Array]:
-        state = State.on(drive, some).unrubbed
-        return _known(some, _sense(state), state.curvature, state.P_gas, state.P)
+    judged = _known(pieces, columns(state))
 
-    def rubbed(some: Pieces) -> list[Array]:
-        state = State.on(drive, some)
-        return _known(some, _sense(state), *(state.rubbing or ()))
+    def sample(some: Pieces) -> list[Array]:
+        if some is pieces:
+            return [*judged, *_before_friction(state)]
+        own = State.on(drive, some)
+        return [*_known(some, columns(own)), *_before_friction(own)]
 
-    pieces, (sense, *_) = refined(pieces, before)
+    fine, values = refined(pieces, sample, len(judged))
+    finer = state if fine is pieces else _restored(drive, fine, values[len(judged) :])
+    return fine, finer, values[: len(judged)]
+
+
+def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Pieces, State]:
+    """Return the pieces cut at more angles, and the state there: most pieces and what is known of them stay."""
+    cut = pieces.split(at)
+    if cut is pieces:
+        return pieces, state
+    source, new = cut.kept_of(pieces)
+    fresh = cut.taken(new)
+    known = _before_friction(state), _before_friction(State.on(drive, fresh))
+    whole, both = joined([(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])])
+    return whole, _restored(drive, whole, both)
+
+
+def _before_friction(state: State) -> list[Array]:
+    """Return motion and gas forces, which no side of a force changes: what `_restored` makes a state of."""
+    motion = [state.angle.sin, state.angle.cos, state.slope, state.curvature, *(state.rod_angle or ())]
+    return [np.broadcast_to(one, state.phi.shape) for one in (*motion, *state.piston_forces)]
+
+
+def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
+    """Return the state on pieces of which `_before_friction` is known, each (nodes, pieces)."""
+    sin, cos, slope, curvature, *rest = known
+    pistons = len(rest) - len(drive.gas)
+    angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
+    state = State(drive.taken(pieces.machine), angle, pieces.middle)
+    state.slope, state.curvature, state.piston_forces = slope, curvature, rest[pistons:]
+    return state
+
+
+def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, State]:
+    """Return the pieces cut where the guide force changes sides, with and without friction in pins, and the state."""
+
+    def before(some: State) -> tuple[Any, ...]:
+        free = some.unrubbed
+        return _sense(free), free.curvature, free.P_gas, free.P
+
+    pieces, state, (sense, *_) = _smoothed(drive, pieces, state, before)
     if drive.rubs or drive.yoke_rubs:
-        pieces = pieces.split(pieces.zeros(sense))
+        pieces, state = _split(drive, pieces, state, pieces.zeros(sense))
     if drive.pin_friction is None:
-        return pieces
-    _refuse_locking(drive, pieces)
+        return pieces, state
+    _refuse_locking(state, pieces)
     # where the load of a pin passes through zero, its magnitude has a kink
-    unrubbed = State.on(drive, pieces).unrubbed
-    loads = [on_pin(unrubbed).T, *([on_crosshead_pin(unrubbed).D] if unrubbed.rod_angle else [])]
+    free = state.unrubbed
+    loads = [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
     passed = [pieces.zeros(load) for load in loads]
-    pieces = pieces.split(Angles(*(np.concatenate(columns) for columns in zip(*passed))))
-    pieces, (sense, *_) = refined(pieces, rubbed)
-    return pieces.split(pieces.zeros(sense)) if drive.rubs else pieces
+    pieces, state = _split(drive, pieces, state, Angles(*(np.concatenate(columns) for columns in zip(*passed))))
+    pieces, state, (sense, *_) = _smoothed(drive, pieces, state, lambda one: (_sense(one), *(one.rubbing or ())))
+    return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)
 
 
 def _sense(state: State) -> Any:
@@ -138,26 +180,25 @@ def _sense(state: State) -> Any:
     return state.guide_sense if state.rod_angle else state.after_steady_friction
 
 
-def _refuse_locking(drive: Drive, pieces: Pieces) -> None:
+def _refuse_locking(state: State, pieces: Pieces) -> None:
     """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
+    drive = state.drive
     if drive.count is None and drive.has_force and may_lock(drive.cylinder):
-        below = State.on(drive, pieces).unrubbed.below
+        below = state.unrubbed.below
         if (below <= 0).any():
             at = pieces.zeros(below).degrees
             first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
             raise NoSolutionError(drive.locks(first))
 
 
-def _smooth(state: State, pieces: Pieces) -> list[Array]:
+def _smooth(state: State) -> list[Any]:
     """Return what is to be a polynomial on every piece."""
     offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
-    if not state.drive.has_force:
-        return _known(pieces, state.curvature, *offered)
-    forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ()))
-    return _known(pieces, state.curvature, *forces, *offered)
+    forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ())) if state.drive.has_force else ()
+    return [state.curvature, *forces, *offered]
 
 
-def _known(pieces: Pieces, *values: Any) -> list[Array]:
+def _known(pieces: Pieces, values: Iterable[Any]) -> list[Array]:
     """Return what there is of columns at the nodes of pieces, each (nodes, pieces)."""
     return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
 

@@ -36,7 +36,7 @@ from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
-from kurbel.solver.effort import Term, TurningEffort
+from kurbel.solver.effort import TurningEffort, position
 from kurbel.solver.figures import AtAngles, Results, Searched, told
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import PistonGas
@@ -98,10 +98,6 @@ def _displaced(
     # a piston that a lever moves against the crosshead draws in where another one delivers
     outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
     return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
-
-
-def _displacing(piston: Driven, **how: bool) -> Callable[[State], Any]:
-    return lambda state: _displaced(state, piston, **how)
 
 
 # pumps
@@ -198,7 +194,7 @@ class Delivery(Results):
         self.name, self.machine, self.pieces, self.pump = name, machine, pieces, pump
         self._sampled, self._both = sampled, both
         self._rates: dict[str, Array] = {}
-        self._extremes: dict[str, Extremes | None] = {}
+        self._swings: dict[str, Any] = {}
         self._told = partial(told, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.breaks = np.append(pieces.low, pieces.cycle)
@@ -238,23 +234,30 @@ class Delivery(Results):
         if self.pump and self.pump.delivery_pipe:
             yield self.pump.delivery_pipe, "flow", "rise", "delivery_"
 
-    def mean_of(self, flow: str, power: int = 1) -> Any:
-        """Return the mean over the cycle of dV/dφ, or of a power of it."""
-        return self._told(self.pieces.mean(self.rate(flow) ** power))
+    def mean_of(self, flow: str, cubed: bool = False) -> Any:
+        """Return the mean over the cycle of dV/dφ, or of its cube."""
+        rate = self.rate(flow)
+        return self._told(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
-        if column not in self._extremes:
-            values = self.sampled(column)
-            self._extremes[column] = None if values is None else self.pieces.extremes(values[None]).each(self._told)[0]
-        return self._extremes[column]
+        return self._extremes.get(column)
+
+    @cached_property
+    def _extremes(self) -> dict[str, Extremes]:
+        """Those of every column that is declared to have extremes, as far as there is one."""
+        declared = [id for id, row in self.rows.columns.items() if row.quantity.extremes]
+        found = {id: values for id in declared if (values := self.sampled(id)) is not None}
+        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._told))) if found else {}
 
     def swing(self, flow: str) -> Any:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
-        rate = self.rate(flow)
-        above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
-        high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
-        return self._told((high - low)[0])
+        if flow not in self._swings:
+            rate = self.rate(flow)
+            above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
+            high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
+            self._swings[flow] = self._told((high - low)[0])
+        return self._swings[flow]
 
     @cached_property
     def answers(self) -> dict[str, Any]:
@@ -263,7 +266,7 @@ class Delivery(Results):
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = self.swing("flow")
-        found["vessel_saving"] = 1 - mean**3 / self.mean_of("flow", 3)
+        found["vessel_saving"] = 1 - mean**3 / self.mean_of("flow", cubed=True)
         for pipe, flow, _, _ in self._pipes():
             if pipe.vessel:
                 name = "" if flow == "flow" else "suction_"
@@ -290,7 +293,7 @@ class Delivery(Results):
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
-        bare, steady = scale * self.mean_of(flow, 3), scale * self.mean_of(flow) ** 3
+        bare, steady = scale * self.mean_of(flow, cubed=True), scale * self.mean_of(flow) ** 3
         return steady if pipe.vessel else bare, bare, steady
 
 
@@ -451,12 +454,14 @@ class MachineDelivery:
         if not self._pumps:
             return None
         pump, pieces = self.machine.pump, self.effort.pieces
-        slip = pump.slip if pump else 0.0
-        mine = {id(forces): [one for other, one in self._pumps if other is forces] for forces, _ in self._pumps}
-        groups = [(group, one) for group in self.effort.groups for one in mine.get(id(group[0]), ())]
+        share = pieces.of(1 - (pump.slip if pump else 0.0))
+        states = {id(forces): State.on(forces.drive, pieces.by_crank(position(forces))) for forces, _ in self._pumps}
 
         def summed(**how: bool) -> Array:
-            return self.effort.sampled([Term(1 - slip, group, _displacing(one, **how)) for group, one in groups])
+            each = [share * _displaced(states[id(forces)], one, **how) for forces, one in self._pumps]
+            whole: Array = sum(each)
+            lasting = unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED) != 0
+            return np.where(pieces.of(lasting), whole, 0.0)
 
         both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
         return Delivery("whole machine", self.machine, pieces, self._count, summed, both, pump)
@@ -476,7 +481,7 @@ class MachineDelivery:
                     return np.asarray(values * first.pieces.of(1 - slip))
 
                 made = Delivery("", self.machine, first.pieces, self._count, own, one.head and one.crank)
-                _ = made.answers
+                _ = made.answers, made.extremes_of("flow")  # once for all copies
                 known[id(first), one.number] = made
             found.append(copy(known[id(first), one.number]))
             name = forces.drive.name

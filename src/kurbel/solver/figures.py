@@ -1,13 +1,13 @@
 """Results by name: the rows of a class of results, its key values by id or printed symbol, and all columns at once.
 
 A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
-They are printed in the order of their definition; a `PartResults` brings the rows of another class to its place,
-`Searched` the extremes of the columns.
+They are printed in the order of their definition, for people below the `Heading` before them; a `PartResults` brings
+the rows of another class to its place, `Searched` the extremes of the columns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -25,6 +25,7 @@ from kurbel.quantity import (
     Computed,
     Condition,
     ForEach,
+    Heading,
     Lists,
     Quantity,
     Row,
@@ -240,22 +241,26 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
         return _ROWS[kind, offers, key_offers]
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
-    found: list[Row] = []
+    found, heading = list[Row](), ""
     definitions: dict[str, Any] = {}
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
     for item in definitions.values():
-        if isinstance(item, PartResults):
+        rows: Iterable[Row] = ()
+        if isinstance(item, Heading):
+            heading = item.text
+        elif isinstance(item, PartResults):
             inner = rows_of(item.kind, offers, key_offers).key_values.values()
             seen = (row.through(item.value_of) for row in inner)
-            found += [row._replace(unless=item.unless) if item.unless else row for row in seen]
+            rows = [row._replace(unless=item.unless) if item.unless else row for row in seen]
         elif isinstance(item, Searched):
-            found += searched(quantities, kind.command)
+            rows = searched(quantities, kind.command)
         elif isinstance(item, (Computed, ForEach)):
-            found += item.rows
+            rows = item.rows
+        found += [row.under(heading) for row in rows]
     found += [Row(one.quantity, one.of) for one in key_offers if kind.command in one.quantity.commands]
-    rows = Rows(columns, in_order(printed_by(found, *filter(None, [kind.command]))))
-    return _ROWS.setdefault((kind, offers, key_offers), rows)
+    every = Rows(columns, in_order(printed_by(found, *filter(None, [kind.command]))))
+    return _ROWS.setdefault((kind, offers, key_offers), every)
 
 
 _ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}

@@ -22,7 +22,7 @@ from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Computed, key_value, value
+from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
@@ -156,6 +156,8 @@ class MachineTurning(Results):
 
     # turning effort
 
+    _turning = Heading("Turning effort")
+
     @part(Brake)
     def brake(self) -> Brake:
         """Key values of the brake."""
@@ -201,6 +203,7 @@ class MachineTurning(Results):
 
     # excess work
 
+    _excess = Heading("Excess work")
     phi_crossing = value(
         "φ_T=W",
         "angle",
@@ -251,6 +254,7 @@ class MachineTurning(Results):
 
     # flywheel
 
+    _flywheel = Heading("Flywheel")
     J = value(
         "J",
         "inertia",
@@ -312,6 +316,8 @@ class MachineTurning(Results):
         return self.effort.result(np.maximum(self.excess.dE / (self._wanted * self.omega**2) - driven, 0.0))
 
     # speed line
+
+    _speed = Heading("Speed")
 
     @part(SpeedLine)
     def speed(self) -> SpeedLine | None:
@@ -473,7 +479,7 @@ class MachineTurning(Results):
             return False
         return some((self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED))
 
-    @key_value("J_δ,ω", "inertia", after="rim_stress")
+    @key_value("J_δ,ω", "inertia", after="rim_stress", heading="Flywheel")
     def J_exact(self) -> Any:
         """Moment of inertia with which the computed speed has the required δ.
 

@@ -15,7 +15,7 @@ from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
-from kurbel.quantity import Quantity, value, values_for
+from kurbel.quantity import Heading, Quantity, value, values_for
 from kurbel.solver.cycle import SampledCylinder, reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
@@ -139,9 +139,11 @@ class CylinderForces(SampledCylinder, Results):
         """What the mechanism does."""
         return Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
 
+    _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
     A_crank = value("A_C", "area", "Piston area at the crank end")
     p_max = value("p_max", "pressure", "Largest gauge pressure on the cylinder's own piston", gauge=True)
+    _forces = Heading("Forces")
     m = value("m", "mass", "Reciprocating mass, including its share of the connecting rod")
     extremes = Searched()
     P_inertia_max = value(
@@ -193,6 +195,7 @@ class CylinderForces(SampledCylinder, Results):
         lambda forces: forces.changes_of_force[0],
         listed=True,
     )
+    _work = Heading("Pressures and work")
     work = value("A_i", "energy", "Indicated work of all pistons of the rod per cycle")
     work_driving = value(
         "A_i+", "energy", "Indicated work of the driving pistons per cycle", unless=lambda one: one.works_one_way
@@ -221,6 +224,7 @@ class CylinderForces(SampledCylinder, Results):
     work_sensitivity = value(  # an indicator's dead centre is seldom known better
         "dA_i/A_i", "ratio", "Relative change of the indicated work for a shift of the traces by +0.1 deg"
     )
+    _resistance = Heading("Forces")
     W = value(
         "W",
         "force",
@@ -231,6 +235,7 @@ class CylinderForces(SampledCylinder, Results):
             else forces.work_left / (2 * math.pi * forces.mechanism.crank * forces.drive.revolutions)
         ),
     )
+    _friction = Heading("Friction")
     friction_work = value(
         "A_f",
         "energy",
@@ -263,6 +268,7 @@ class CylinderForces(SampledCylinder, Results):
     pin_loss = values_for(
         RUBBING, "loss_*", "e_*", "ratio", "Work lost * over that of the driving pistons", of=share_of_driving
     )
+    _checks = Heading("Checks")
     energy_residual = value(
         "ΔA/A",
         "ratio",
@@ -277,6 +283,8 @@ class CylinderForces(SampledCylinder, Results):
         residual,
         residual=True,
     )
+
+    _rod_load = Heading("Rod load")
 
     @part(RodLoads, unless=lambda forces: forces.no_compressor)
     def rod_loads(self) -> RodLoads | None:

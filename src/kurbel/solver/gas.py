@@ -188,21 +188,21 @@ class CardPressure:
         if varies(chamber):
             which = np.arange(count or 1)
             each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
-        numbers = (np.broadcast_to(one, len(which)).tolist() for one in (which, setting.lift, setting.base))
-        made: dict[tuple[int, float, float], int] = {}
-        own = np.array([made.setdefault(key, len(made)) for key in zip(*numbers)])
-        self._processes = [process_in(each[one], lift, setting.cycle, base) for one, lift, base in made]
-        self._which: Indices = own
+        numbers = np.stack(np.broadcast_arrays(which.astype(float), setting.lift, setting.base))
+        made, own = np.unique(numbers, axis=1, return_inverse=True)
+        self._processes = [process_in(each[int(one)], lift, setting.cycle, base) for one, lift, base in made.T.tolist()]
+        self._which: Indices = own.ravel()
         self._clearance = self._of_machines([one.clearance for one in self._processes])
         self._lift = self._of_machines([one.lift for one in self._processes])
 
         # lines at the same angles in all machines are kept once
-        alike = self._alike = len(made) == 1 and not varies(setting.mechanism)
-        self._machine, rows = _over_the_angle(self._processes, own[:1] if alike else own, setting, alike)
+        alike = self._alike = len(self._processes) == 1 and not varies(setting.mechanism)
+        own = self._which[:1] if alike else self._which
+        self._machine, rows = _over_the_angle(self._processes, own, setting, alike)
         self._begins, self._ends, z, p, next_z, self._next_p, exponent = rows
         self._p, self._rows = p, np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2]))
         self._keys = self._machine * (2 * setting.cycle) + self._begins
-        self._first = np.searchsorted(self._machine, np.arange(1 if alike else len(own)))
+        self._first = np.searchsorted(self._machine, np.arange(len(own)))
         self.straight = not exponent.any()
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
         machines = count if alike and count else 1

@@ -17,7 +17,7 @@ from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
-from kurbel.quantity import value
+from kurbel.quantity import Heading, value
 from kurbel.solver.figures import AtAngles, Results, Rows, Searched, rows_of, told
 
 
@@ -103,17 +103,29 @@ class MotionColumns(AtAngles):
         self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
-        self.coordinate = mechanism.coordinate(self.posed)
-        self.way = self.coordinate - mechanism.start
-        self.curvature = mechanism.curvature(self.posed)
         self._of_point = of_point
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @cached_property
+    def coordinate(self) -> Any:
+        """Coordinate of the output in m, of what only swings in radians."""
+        return self.mechanism.coordinate(self.posed)
+
+    @cached_property
+    def way(self) -> Any:
+        """Displacement from the inner dead centre in m, of what only swings in radians."""
+        return self.coordinate - self.mechanism.start
+
+    @cached_property
     def slope(self) -> Any:
         """Slope dx/dφ in m per radian."""
         return self.mechanism.slope(self.posed)
+
+    @cached_property
+    def curvature(self) -> Any:
+        """Curvature d²x/dφ² in m per radian squared."""
+        return self.mechanism.curvature(self.posed)
 
     @cached_property
     def rod_slope(self) -> Any:
@@ -143,6 +155,7 @@ class Motion(Results):
 
     command = "motion"
 
+    _motion = Heading("Motion")
     stroke = value("s", "length", "Stroke")
     phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
     phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
@@ -217,16 +230,17 @@ class Motion(Results):
         return found
 
     def roots_of_the_book(self) -> tuple[Any, ...] | None:
-        """Return where the acceleration of first order is zero, in degrees.
+        """Return where the acceleration of first order is zero, in degrees: cos φ = 2λ/(1 + √(1 + 8λ²)).
 
         None where the book has none, and with the infinite rod, of which it is exact.
         """
-        mechanism, turn = self.mechanism, self._turn[0]
+        mechanism, lam = self.mechanism, self.mechanism.lam
         offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
-        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(mechanism.lam == 0):
+        if offer is None or offer.factor(mechanism, CrankAngle.of(0.0)) is None or every(lam == 0):
             return None
-        taken_on = mechanism if self._count is None else taken(mechanism, turn.machine)
-        return turn.zeros(np.asarray(offer.factor(taken_on, CrankAngle.at_nodes(turn)))).listed(self._count)
+        first = np.degrees(np.arccos(2 * lam / (1 + np.sqrt(1 + 8 * lam * lam))))
+        roots = np.broadcast_to(np.stack((first, 360.0 - first), axis=-1), (self._count or 1, 2))
+        return Angles(np.repeat(np.arange(len(roots)), 2), roots.ravel()).listed(self._count)
 
     # the extremes over a turn
 

@@ -26,8 +26,8 @@ from kurbel.solver.cycle import SampledCylinder
 from kurbel.solver.drive import Drive
 from kurbel.solver.state import State, on_crosshead_pin, on_pin, reduced_inertia
 
-_ANGLES = np.random.default_rng(1927).uniform(0.0, 1.0, 7)
-"""Of the cycle."""
+_ANGLES: Array = np.mod(np.arange(1.0, 8.0) * 0.6180339887, 1.0)
+"""Shares of the cycle, by the golden section: in no simple ratio to dead centres and corners of cards."""
 
 
 class _Places(NamedTuple):

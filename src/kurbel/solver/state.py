@@ -19,7 +19,7 @@ In a Scotch yoke P presses the block against the yoke and, R sin φ beside the s
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -36,7 +36,7 @@ from kurbel.numerics.pieces import Pieces
 from kurbel.quantity import Row, column, value, values_for
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
-from kurbel.solver.gas import Pressure
+from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
 from kurbel.solver.shaft import Vector
 from kurbel.solver.trace import TracePressure, spread
@@ -112,11 +112,14 @@ class State(MotionColumns):
         """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
-    @property
+    @cached_property
     def unrubbed(self) -> State:
         """The same state without friction in pins and journals; this friction is computed from its loads."""
-        friction = self.rubs and self.drive.pin_friction
-        return State(self.drive, self.angle, self.within, rubs=False) if friction else self
+        if not (self.rubs and self.drive.pin_friction):
+            return self
+        state = State(self.drive, self.posed, self.within, rubs=False)
+        state.slope, state.curvature, state.piston_forces = self.slope, self.curvature, self.piston_forces
+        return state
 
     @property
     def rows(self) -> Mapping[str, Row]:
@@ -171,13 +174,16 @@ class State(MotionColumns):
         on_request=("forces",),
     )
     P_gas = value(
-        "P_gas", "force", "Force of gas, steam or water on all pistons of the rod", lambda state: state.force_on()
+        "P_gas",
+        "force",
+        "Force of gas, steam or water on all pistons of the rod",
+        lambda state: _total(state.piston_forces),
     )
     P_gas_book = value(
         "P_297",
         "force",
         "The same with the mean of both piston areas (R 297)",
-        lambda state: state.force_on(alike=True),
+        lambda state: _total([state.force_on(gas, alike=True) for gas in state.drive.gas]),
         on_request=("forces",),
     )
 
@@ -188,35 +194,37 @@ class State(MotionColumns):
         left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
         return end.at(self.z, self.phi, self.within, self.drive.index, left)
 
-    def force_on(self, shares: Any = None, alike: bool = False) -> Any:
-        """Return Σ p_H A_H − p_C A_C in N, R 296; alike: with the mean of both areas, R 297; None without a piston.
+    def force_on(self, gas: PistonGas, alike: bool = False) -> Any:
+        """Return p_H A_H − p_C A_C in N on a piston, R 296; alike: with the mean of both areas, R 297."""
+        head, crank = (spread(one, self.drive.index) for one in gas.areas)
+        if alike:
+            head = crank = (head + crank) / 2
+        sense = -1.0 if gas.turned else 1.0
+        return sum(self.pressure(end) * (area * sense) for end, area in ((gas.head, head), (gas.crank, -crank)) if end)
 
-        shares: for each piston, the share of its force that is counted; None counts all of them.
-        """
-        force: Any = None
-        for number, gas in enumerate(self.drive.gas):
-            share = True if shares is None else spread(shares[number], self.drive.index)
-            if share is False:
-                continue
-            sense = -share if gas.turned else share * 1.0
-            areas = [spread(one, self.drive.index) * sense for one in gas.areas]
-            head, crank = ((areas[0] + areas[1]) / 2,) * 2 if alike else areas
-            for end, area in ((gas.head, head), (gas.crank, -crank)):
-                force = _sum(force, self.pressure(end) * area) if end else force
-        return force
+    @cached_property
+    def piston_forces(self) -> list[Any]:
+        """Force in N on each piston that has an indicator."""
+        return [self.force_on(gas) for gas in self.drive.gas]
+
+    def force_of(self, shares: Sequence[Any]) -> Any:
+        """Return the force in N on the pistons of which these shares count; None where none counts."""
+        each = zip(self.piston_forces, shares)
+        counted = [force * spread(share, self.drive.index) for force, share in each if share is not False]
+        return sum(counted) if counted else None
 
     P_driving = value(
         "P_gas+",
         "force",
         "Force of gas or steam on the pistons that drive",
-        lambda state: state.force_on(state.drive.driving),
+        lambda state: state.force_of(state.drive.driving),
         unless=lambda forces: forces.works_one_way,
     )
     P_driven = value(
         "P_gas−",
         "force",
         "Force of gas or water on the pistons that are driven",
-        lambda state: state.force_on(state.drive.pumping),
+        lambda state: state.force_of(state.drive.pumping),
         unless=lambda forces: forces.works_one_way,
     )
 
@@ -227,7 +235,7 @@ class State(MotionColumns):
         Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
         """
         drive = self.drive
-        force = self.force_on(drive.beyond) if some(any_of(drive.beyond)) else None
+        force = self.force_of(drive.beyond) if some(any_of(drive.beyond)) else None
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):
@@ -615,6 +623,10 @@ def reduced_inertia(state: State) -> Any:
     drive, rod = state.drive, state.drive.rod
     inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
     return inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
+
+
+def _total(forces: Sequence[Any]) -> Any:
+    return sum(forces) if forces else None
 
 
 def _sum(first: Any, second: Any) -> Any:

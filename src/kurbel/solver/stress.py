@@ -40,7 +40,7 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
-from kurbel.quantity import value, values_for
+from kurbel.quantity import Heading, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import FreeBody, Vector, flywheel_weight
@@ -224,10 +224,12 @@ class CrankshaftStrength(Results):
     command = "stress"
     state = StressColumns
 
+    _loads = Heading("Loads")
     P_dc = value(
         "P_dc", "force", "Full piston force, without inertia, applied at the dead centre", lambda one: one.full_force
     )
     C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
+    _stresses = Heading("Stresses")
     _dead_centre = "Combined stress of * in the dead centre under full force (Bach)"
     sigma_dc = values_for(PARTS, "sigma_*_dc", "σ_*,dc", "stress", _dead_centre, group=str)
     _bach, _mises = (
@@ -238,6 +240,7 @@ class CrankshaftStrength(Results):
     mises_max = values_for(PARTS, "mises_*_max", "σ_v,*,max", "stress", f"{_mises} (von Mises)", group=str)
     _safety = "Smallest safety of *: k_b over its combined stress, dead centre and cycle"
     safety = values_for(PARTS, "safety_*_min", "S_*", "ratio", _safety, group=str)
+    _bearings = Heading("Bearings")
     A_max = value("A_max", "force", "Largest force on bearing A", lambda one: one.pressures["A_max"])
     B_max = value(
         "B_max", "force", "Largest force on bearing B, next to the flywheel", lambda one: one.pressures["B_max"]
@@ -272,6 +275,7 @@ class CrankshaftStrength(Results):
         after="p_*_mean",
         group=str,
     )
+    _checks = Heading("Checks")
     equilibrium_residual = value(
         "ΣF, ΣM",
         "ratio",

@@ -300,35 +300,29 @@ def _unit(reading: TraceReading) -> str:
         if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
             return ""
         can = f"four strokes compress more than from {in_bar(low)}"
-    factor, unit = _likely_unit(reading, least, max(2 * compressed, 1.0), max(most, ambient), _ENGINE if flat else 0.0)
-    if factor == 1:
+    # every unit and power of ten, by how far the peak, in logarithms, then is from the expected one
+    factors = [(size / trace.unit, f" (unit: {name} fits)", 0.0) for name, size in _UNITS.items()]
+    factors += [(factor, "", _NO_UNIT) for factor in _POWERS]
+    fits = []
+    for factor, unit, extra in factors:
+        then, base = reading.peak * factor + setting.lift, max(reading.low * factor + setting.lift, 0.2 * ambient)
+        plausible = least <= then <= max(most, ambient) and (not flat or then > _ENGINE * base)
+        if plausible and abs(factor - 1) > _SAME_UNIT:
+            # an absolute trace also begins near the ambient
+            lowest = 1.0 if setting.lift else max(reading.low * factor / max(ambient, 1.0), 1e-3)
+            away = abs(math.log(then / max(2 * compressed, 1.0))) + abs(math.log(lowest)) + extra
+            fits.append((away, factor, unit))
+    if not fits:
         return ""
+    _, factor, unit = min(fits)
     times, size = max(factor, 1 / factor), "large" if factor < 1 else "small"
-    what = f"{times:.3g} times too {size}" if times < 1000 else f"{times:.0f} times too {size}"
+    shown = f"{times:.3g}" if times < 1000 else f"{times:.0f}"
     power = math.log10(factor)
     scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
     return (
-        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {what}? mend 'unit'"
-        f"{f' (unit: {unit} fits)' if unit else ''}{scaled}; {reading.then(times=factor)}"
+        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {shown} times too {size}? mend 'unit'"
+        f"{unit}{scaled}; {reading.then(times=factor)}"
     )
-
-
-def _likely_unit(reading: TraceReading, least: float, aimed: float, most: float, ratio: float) -> tuple[float, str]:
-    """Return the factor on the pressures that fits best, and the unit that it makes of theirs, or ''; 1 if none does.
-
-    Judged by how far, in logarithms, the absolute peak is from the one aimed at, and an absolute low level from the
-    ambient. least, most: bounds of the peak in Pa; ratio: that it must be over the low level.
-    """
-    lift, ambient, unit = reading.setting.lift, reading.setting.ambient, reading.trace.unit
-    factors = [(size / unit, name, 0.0) for name, size in _UNITS.items() if abs(size / unit - 1) > _SAME_UNIT]
-    factors += [(factor, "", _NO_UNIT) for factor in _POWERS]
-    fits = []
-    for factor, name, extra in factors:
-        peak, low = reading.peak * factor + lift, reading.low * factor + lift
-        if least <= peak <= most and peak > ratio * max(low, 0.2 * ambient, 0.0):
-            at_ambient = 1.0 if lift else max(low / max(ambient, 1.0), 1e-3)
-            fits.append((abs(math.log(peak / aimed)) + abs(math.log(at_ambient)) + extra, factor, name))
-    return min(fits, default=(0.0, 1.0, ""))[1:]
 
 
 # the place of the peak

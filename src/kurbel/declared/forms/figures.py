@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from kurbel.declared.forms.values import Form, Number
+from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
-from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, is_nothing, kind_of, shown
+from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, is_nothing, kind_of, shown
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
@@ -67,10 +67,10 @@ class Figures(Form):
 
     def figure_of(self, quantity: Quantity) -> Form:
         """Return the form of a figure for a quantity."""
-        number = Number(quantity.kind)
+        number = NumberForm(quantity.kind)
         return FigureForm(number) if self.tolerated else number
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read every figure by the form of its quantity."""
         if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
@@ -86,7 +86,7 @@ class Figures(Form):
             figure = self.figure_of(known[scoped(id)[1]]).read(reading, written, (*path, name))
             if isinstance(figure, Expected):
                 figure = replace(figure, name=name)
-            found[id] = Bound(figure, written_unit(written), name) if isinstance(figure, float) else figure
+            found[id] = Bound(figure, written_unit(str(written)), name) if isinstance(figure, float) else figure
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: Mapping[str, Quantity]) -> tuple[str, str]:
@@ -119,14 +119,14 @@ _PERCENT = rf"({NUMBER.pattern})\s*%"
 class FigureForm(Form):
     """A figure with its tolerance, such as `13.16 m/s2 ± 0.5 %`, or a list of two bounds; becomes an Expected."""
 
-    def __init__(self, size: Number) -> None:
+    def __init__(self, size: NumberForm) -> None:
         self.size = size
         self.absolute = f"{size.example} ± 0.1 {written_unit(size.example)}".rstrip()
         sample = f"{size.example} ± 0.5 %"
         either = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
         super().__init__(f"{either}, or two bounds in a list", sample)
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a figure with its tolerance, or two bounds."""
         if isinstance(value, list) and len(value) == 2:
             low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
@@ -134,7 +134,7 @@ class FigureForm(Form):
                 return REFUSED
             if low > high:
                 refused(f"the first bound, {value[0]}, is larger than the second, {value[1]}; exchange them")
-            return Expected(low, high, written_unit(value[0]), f"{value[0]} to {value[1]}")
+            return Expected(low, high, written_unit(str(value[0])), f"{value[0]} to {value[1]}")
         parts = re.split(_PLUS_MINUS, familiar(value)) if isinstance(value, str) else []
         if len(parts) != 2 or not all(parts):
             refused(f"expected {self.expected}, got {kind_of(value)}")
@@ -150,7 +150,7 @@ class FigureForm(Form):
             return REFUSED
         if not around > 0:
             refused(f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be")
-        return Expected(middle - around, middle + around, written_unit(figure), value)
+        return Expected(middle - around, middle + around, written_unit(figure), str(value))
 
 
 _SPREADS = "'bore: ± 0.2 mm' or 'masses.piston: ± 2 %'"
@@ -166,7 +166,7 @@ class ByKey(Form):
         super().__init__(expected, schema={"type": "object", "minProperties": 1, **values})
         self.spreads = spreads
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read uncertainties; values that stand instead of others are read with their load case."""
         if not isinstance(value, dict) or not value:
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")

@@ -8,17 +8,18 @@ import functools
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import numpy as np
 
 from kurbel.arrays import Indivisible
-from kurbel.declared.forms.values import TEXT, Choice, Form, Number
-from kurbel.declared.keys import TOO_EXTREME, Key, Record, contradictions, required
+from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
+from kurbel.declared.keys import TOO_EXTREME, Key, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
-    Given,
+    Node,
     Plain,
     Reading,
     Tree,
@@ -63,7 +64,7 @@ class RecordForm(Form):
                     found |= case.names(mapping)
         return found
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the values of the keys of a mapping."""
         if not isinstance(value, dict):
             no_mapping(self, value)
@@ -71,12 +72,12 @@ class RecordForm(Form):
         meant = dict.fromkeys(self._unknown(reading, value, path), REFUSED)
         return self.build(reading, value | meant, path)
 
-    def build(self, reading: Reading, mapping: Tree, path: Path, inline: bool = False) -> Given:
+    def build(self, reading: Reading, mapping: Tree, path: Path, inline: bool = False) -> "Given":
         """Read the keys of the record out of a mapping that may hold those of others."""
         own = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
         rest = {name: value for name, value in mapping.items() if name not in own}
         missing = required(self.keys)
-        values: Tree = {}
+        values: dict[str, Any] = {}
         for name, key in self.keys.items():
             form = key.form
             if isinstance(form, Inline):
@@ -98,36 +99,27 @@ class RecordForm(Form):
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Note a fault for each unknown key and yield the known ones that were probably meant."""
         known = self.names(mapping)
-        unknown = [name for name in mapping if name not in known]
-        if not unknown:
-            return
         elsewhere = self._moved(mapping)
-        other_words = {
-            word: (name, key.form) for name, key in self.every_key() for word in (*key.also, key.symbol) if word
-        }
-        listed = False
-        for name in unknown:
-            home, meant = self._as_here(reading.where_it_belongs(name, path), mapping), ""
-            if name not in elsewhere:
-                meant, form = other_words.get(name, ("", None))
-                # where a key of this name belongs elsewhere, it means one of a single value only with one that suits
-                # that, such as a piston rod in mm, which is no mass
-                strange = home and form and form.shape is str and form.read(Reading(), mapping[name], ()) is REFUSED
-                if meant not in known or strange:
-                    meant = near(name, tuple(known))
+        other_words = {word: name for name, key in self.every_key() for word in (*key.also, key.symbol)}
+        others = f"; valid keys here are {', '.join(known)}"
+        for name in [name for name in mapping if name not in known]:
+            home = self._as_here(reading.where_it_belongs(name, path), mapping)
+            word = other_words.get(name, "")
+            meant = word if word in known else near(name, tuple(known))
             if name in elsewhere:
-                message = elsewhere[name]
-            elif meant:
-                message = f"unknown key; did you mean '{meant}'?"
+                message, meant = elsewhere[name], ""
             elif name == "<<":
                 message = (
                     "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
                 )
+            elif meant:
+                message = f"unknown key; did you mean '{meant}'?"
+                if home and meant == word:  # another name for one key, and the name of one elsewhere
+                    message, meant = f"{message} Or {home}", ""
             elif home:
                 message = f"does not belong here; {home}"
             else:
-                message = "unknown key" if listed else f"unknown key; valid keys here are {', '.join(known)}"
-                listed = True
+                message, others = f"unknown key{others}", ""
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
                 yield meant
@@ -187,7 +179,21 @@ class Inline(RecordForm):
         self.unless, self.item, self.inline = unless, f"to a {unless.removesuffix('s')}", (self,)
 
 
-def no_mapping(form: Form, value: Any) -> NoReturn:
+@dataclass(eq=False)
+class Given:
+    """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.
+
+    values: by key, with others like it and tuples of them in place of records; mapping, path: where it was read.
+    """
+
+    form: RecordForm
+    mapping: Tree
+    path: Path
+    values: dict[str, Any]
+    made: Any = None
+
+
+def no_mapping(form: Form, value: Node) -> NoReturn:
     """Raise RuleError for a value that is no mapping."""
     if isinstance(value, Plain) and not value:
         refused(f"no value here; write below it, indented, {form.expected}")
@@ -258,8 +264,7 @@ class Maker:
             if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
                 return form.born(values)
             # what is there contradicts the rest whether it could be read or not
-            faults = (*contradictions(form.keys, values), *form.record.faults_of_keys(values))
-            return self.reading.refuse(path, RuleError(*faults))
+            return self.reading.refuse(path, RuleError(*form.record.faults_of_keys(values)))
         except RuleError as error:
             return self.reading.refuse(path, form.flattened(error, given.mapping))
 
@@ -271,7 +276,7 @@ class Variant(Choice):
         super().__init__(tuple(cases), also)
         self.default, self.cases, self.inline = default, cases, tuple(cases.values())
 
-    def chosen(self, word: Any) -> Iterable[RecordForm]:
+    def chosen(self, word: Node | None) -> Iterable[RecordForm]:
         """Return the record that a word chooses, or the default one; all of them where the word is unknown."""
         known = self.cases.get(self.default if word is None else word) if isinstance(word, (str, type(None))) else None
         return [known] if known else self.cases.values()
@@ -292,7 +297,7 @@ class Listing(Form):
         super().__init__("a list, each item after '- '", written=item_text, parts=[("", item)])
         self.item, self.kind, self.called = item, item.kind, called
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
             refused("no value here; write a list below it, each item after '- '")
@@ -305,7 +310,7 @@ class Listing(Form):
         whole = self._completed(reading, value, path) if self.called else value
         return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
 
-    def _completed(self, reading: Reading, items: Sequence[Any], path: Path) -> list[Any]:
+    def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; a fault in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
         pairs = [{name, key.instead} for name, key in self.item.every_key() if key.instead]
@@ -314,7 +319,7 @@ class Listing(Form):
         for index, item in enumerate(items):
             whole = item
             like = item.get("like", REFUSED) if isinstance(item, dict) else REFUSED
-            if isinstance(like, str) and like in above:
+            if isinstance(item, dict) and isinstance(like, str) and like in above:
                 place, other = above[like]
                 here: Path = (*path, index)
                 reading.alike[here] = (*path, place)
@@ -343,14 +348,15 @@ class OneOf(Form):
         self.kind = next((form.kind for form in forms if form.kind), "")
         self.number = next((form.number for form in forms if form.number), None)
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
-        shape = type(value) if isinstance(value, (dict, list)) else str
         words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
         keys = [key for form in self.forms if isinstance(form, RecordForm) for key in form.keys]
-        if found := [name for name in value if name in words and name not in keys] if shape is dict else []:
-            alone = f"- {found[0]}" if isinstance(path[-1], int) else f"{path[-1]}: {found[0]}"
-            return reading.fault((*path, found[0]), f"takes no value; write '{alone}'", at_key=True)
+        for name in value if isinstance(value, dict) else ():
+            if name in words and name not in keys:
+                alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
+                return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
+        shape = type(value) if isinstance(value, (dict, list)) else str
         alike = [form for form in self.forms if form.shape is shape]
         if alike:  # of a word and a number, the one that it looks like
             suiting = (form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value))))
@@ -375,22 +381,17 @@ class Keyed(Form):
         self.cases, self.otherwise, self.beside = cases, otherwise, beside
         self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a mapping by the key that decides its form."""
         if not isinstance(value, dict):
             no_mapping(self, value)
         known, cases = self.otherwise.keys, self.cases
         telling = next((name for name in value if name in cases), "")
         if not telling:
-            misspelt = {
-                name: meant
-                for name in value
-                if name not in known and not reading.where_it_belongs(name, path) and not near(name, tuple(known))
-                if (meant := near(name, tuple(cases)))
-            }
-            for name, meant in misspelt.items():
-                reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
-            return REFUSED if misspelt else self.otherwise.read(reading, value, path)
+            for name in value:
+                if name not in known and (meant := near(name, (*known, *cases))) in cases:
+                    return reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
+            return self.otherwise.read(reading, value, path)
         inside = value[telling]
         if isinstance(inside, dict):
             case = cases[telling]
@@ -412,13 +413,13 @@ def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that stand for numbers.
     """
     if isinstance(form, str):
-        return Number(form, **bounds)
+        return NumberForm(form, **bounds)
     if isinstance(form, tuple):
         return Choice(form)
     if isinstance(form, list):
         return Listing(form_of(form[0], bounds))
     if form is int:
-        return Number(whole=True, **{"least": 1, **bounds})
+        return NumberForm(whole=True, **{"least": 1, **bounds})
     if form is bool:
         return Choice(("true", "false"), means={"true": True, "false": False})
     if form is str:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kurbel.declared.numerals import NUMBER, parse_number, parse_ratio, plain
-from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Plain, Reading, glued_hint, is_nothing, kind_of, shown
+from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import (
     KINDS,
@@ -47,7 +47,7 @@ class Form(ABC):
     shape: ClassVar[type] = str
     """Of the tree: str, list or dict."""
     kind: str = ""
-    number: "Number | None" = None
+    number: "NumberForm | None" = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -61,15 +61,15 @@ class Form(ABC):
         self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
         self.written = written or (expected if self.shape is str else "a mapping")
 
-    def kind_as_written(self, text: Any) -> str:
+    def kind_as_written(self, text: Node | None) -> str:
         """Return the kind of the number that is written so, '' where it is none."""
         return self.kind
 
     @abstractmethod
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Return what a value of the tree becomes; faults are noted, or raised as RuleError."""
 
-    def read(self, reading: Reading, value: Any, path: Path) -> Any:
+    def read(self, reading: Reading, value: Node, path: Path) -> Any:
         """Return what a value of the tree becomes, or REFUSED after noting every fault."""
         if value is REFUSED:
             return REFUSED
@@ -79,7 +79,7 @@ class Form(ABC):
             return reading.refuse(path, error)
 
 
-def one_line(value: Any, expected: str) -> str:
+def one_line(value: Node, expected: str) -> str:
     """Return a text of one line and of sensible length; raises RuleError for anything else."""
     if is_nothing(value):
         refused(f"a value is missing; write {expected}")
@@ -96,7 +96,7 @@ def out_of_size(value: Any, kind: str) -> str:
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
-    smallest, largest, unit, *_ = KINDS[kind]
+    smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
     held = f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
     if not np.all(abs(value) <= largest):
@@ -106,7 +106,7 @@ def out_of_size(value: Any, kind: str) -> str:
     return ""
 
 
-def size_faults(points: list[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
+def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
     """Return a fault for the first point whose value in this unit of its kind is too large; [] where there is none."""
     up, down = unit
     for index, (_, value) in enumerate(points):
@@ -116,7 +116,7 @@ def size_faults(points: list[Point], unit: Factor, kind: str, path: Path) -> lis
 
 
 @dataclass(eq=False)
-class Number(Form):
+class NumberForm(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger; zero: 0 is allowed
@@ -153,7 +153,7 @@ class Number(Form):
         super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
         self.number = None if self.whole or self.apart else self
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the number, and hold it against its bounds."""
         text = one_line(value, self.expected)
         for word, stands_for in self.words:
@@ -200,7 +200,7 @@ class Number(Form):
     def out_of_bounds(self, value: Any) -> str:
         """Compare a number, or each of many, with the bounds.
 
-        >>> Number("length", least=0.1).out_of_bounds(-0.3)
+        >>> NumberForm("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
         bounds = (
@@ -232,7 +232,7 @@ class Choice(Form):
         schema: Schema = {"type": "boolean"} if means else {"enum": list(words)}
         super().__init__(" or ".join(every), words[0], written, schema)
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Take one of the words, of which one may be a blank or a tab."""
         if isinstance(value, str) and value in self.words:
             return self.means.get(value, str(value))
@@ -262,7 +262,7 @@ class Text(Form):
         super().__init__(expected, example, written, found)
         self.become, self.pattern, self.unit_of = become, pattern, unit_of
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the text."""
         text = one_line(value, self.expected)
         if self.pattern and not re.fullmatch(self.pattern, plain(text)):
@@ -354,7 +354,6 @@ class Points(Form):
 
     def __init__(self, *names: str, least: int = 2, ratio: bool = False) -> None:
         self.columns, self.least, self.ratio = names, least, ratio
-        self._parse = [parse_ratio if ratio else parse_number, *[parse_number] * (len(names) - 1)]
         self._called, self._count = {2: ("pair", "two"), 3: ("triple", "three")}[len(names)]
         self._one = f"[{', '.join(names)}]"
         sample = "[[0, 1], [1, 2]]" if len(names) == 2 else "[[1, 20, -5]]"
@@ -363,7 +362,7 @@ class Points(Form):
         schema = {"type": "array", "items": one, "minItems": least, "maxItems": MOST_POINTS}
         super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema)
 
-    def take(self, reading: Reading, value: Any, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the pairs, and tell the first few that are none."""
         if isinstance(value, Plain) and not value:
             refused(f"a value is missing; write {self.expected}")
@@ -371,59 +370,59 @@ class Points(Form):
             refused(f"expected {self.expected}, got {kind_of(value)}")
         if len(value) > MOST_POINTS:
             refused(f"{len(value)} points; more than {MOST_POINTS} are not taken, thin them out")
-        pairs = [self._numbers(item) for item in value]
-        if None not in pairs:
-            if len(pairs) < self.least:
-                only = f"only {len(pairs)} point" if pairs else "no points"
-                refused(f"{only}; at least {self.least} are needed, [{self._one}, …]")
-            return pairs
-        if all(isinstance(item, str) for item in value):
+        pairs: list[Point] = []
+        wrong: list[tuple[int, RuleError]] = []
+        for index, item in enumerate(value):
+            try:
+                pairs.append(self._numbers(item))
+            except RuleError as error:
+                wrong.append((index, error))
+        if not wrong and len(pairs) < self.least:
+            only = f"only {len(pairs)} point" if pairs else "no points"
+            refused(f"{only}; at least {self.least} are needed, [{self._one}, …]")
+        if wrong and all(isinstance(item, str) for item in value):
             refused(f"expected {self.expected}, got single values; put each {self._called} into its own brackets")
-        wrong = [index for index, pair in enumerate(pairs) if pair is None and value[index] is not REFUSED]
-        for index in wrong[:_FAULTS_SHOWN]:
-            for inner, message in self._faults(value[index]):
-                reading.fault((*path, index, *inner), message)
-        if more := wrong[_FAULTS_SHOWN:]:
+        unknown = [(index, error) for index, error in wrong if error.faults]
+        for index, told in unknown[:_FAULTS_SHOWN]:
+            reading.refuse((*path, index), told)
+        if more := unknown[_FAULTS_SHOWN:]:
             these = f"these {len(more)} points are" if len(more) > 1 else "this point is"
-            reading.fault((*path, more[0]), f"from here on {these} wrong as well")
-        return REFUSED
+            reading.fault((*path, more[0][0]), f"from here on {these} wrong as well")
+        return REFUSED if wrong else pairs
 
-    def _numbers(self, item: Any) -> tuple[float, ...] | None:
-        """Return the numbers of a point, None where it is none."""
-        if type(item) is not list or len(item) != len(self.columns):
-            return None
-        if any(type(entry) is not Plain or len(entry) > LONGEST_VALUE for entry in item):
-            return None
-        try:
-            return tuple(parse(entry) for parse, entry in zip(self._parse, item))
-        except UnitError:
-            return None
-
-    def _faults(self, item: Any) -> Iterable[tuple[Path, str]]:
-        """Yield what is wrong with a point, each with the number of the entry."""
-        pair, length = f"{self._called} {self._one}", len(self.columns)
+    def _numbers(self, item: Node) -> Point:
+        """Return the numbers of a point; raises RuleError with what is wrong, without faults where that is known."""
+        length = len(self.columns)
+        if item is REFUSED:
+            raise RuleError()
         if not isinstance(item, list):
-            yield (), f"expected a {pair}, got {kind_of(item)}"
-        elif any(isinstance(entry, (list, dict)) for entry in item):
-            yield (), f"expected a {pair} of numbers; are there too many brackets?"
-        elif len(item) != length:
-            written = shown(", ".join(map(str, item[:6])))
-            wrong = f"a {pair} has {self._count} numbers, [{written}] has {len(item) or 'none'}"
-            if len(item) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", str(item[0])):
-                both = shown(", ".join(str(item[0]).split()))
-                yield (), f"a comma is missing between the two numbers; write [{both}]"
-            elif length < len(item) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", str(entry)) for entry in item):
-                yield (), f"{wrong}; write decimal points, such as 1.5 for 1,5"
-            else:
-                yield (), wrong
-        else:
-            for index, (name, entry) in enumerate(zip(self.columns, item)):
-                if is_nothing(entry):
-                    yield (index,), f"a value is missing; write the {name} as a number"
-                elif entry is not REFUSED and not isinstance(entry, Plain):
-                    yield (index,), f'expected a number, got the text "{shown(entry)}"; leave out the quotation marks'
-                elif entry is not REFUSED:
-                    try:
-                        self._parse[index](shown(entry, LONGEST_VALUE))
-                    except UnitError as error:
-                        yield (index,), str(error)
+            refused(f"expected a {self._called} {self._one}, got {kind_of(item)}")
+        if any(isinstance(entry, (list, dict)) for entry in item):
+            refused(f"expected a {self._called} {self._one} of numbers; are there too many brackets?")
+        if len(item) != length:
+            texts = list(map(str, item))
+            wrong = f"a {self._called} {self._one} has {self._count} numbers, [{shown(', '.join(texts[:6]))}] has"
+            if len(item) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", texts[0]):
+                both = shown(", ".join(texts[0].split()))
+                refused(f"a comma is missing between the two numbers; write [{both}]")
+            whole = length < len(item) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", text) for text in texts)
+            refused(f"{wrong} {len(item) or 'none'}{'; write decimal points, such as 1.5 for 1,5' if whole else ''}")
+        numbers, faults = [], list[Fault]()
+        for index, entry in enumerate(item):
+            try:
+                numbers.append(self._number(index, entry))
+            except RuleError as error:
+                faults += (fault.below((index,)) for fault in error.faults)
+        if len(numbers) < length:
+            raise RuleError(*faults)
+        return tuple(numbers)
+
+    def _number(self, index: int, entry: Node) -> float:
+        if entry is REFUSED:
+            raise RuleError()
+        if is_nothing(entry):
+            refused(f"a value is missing; write the {self.columns[index]} as a number")
+        text = shown(str(entry), LONGEST_VALUE)
+        if not isinstance(entry, Plain):
+            refused(f'expected a number, got the text "{shown(text)}"; leave out the quotation marks')
+        return parse_ratio(text) if self.ratio and not index else parse_number(text)

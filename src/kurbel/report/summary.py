@@ -1,0 +1,249 @@
+"""The first page of a report: what a machine is, the key values that say most of its kind, verdicts, and warnings."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+from typing import NamedTuple, TypeVar
+
+from kurbel.declared.unit_systems import convert, show, shown_unit
+from kurbel.errors import KurbelError
+from kurbel.machine import Machine, firings
+from kurbel.machine.ideal_cards import Steam
+from kurbel.machine.several import intervals
+from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.numerics.extreme import number_of
+from kurbel.quantity import Quantity
+from kurbel.report.alike import grouped, together
+from kurbel.report.check import checked
+from kurbel.report.frame import Row, Subject, place_table, subjects_of
+from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
+from kurbel.solver.case import Case
+
+Thing = TypeVar("Thing")
+_LABELS = {
+    "flywheel": {
+        "power_shaft": "Power at the shaft",
+        "M_mean": "Mean torque",
+        "M_max": "Largest torque",
+        "M_min": "Smallest torque",
+        "dE": "Excess work",
+        "delta": "Speed fluctuation",
+        "J": "Flywheel inertia",
+        "J_needed": "Inertia required",
+        "M_coupling_max": "Largest coupling torque",
+    },
+    "delivery": {
+        "flow_mean": "Mean flow",
+        "volume_fluctuation": "Fluctuating volume",
+        "capacity": "Capacity",
+        "discharge_temperature": "Discharge temperature",
+    },
+    "forces": {
+        "mean_pressure": "Mean indicated pressure",
+        "p_max": "Highest pressure",
+        "P_peak": "Largest piston force",
+        "N_peak": "Largest guide force",
+        "rod_compression_max": "Rod load, compression",
+        "rod_tension_max": "Rod load, tension",
+        "reversal_angle": "Reversal of the rod load",
+    },
+    "bearings": {"load_max": "Largest bearing load"},
+    "stress": {"safety_pin_min": "Safety of the crank pin"},
+    "balance": {"F_free_max": "Largest unbalanced force", "M_free_max": "Largest unbalanced moment"},
+    "torsion": {
+        "natural_frequency": "Natural frequency",
+        "M_vibratory": "Vibratory torque",
+        "tau_vibratory": "Vibratory stress",
+        "vibration_loss": "Power lost by damping",
+    },
+    "motion": {
+        "stroke": "Stroke",
+        "swing": "Angle of swing",
+        "time_ratio": "Working over return time",
+        "c_m": "Mean piston speed",
+        "c_max": "Highest piston speed",
+        "c_work_max": "Highest working speed",
+        "c_return_max": "Highest return speed",
+        "b_max": "Largest acceleration",
+        "theta_dot_max": "Highest angular velocity",
+        "theta_ddot_max": "Angular acceleration",
+        "transmission_min": "Transmission angle",
+    },
+}
+"""Command -> a short name of each key value that may be on the first page."""
+_USUAL = (
+    "power_shaft mean_pressure p_max P_peak M_max delta dE safety_pin_min load_max F_free_max M_free_max J N_peak "
+    "natural_frequency c_m c_max b_max M_min stroke"
+)
+_KINDS = {
+    "engine": "power_shaft mean_pressure p_max P_peak M_max delta safety_pin_min load_max F_free_max dE",
+    "steam engine": "power_shaft mean_pressure p_max flow_mean P_peak M_max delta dE load_max",
+    "pump": "flow_mean power_shaft p_max volume_fluctuation P_peak M_max load_max dE",
+    "compressor": "capacity power_shaft discharge_temperature p_max rod_compression_max reversal_angle M_max load_max",
+    "ram": "stroke time_ratio c_work_max c_return_max power_shaft P_peak M_max delta J",
+    "linkage": "swing time_ratio theta_dot_max theta_ddot_max transmission_min power_shaft M_max dE",
+    "shaft line": "natural_frequency M_vibratory tau_vibratory vibration_loss",
+    "effort": "power_shaft M_mean M_max M_min dE delta J M_coupling_max natural_frequency",
+    "masses": "P_peak M_max load_max F_free_max M_free_max c_m c_max b_max",
+}
+"""Kind of machine -> the key values that say most of it, in order; others follow as above."""
+_SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min")
+"""Key values of which the smallest one of several parts counts."""
+_MOST_FACTS = 8
+
+
+def kind_of(case: Case) -> str:
+    """Return what a machine is: a word that decides which key values are on the first page."""
+    machine = case.machine
+    if not machine.cylinders:
+        return "effort" if machine.effort else "shaft line"
+    first = machine.cylinders[0]
+    if not first.mechanism.slides:
+        return "linkage"
+    if first.mechanism.quick_return or first.ram_force:
+        return "ram"
+    chambers = [chamber for one in machine.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+    if not chambers:
+        return "masses"
+    if firings(machine):
+        return "engine"
+    drives = any(one.drive.drives for one in case.cylinders)
+    if drives or any(isinstance(one, Steam) for one in chambers):
+        return "steam engine"
+    try:
+        return "pump" if case.delivery.pump else "compressor"
+    except KurbelError:
+        return "engine"
+
+
+def subtitle_of(machine: Machine) -> str:
+    """Return number of cylinders, cycle, speed, stroke, rod and bores in a line."""
+    cylinders, texts = machine.cylinders, list[str]()
+    if cylinders:
+        texts.append(f"{len(cylinders)} cylinder{'s' * (len(cylinders) > 1)}")
+    if firings(machine):
+        texts.append(machine.cycle)
+    if machine.speed is not None:
+        texts.append(show(machine.speed, "speed", 4))
+    sizes = {
+        "stroke": [one.mechanism.stroke for one in cylinders if one.mechanism.slides and not one.mechanism.turns],
+        "rod": [one.mechanism.rod for one in cylinders if isinstance(one.mechanism, SliderCrank)],
+        "bore": [piston.bore for one in cylinders for piston in one.pistons],
+    }
+    for name, lengths in sizes.items():
+        shown = list(dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one)))
+        if shown:
+            unit = shown[-1].rpartition(" ")[2]
+            texts.append(f"{name} {', '.join(one.removesuffix(f' {unit}') for one in shown)} {unit}")
+    return ", ".join(texts)
+
+
+class Found(NamedTuple):
+    """A key value in SI, with the names of the parts that have it where others have less, and its crank angle."""
+
+    title: str
+    number: float
+    quantity: Quantity
+    where: str
+    at_deg: float | None
+
+
+def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
+    """Return key values for the first page by their ids; without ids, the eight that say most of its kind, none zero.
+
+    Of several parts the one that has the largest is named, or the smallest where that is what counts.
+    """
+    kind = kind_of(case)
+    wanted = ids or (*_KINDS[kind].split(), *_USUAL.split())
+    commands = {id: word for word, labels in _LABELS.items() for id in labels}
+    subjects = {word: if_any(partial(subjects_of, case, word)) for word in _LABELS}
+    found: dict[str, Found] = {}
+    for id in dict.fromkeys(wanted):
+        one = _largest(id, commands[id], subjects[commands[id]])
+        if one and (ids or (one.number and len(found) < _MOST_FACTS)):
+            found[id] = one._replace(title="Largest ram force") if id == "P_peak" and kind == "ram" else one
+    return found
+
+
+def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None:
+    each: list[tuple[float, str, Quantity, object]] = []
+    for one in subjects:
+        quantity = one.lists.key_values(command).get(id)
+        with suppress(KurbelError):
+            value = one.answer(quantity) if quantity and one.says(quantity) else None
+            if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
+                each.append((number, one.name, quantity, value))
+    if not each:
+        return None
+    sign = -1 if id in _SMALLEST else 1
+    number, _, quantity, value = max(each, key=lambda one: sign * abs(one[0]))
+    equal = [name for size, name, *_ in each if f"{size:.6g}" == f"{number:.6g}"]
+    where = together(equal) if len(equal) < len(each) else ""
+    return Found(_LABELS[command][id], number, quantity, where, getattr(value, "degrees", None))
+
+
+def tiles(facts: Iterable[Found], system: str) -> Facts:
+    """Return key values as they are shown next to one another, each in its unit."""
+    found = []
+    for one in facts:
+        unit = shown_unit(one.quantity.kind, system, abs(one.number))
+        number = float(convert(one.number, one.quantity.kind, unit))
+        found.append(Fact(one.title, number, one.quantity.marked(unit), one.quantity.symbol, one.where, one.at_deg))
+    return Facts(tuple(found))
+
+
+def if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
+    """Return what a machine has, nothing if it has none of that."""
+    try:
+        return list(found())
+    except KurbelError:
+        return []
+
+
+def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[str]) -> Iterator[Item]:
+    """Yield the key values that say most, limits and expectations with their verdicts, load cases, and warnings."""
+    facts = facts_of(case)
+    yield tiles(facts.values(), system)
+    yield from verdicts(case, cases)
+    if cases:
+        rows: list[Row] = []
+        for one in cases:
+            name = one.machine.origin.case if one.machine.origin else one.machine.name
+            rows.append(((name,), {id: found.number for id, found in facts_of(one, facts).items()}))
+        declared = {id: one.quantity for id, one in facts.items()}
+        yield place_table("cases", "Load cases", ("case",), declared, rows, system, headed=True)
+    yield from (Notice(text, "warning") for text in warnings)
+    if not warnings:
+        yield Notice("No warnings.", "good")
+
+
+def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
+    """Yield limits and expectations with their bounds and verdicts, and what keeps them from being compared."""
+    found = checked(case, cases)
+    judged = [one for part in found.sections if part.title in ("Limits", "Expected") for one in part.entries]
+    rows, marks = list[tuple[Shown, ...]](), list[str]()
+    for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
+        # in several load cases all that fail, or the one that is nearest to its bound
+        nearest = (min if equal[0].bound.startswith("≥") else max)(equal, key=lambda one: one.value or 0.0)
+        for one in [one for one in equal if one.severity == "error"] or [nearest]:
+            name, bad = str(one.path[-1]), one.severity == "error"
+            value, where = (one.value or 0.0, one.unit), one.where + one.what.removeprefix(name)
+            rows.append((name.replace("_", " "), value, one.bound, where, "FAIL" if bad else "PASS"))
+            marks.append("bad" if bad else "good")
+    if rows:
+        yield Grid("", ("Limit", "Value", "Bound", "Where", ""), tuple(rows), numbers=(1,), verdicts=tuple(marks))
+    yield from (Notice(str(error), "bad") for error in found.errors)
+    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
+
+
+def firing_order(machine: Machine) -> Iterator[Grid]:
+    """Yield when each cylinder of an engine of several fires, and the crank angle from one ignition to the next."""
+    found, cycle = firings(machine), 360.0 * machine.revolutions
+    if len(machine.cylinders) < 2 or not found:
+        return
+    rows = tuple(
+        (machine.cylinders[number - 1].name, f"{angle:g}°", f"{after:g}°")
+        for (angle, number), after in zip(found, intervals([angle for angle, _ in found], cycle))
+    )
+    yield Grid("Firing order", ("Cylinder", "Fires at", "Interval to the next"), rows, numbers=(1, 2))
