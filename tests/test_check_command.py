@@ -6,6 +6,7 @@ import json
 import math
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner
@@ -162,6 +163,64 @@ def test_a_warning_has_the_place_of_its_cylinder() -> None:
         ("cylinders[0]", 3, "warning"),
         ("cylinders[1]", 4, "warning"),
     ]
+
+
+JENKINS = {
+    "testsuites": {"name", "time", "tests", "failures", "errors"},
+    "testsuite": {
+        "name",
+        "tests",
+        "failures",
+        "errors",
+        "group",
+        "time",
+        "skipped",
+        "timestamp",
+        "hostname",
+        "id",
+        "file",
+    },
+    "testcase": {"name", "time", "classname", "group"},
+    "failure": {"type", "message"},
+    "system-out": set(),
+}
+"""Elements and attributes of the schema junit-10.xsd of the xUnit plugin of Jenkins, as far as they are used."""
+
+
+def test_a_check_as_junit(tmp_path: Path) -> None:
+    good, bad, wrong = (tmp_path / name for name in ("good.yaml", "b&d.yaml", "wrong.yaml"))
+    engine = "{speed: 50 rpm, crank: 400 mm, rod: 2000 mm, "
+    good.write_text(engine + "limits: {c_max: 3 m/s}, expect: {b_max: 13.16 m/s2 ± 0.1 %}}", encoding="utf-8")
+    bad.write_text(engine + "limits: {c_max: 1 m/s, b_max: 20 m/s2}}", encoding="utf-8")
+    wrong.write_text("crank: <400", encoding="utf-8")
+    results = tmp_path / "results.xml"
+    ended = CliRunner().invoke(kurbel, ["check", *map(str, (good, bad, wrong)), "-o", str(results)])
+    assert (ended.exit_code, ended.stdout) == (2, "")
+    root = ElementTree.parse(results).getroot()
+    for one in root.iter():
+        assert set(one.attrib) <= JENKINS[one.tag]
+    suites = {suite.attrib["name"]: suite for suite in root}
+    assert list(suites) == [str(good), str(bad), str(wrong)]
+    failed = {name: len(suite.findall("testcase/failure")) for name, suite in suites.items()}
+    assert list(failed.values()) == [0, 1, 2]  # the length has no unit, and the rod is missing
+    for name, suite in suites.items():
+        cases = suite.findall("testcase")
+        assert (int(suite.attrib["tests"]), int(suite.attrib["failures"])) == (len(cases), failed[name])
+        names = [case.attrib["name"] for case in cases]
+        assert len(set(names)) == len(names)  # GitLab reads the first of a name alone
+        assert {case.attrib["classname"] for case in cases} == {name}
+    assert (int(root.attrib["tests"]), int(root.attrib["failures"])) == (len(root.findall("*/testcase")), 3)
+    (limit,) = (case for case in suites[str(bad)] if case.attrib["name"] == "c_max")
+    (failure,) = limit
+    assert "2.13593341 m/s > 1 m/s" in failure.attrib["message"]
+    assert (failure.text or "").startswith(f"{bad}:1:")
+
+
+def test_a_machine_without_a_finding_is_a_test_that_passes() -> None:
+    text = "{crank: 400 mm, rod: 2000 mm}"
+    status, listed, _ = run(text, "check", "-f", "junit")
+    (suite,) = ElementTree.fromstring(listed.encode())
+    assert (status, int(suite.attrib["tests"]) > 0, suite.attrib["failures"]) == (0, True, "0")
 
 
 def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from io import StringIO
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from kurbel.cli import COMMANDS, kurbel
+from kurbel.cli import COMMANDS, group, kurbel
 from representative import few, law_of_each
 
 ESCAPE = b"\x1b"
@@ -32,15 +33,15 @@ def process(
     )
 
 
-def on_terminal(*arguments: str, columns: int = 120, **environment: str) -> bytes:
-    """Return what the command writes to a terminal of this width."""
+def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environment: str) -> bytes:
+    """Return what the command writes to a terminal of this width and height."""
     import fcntl
     import pty
     import struct
     import termios
 
     leader, follower = pty.openpty()
-    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
     settings = {"TERM": "xterm-256color", "COLUMNS": str(columns)} | environment
     with subprocess.Popen(
         [sys.executable, "-m", "kurbel", *arguments],
@@ -176,6 +177,68 @@ def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
     written = on_terminal("table", **environment)
     assert ESCAPE not in written
     assert "sin(φ+ψ)/cos ψ".encode() in written
+
+
+WATERWORKS = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+SELECTED = b"First selection. All columns, angles and key values: kurbel forces FILE --all"
+
+
+@POSIX_ONLY
+def test_a_low_terminal_shows_a_first_selection_and_says_how_to_see_all() -> None:
+    shown = on_terminal("forces", WATERWORKS, columns=80, rows=24, NO_COLOR="1").decode()
+    whole = process("forces", WATERWORKS, COLUMNS="80").stdout.decode()
+    lines = [line.rstrip() for line in shown.splitlines()]
+    assert (len(lines) < 24, lines[1].encode()) == (True, SELECTED)
+    table, key_values = (shown[shown.index("φ") :].split("Key values")[n] for n in (0, 1))
+    # every number is that of the whole page, where it is among all the others
+    numbers = [line.split() for line in whole.splitlines() if line[:1] in "xPNT" and line[:1].strip()]
+    for row in (line.split() for line in table.splitlines()[2:] if line and line[0] in "xPNT"):
+        values = [float(value) for other in numbers if other[:2] == row[:2] for value in other[2:]]
+        assert [float(value) for value in row[2:]] == pytest.approx(values[::6], rel=2e-3)
+    assert {line.split()[0] for line in key_values.splitlines() if line.startswith("  ")} < set(whole.split())
+
+
+@POSIX_ONLY
+@pytest.mark.parametrize("more", [["--all"], ["--columns", "P"], ["--step", "5"], ["--key-values"]])
+def test_what_is_asked_for_is_shown_on_a_low_terminal_too(more: list[str]) -> None:
+    shown = on_terminal("forces", WATERWORKS, *more, columns=80, rows=24, NO_COLOR="1")
+    plain = process("forces", WATERWORKS, *more, COLUMNS="80").stdout
+    assert shown.replace(b"\r\n", b"\n").splitlines() == plain.splitlines()
+
+
+@POSIX_ONLY
+def test_a_high_terminal_and_a_pipe_have_all() -> None:
+    high = on_terminal("forces", WATERWORKS, columns=80, rows=500, NO_COLOR="1").replace(b"\r\n", b"\n")
+    assert high == process("forces", WATERWORKS, COLUMNS="80").stdout
+    assert SELECTED not in high
+
+
+class Terminal(StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(
+    ("stream", "more", "shown"), [(Terminal, {}, True), (StringIO, {}, False), (Terminal, {"CI": "true"}, False)]
+)
+def test_a_terminal_shows_what_is_left_after_two_seconds(
+    monkeypatch: pytest.MonkeyPatch, stream: type[StringIO], more: dict[str, str], shown: bool
+) -> None:
+    """Of ten designs of a second each, four are done after four seconds, and six seconds are left."""
+    seconds = iter(range(100))
+    monkeypatch.delenv("CI", raising=False)
+    for name, value in more.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(group, "monotonic", lambda: next(seconds))
+    monkeypatch.setattr(sys, "stderr", stream())
+    assert [*group.Progress("sweep").counted(range(10), "designs", 10)] == [*range(10)]
+    written = sys.stderr.getvalue()  # type: ignore[attr-defined]
+    assert bool(written) is shown
+    if shown:
+        lines = written.split("\r")
+        assert lines[1] == "kurbel sweep: 1 of 10 designs, 18 s left"  # two seconds, one of them for the start
+        assert lines[4] == "kurbel sweep: 4 of 10 designs, 8 s left"
+        assert (lines[-2].strip(), lines[-1]) == ("", "")
 
 
 def test_example_lists_every_machine_with_its_first_line() -> None:

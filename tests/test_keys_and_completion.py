@@ -49,9 +49,20 @@ def test_a_path_may_be_that_of_a_message(path: str) -> None:
     assert "Diameter of the cylinder" in told(path)
 
 
+@pytest.mark.parametrize("path", ["indicator.head_end.constant", "cylinders.0.indicator.head_end.constant"])
+def test_a_key_with_keys_below_it_alone_lists_these(path: str) -> None:
+    names = [line.split()[0] for line in told(path).splitlines()]
+    assert names == ["indicator.head_end.constant.expansion", "indicator.head_end.constant.compression"]
+
+
 def test_a_key_that_is_not_there() -> None:
     result = CliRunner().invoke(kurbel, ["keys", "share"])
     assert (result.exit_code, "it is at masses.connecting_rod.share" in result.stderr) == (2, True)
+    result = CliRunner().invoke(kurbel, ["keys", "trace"])
+    assert (result.exit_code, "it is at indicator.head_end.trace, indicator.crank_end.trace" in result.stderr) == (
+        2,
+        True,
+    )
     assert "did you mean 'bore'" in CliRunner().invoke(kurbel, ["keys", "boore"]).stderr
 
 
@@ -66,6 +77,13 @@ def test_a_key_that_is_not_there() -> None:
         ("kurbel forces engine.yaml --set bo", ["bore="]),
         ("kurbel forces engine.yaml --set bore=4", []),
         ("kurbel forces engine.yaml --cylinder ", []),
+        ("kurbel keys indicator.head_end.trace.sk", ["indicator.head_end.trace.skip_rows"]),
+        ("kurbel forces engine.yaml --set masses.connecting_rod.s", ["masses.connecting_rod.share="]),
+        ("kurbel sweep engine.yaml --vary masses.cro", ["masses.crosshead="]),
+        ("kurbel sweep engine.yaml --columns c_m,T_ma", ["c_m,T_max"]),
+        ("kurbel sweep engine.yaml --sort T_mi", ["T_min"]),
+        ("kurbel find engine.yaml --least T_ma", ["T_max"]),
+        ("kurbel find engine.yaml T_mi", ["T_min"]),
     ],
 )
 def test_what_a_shell_completes(words: str, some: list[str]) -> None:

@@ -9,8 +9,10 @@ from kurbel import loads
 from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, UsageError
 from kurbel.mechanisms import Mechanism
+from kurbel.quantities import RESULTS
 from kurbel.report.frame import Frame
 from kurbel.report.whole import report_of
+from kurbel.solver.figures import rows_of
 from representative import case_of
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -28,6 +30,13 @@ def test_a_mechanism_that_forgets_something_is_refused_by_name(missing: str) -> 
 
 ENGINE = "{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, indicator: {head_end: {constant: %s}}, %s}"
 PRESSURE = "{expansion: 5 bar, compression: 1 bar}"
+
+
+def test_where_key_values_are_in_groups_every_one_is_in_a_group() -> None:
+    """A key value without a heading would be printed below that of another one."""
+    for kind in RESULTS:
+        headings = {row.quantity.heading for row in rows_of(kind).key_values.values()}
+        assert ("" in headings) == (headings == {""}), kind
 
 
 def test_columns_take_printed_symbols() -> None:

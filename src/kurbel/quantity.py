@@ -177,6 +177,16 @@ def ambiguity(name: str, found: tuple[str, ...]) -> str:
     return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
 
 
+def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
+    """Return which of these quantities have a word in their sentences, to be said of a word that is no id; or ''.
+
+    >>> in_sentences("piston", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
+    '; it is in the sentences of A_head'
+    """
+    ids = dict.fromkeys(one.id for one in quantities if len(word) > 2 and word.lower() in one.text.lower())
+    return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
+
+
 def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str]:
     """Yield names that were split at their commas as they were before: `σ_w` and `A` are one where `σ_w,A` is known.
 

@@ -52,6 +52,21 @@ def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None
         assert one["power_shaft_W"] == pytest.approx(18 * np.pi * speed, rel=1e-13)
 
 
+def test_cylinders_that_work_alike_have_one_column_in_a_table(tmp_path: Path) -> None:
+    """Equal ones once for people, each in csv; where a key of one of them varies they are no longer alike."""
+    generator = str(CONFIGS / "four-cylinder-generator.yaml")
+    sweep = ("--vary", "speed=200,300 rpm", "--columns", "T_max,dE")
+    assert run(*sweep, file=generator).stdout.split()[:4] == ["row", "speed", "cylinders", "1–4.T_max"]
+    heads = run(*sweep, "-f", "csv", file=generator).stdout.splitlines()[0].split(",")
+    assert heads[2:6] == [f"cylinder {n}.T_max_N" for n in (1, 2, 3, 4)]
+    two, each = tmp_path / "two.yaml", "crank: 50 mm, rod_ratio: 4"
+    two.write_text(f"{{speed: 60 rpm, cylinders: [{{name: A, {each}}}, {{name: B, {each}}}]}}", encoding="utf-8")
+    table = run("--vary", "speed=60,90 rpm", "--columns", "c_max", file=str(two)).stdout
+    assert table.split()[:5] == ["row", "speed", "A,", "B.c_max", "failure"]
+    table = run("--vary", "cylinders.1.crank=50,60 mm", "--columns", "c_max", file=str(two)).stdout
+    assert table.split()[:5] == ["row", "cylinders.1.crank", "A.c_max", "B.c_max", "failure"]
+
+
 def test_a_row_that_fails_stays_with_its_reason() -> None:
     found = rows("--vary", "rod_ratio=0.5,2", "--columns", "T_max")
     assert found[0]["T_max_N"] is None

@@ -110,7 +110,8 @@ def test_the_key_values_are_those_of_its_kind(name: str) -> None:
 
 def test_what_a_machine_is_stands_below_its_name() -> None:
     """As configs/marine-diesel.yaml has it: L/R = 4.4, so that the rod has 1980 mm."""
-    assert "6 cylinders, two-stroke, 110 rpm, stroke 900 mm, rod 1980 mm, bore 540 mm" in page_of("marine-diesel")
+    machine = "6 cylinders, two-stroke, 110 rpm, stroke 900 mm, rod 1980 mm, bore 540 mm"
+    assert machine in text_in(page_of("marine-diesel"))
     named = re.findall(r"<(title|h\d|caption|figcaption)>(?:<b>)?Motor ship", page_of("marine-diesel"))
     assert named == ["title", "h1"]  # of the window, and of the page
 
@@ -153,7 +154,7 @@ def test_load_cases_and_limits_are_on_the_first_page() -> None:
     """Of each limit and cylinder what is nearest to its bound in any case; half the capacity with one end unloaded."""
     page = page_of("compressor-two-stage", cases=True)
     summary = text_in(section(page, "summary"))
-    rows = re.findall(r"reversal (angle|ratio)\s*([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)", summary)
+    rows = re.findall(r"([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)\s*(?:low|high) pressure", summary)
     assert len(rows) == 4
     assert summary.count("PASS") == 4
     both, one = (number_of(re.search(rf"{name}\s*([\d.]+)", summary).group(1)) for name in ("both ends", "unloaded"))
@@ -217,7 +218,8 @@ def test_limits_and_expectations_have_a_verdict() -> None:
     text = "{speed: 50 rpm, stroke: 800 mm, rod_ratio: 5, limits: {c_max: 2 m/s, b_max: 20 m/s2}, "
     page = page_of_case(Case(loads(text + 'expect: {stroke: "800 mm ± 1 %"}}')))
     said = text_in(page)
-    assert re.search(r"c max\s*2\.136 m/s\s*≤ 2 m/s\s*cylinder 1\s*FAIL", said)  # R Zusammenstellung 112
+    # R Zusammenstellung 112, of which c_max is 2.136 m/s
+    assert re.search(r"Largest velocity on the outstroke\s*2\.1359 m/s\s*≤ 2 m/s\s*cylinder 1\s*FAIL", said)
     assert "PASS" in said
     assert "800 mm ± 1 %" in said
     assert page.count('<tr class="bad">') == 1

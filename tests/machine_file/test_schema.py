@@ -67,13 +67,8 @@ def test_patterns_know_every_unit(kind: str) -> None:
         pytest.skip("no key of this kind")
     pattern = definitions[f"quantity_{kind}"]["pattern"]
     for unit in unit_names(kind):
-        for spelt in (
-            unit,
-            re.sub("2(?!O)", "²", unit),
-            unit.replace(" ", "·"),
-            re.sub("(?<=m)2", "^2", unit),
-            re.sub("(?=Hg|H2O)", " ", unit),
-        ):
+        powers = re.sub("2(?!O)", "²", unit), re.sub("(?<=m)2", "^2", unit)
+        for spelt in (unit, *powers, unit.replace(" ", "·"), re.sub("(?=Hg|H2O)", " ", unit)):
             assert re.search(pattern, f"1.5e3 {spelt}"), spelt
             assert unit in ZEROED_UNITS or parse_quantity(f"1.5e3 {spelt}", kind) > 0
     assert re.search(pattern, example(kind))

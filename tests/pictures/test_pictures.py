@@ -113,7 +113,7 @@ def test_the_arrows_are_the_forces() -> None:
     """Each points along its force; T and D at the pin add up to the rod force, P and N at the crosshead as well."""
     case = case_of("waterworks")
     (picture,) = pictures(case, ("mechanism",), PictureOptions(angles=(40.0,)))
-    drawn_ = {one.name.symbol: one.x + 1j * one.y for one in picture.panels[0].curves if one.kind == "arrow"}
+    drawn_ = {one.name.symbol: one.x + 1j * one.y for one in picture.panels[0].curves if one.kind == "force"}
     arrows = {symbol: head - tail for symbol, (tail, head) in drawn_.items()}
     state = case.cylinders[0].at([40.0])
     scale = abs(arrows["P"]) / abs(float(state.P[0]))

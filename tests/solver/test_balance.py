@@ -247,6 +247,54 @@ def test_lanchester_shafts() -> None:
     assert not free.moment.waves.any()
 
 
+def first_order_left(text: str, weights: list[str], shafts: list[str]) -> list[float]:
+    """What these counterweights and shafts leave of order 1, with the crank and against it: forces and moments."""
+    free = balance_of(text, f"counterweights=[{', '.join(weights)}]", f"balance_shafts=[{', '.join(shafts)}]").free
+    curves = [free.force] if free.moment is None else [free.force, free.moment]
+    return [abs(complex(curve.of(order)[0])) for curve in curves for order in (1, -1)]
+
+
+def written(one: Any, more: str = "") -> str:
+    """A weight as a file has it."""
+    place = "" if one.place is None else f", axial_position: {one.place!r} m"
+    angle = math.degrees(np.angle(one.product))
+    return f"{{product: {abs(one.product)!r} kg m, angle: {angle!r} deg{place}{more}}}"
+
+
+AGAINST = ", order: 1, sense: against"
+
+
+def test_half_a_counterweight_and_a_shaft_against_the_crank_leave_no_first_order_of_one_cylinder() -> None:
+    """m R cos φ is ½ m R with the crank and ½ m R against it: each is taken away by a weight that turns as it does."""
+    found = balance_of(single())
+    (shaft,) = (one for one in found.best_shafts if one.order == -1)
+    assert (abs(shaft.product), shaft.product.real < 0) == (pytest.approx(0.5 * 2 * 0.05), True)
+    left = first_order_left(single(), ["{product: 0.05 kg m}"], [written(shaft, AGAINST)])
+    assert left == pytest.approx([0, 0], abs=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("text", "behind"),
+    [(in_line(3, "1-3-2"), [0, 240, 120]), (in_line(5, "1-2-4-5-3"), [0, 144, 216, 288, 72])],
+    ids=["three", "five"],
+)
+def test_a_shaft_with_a_couple_takes_away_the_first_order_moment_of_odd_engines(text: str, behind: list[int]) -> None:
+    """Each cylinder has ½ m R with its crank and ½ m R against it, whose moments about the middle are added up."""
+    found, half = balance_of(text), 0.5 * 2 * 0.05
+    span = 0.1 * (len(behind) - 1)
+    places = [0.1 * k - span / 2 for k in range(len(behind))]
+    couple = half * abs(sum(z * np.exp(1j * math.radians(angle)) for z, angle in zip(places, behind)))
+    shaft = [one for one in found.best_shafts if one.order == -1]
+    assert [one.place for one in shaft] == pytest.approx([0, span])
+    assert [abs(one.product) for one in shaft] == pytest.approx([couple / span] * 2, rel=1e-12)
+    assert abs(sum(one.product for one in shaft)) < 1e-14
+    if len(behind) == 3:  # √3 m R D of Bloch & Hoefner p. 91, half of it each way, on an arm of 2 D
+        assert couple / span == pytest.approx(math.sqrt(3) / 4 * 2 * 0.05)
+
+    left = first_order_left(text, [*map(written, found.best_in_planes)], [written(one, AGAINST) for one in shaft])
+    assert left == pytest.approx([0] * 4, abs=1e-12 * couple)
+
+
 def test_a_locomotive() -> None:
     """Infinite rod: √2 (1 − c) m R ω² and (1 − c) m R ω² a/√2 of the books, and the blow as by a lever."""
     found = balance_of(

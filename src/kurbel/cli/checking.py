@@ -1,6 +1,7 @@
 """What `kurbel check` does with its files: each is read and checked, and all that is found is written."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from kurbel.cli.group import DONE, message_of, to_stderr
@@ -11,10 +12,10 @@ from kurbel.machine_file import load
 from kurbel.machine_file.events import located
 from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
-from kurbel.render.data import findings_json
+from kurbel.render.data import findings_json, findings_junit
 from kurbel.render.output import refuse_overwriting, stdout_look, write_out
 from kurbel.render.page import listing
-from kurbel.report.check import Checked, checked, faults_found, findings
+from kurbel.report.check import Checked, Findings, checked, faults_found, findings
 from kurbel.report.commands import BROKEN
 from kurbel.solver.case import Case
 
@@ -39,14 +40,15 @@ def check_files(
     file_name: str | None,
     width: int | None,
 ) -> int:
-    """Check machine files, write what is found as `table` or `json`, and return the exit status.
+    """Check machine files, write what is found as `table`, `json` or `junit`, and return the exit status.
 
     Raises UsageError where the output would overwrite what is read, and the error of an only file.
     """
     refuse_overwriting(file_name, files)
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = Look(width=width) if file_name else stdout_look(Look(width=width))
-    write_out(_as_json(outcomes, look) if format == "json" else _as_text(outcomes, look), file_name)
+    texts = {"table": _as_text, "json": _as_json, "junit": _as_junit}[format]
+    write_out(texts(outcomes, look), file_name, "utf-8" if format == "junit" else None)
     for one in outcomes:
         if one.error and format == "table":
             if len(files) == 1:
@@ -85,14 +87,23 @@ def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
             yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
 
 
-def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
+def _found(outcomes: Sequence[Outcome]) -> list[Findings]:
     """Return all findings, those of files that cannot be read, too."""
-    found = [
+    return [
         findings(one.machine, one.checked, located)
         if one.machine and one.checked
         else faults_found(one.file, one.error or KurbelError())
         for one in outcomes
     ]
+
+
+def _as_junit(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
+    found = ([finding._asdict() for finding in each.findings] for each in _found(outcomes))
+    return findings_junit([*zip((one.file for one in outcomes), found)], replace(look, encoding="utf-8"))
+
+
+def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
+    found = _found(outcomes)
     listed = [finding._asdict() for each in found for finding in each.findings]
     name, made_from = (found[0].machine, found[0].provenance) if len(found) == 1 else (None, None)
     return findings_json(name, made_from, listed, look)

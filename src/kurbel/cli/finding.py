@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import click
 
-from kurbel.cli.group import to_stderr
+from kurbel.cli.group import Progress, to_stderr
 from kurbel.cli.options import format_of
 from kurbel.designs.find import Solution, Solutions
 from kurbel.designs.find import find as found_in
@@ -61,9 +61,9 @@ def run(options: FindOptions) -> None:
         raise click.UsageError("--decimal comma: JSON has the decimal point only.")
     refuse_overwriting(options.file_name, (options.file,))
     origin = source.read(options.file)._replace(case=options.case_name).set_over(options.overrides)
-    found = found_in(
-        origin, options.vary, options.equations, options.least or "", options.greatest or "", options.conditions
-    )
+    least, greatest = options.least or "", options.greatest or ""
+    with Progress("find") as progress:
+        found = found_in(origin, options.vary, options.equations, least, greatest, options.conditions, progress)
     if options.write:
         write_out([_with_values(origin, found, _taken(found, options.take))], options.file_name, "utf-8")
         return

@@ -3,9 +3,12 @@
 import os
 import sys
 import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from io import StringIO
 from shutil import get_terminal_size
-from typing import Any, NoReturn
+from time import monotonic
+from typing import Any, NoReturn, TypeVar
 
 import click
 
@@ -20,6 +23,9 @@ from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 _DEBUG = "KURBEL_DEBUG"
+_PATIENCE = 2.0
+"""Seconds after which a terminal shows what is being done."""
+Item = TypeVar("Item")
 
 DONE, WRONG, INTERNAL, INTERRUPTED = 0, 2, 70, 130
 
@@ -50,6 +56,9 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
+        if name == "help":
+            of = f"{args[1]} " if args[1:] and args[1] in COMMANDS else ""
+            raise click.UsageError(f"no command 'help'; write 'kurbel {of}--help'", ctx)
         meant = did_you_mean(name, tuple(COMMANDS))
         way_out = "; 'kurbel forces FILE' computes a machine, 'kurbel --help' and 'kurbel COMMAND --help' explain"
         raise click.UsageError(f"no command '{name}'{meant or way_out}", ctx)
@@ -114,6 +123,49 @@ def to_stderr(message: str) -> None:
         click.echo("\n".join(_stderr_look().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
         silence(sys.stderr)
+
+
+class Progress:
+    """A line on the terminal of standard error that tells what is done, and how long the rest will take.
+
+    It comes after two seconds and is gone at the end; in a pipe and on a CI service there is none.
+    """
+
+    def __init__(self, command: str) -> None:
+        self._command, self._begun, self._wide = command, monotonic(), 0
+        self._shown = sys.stderr.isatty() and not os.environ.get("CI")
+        self._next = self._begun + _PATIENCE
+
+    def __call__(self, doing: str, share: float = 0.0) -> None:
+        """Tell what is being done; share: what is done of all, 0 if it is not known."""
+        now = monotonic()
+        if not self._shown or now < self._next:
+            return
+        self._next = now + _PATIENCE / 10
+        left = (now - self._begun) * (1 / share - 1) if share else 0.0
+        minutes = f"{left / 60:.0f} min" if left >= 100 else f"{left:.0f} s"
+        self._write(f"kurbel {self._command}: {doing}{f', {minutes} left' if share else ''}")
+
+    def counted(self, items: Iterable[Item], what: str, count: int) -> Iterator[Item]:
+        """Yield the items, so many of what they are."""
+        with self:
+            for number, one in enumerate(items):
+                self(f"{number} of {count} {what}", number / max(count, 1))
+                yield one
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._wide:
+            self._write("")
+
+    def _write(self, text: str) -> None:
+        text = _stderr_look().text(text)[: get_terminal_size().columns - 1]
+        with suppress(OSError, ValueError):
+            sys.stderr.write(f"\r{text.ljust(self._wide)}" + "\r" * (not text))
+            sys.stderr.flush()
+        self._wide = len(text)
 
 
 @click.group(

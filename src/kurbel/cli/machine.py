@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from kurbel.cli.request import Request
 
 
+_OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
+
+
 def _with_request(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_request(units: str | None, output: Output, **options: Any) -> None:
@@ -39,6 +42,7 @@ def _with_request(command: Callable[..., None]) -> Callable[..., None]:
             system = units or ("si" if output.look.format in ("csv", "json") else "metric")
             command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
 
+    with_request.__doc__ = f"{command.__doc__}\n\n    {_OF_EVERY}"
     return with_request
 
 
@@ -62,7 +66,7 @@ def motion(request: "Request") -> None:
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
 
     What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
-    positions are printed. Key values are exact and do not depend on --step. FILE may be - for standard input.
+    positions are printed.
     """
     from kurbel.report.crank import motion_report
 
@@ -79,17 +83,14 @@ def motion(request: "Request") -> None:
     "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
 )
 @click.option("--each-cycle", is_flag=True, help="A line for every measured cycle instead of the table over the angle.")
-def forces(request: "Request", cases: bool, cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
+def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spreads) -> None:
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
-    count positive. At a jump of the pressure the value just after it stands in the table. Key values are exact and
-    do not depend on --step. FILE may be - for standard input.
+    count positive. At a jump of the pressure the value just after it stands in the table.
     """
     from kurbel.report.crank import forces_report
 
-    if cases:
-        return request.print_cases()
     case = request.case(cycle)
     if not each_cycle:
         request.print(forces_report, case=case, parts=len(case.cylinders), spreads=spreads)
@@ -108,7 +109,7 @@ def flywheel(request: "Request", spreads: Spreads) -> None:
 
     Every cylinder counts at the angle of its crank; T is referred to the radius of crank 1, T_b is the share of the
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
-    FILE, which may depend on it. Key values are exact and do not depend on --step. FILE may be - for standard input.
+    FILE, which may depend on it.
     """
     from kurbel.report.turning import flywheel_report
 
@@ -124,8 +125,8 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
 
     Stresses are listed one by one in the dead centre under the full piston force, in the position of the largest
     torque, and where each place is strained most over the whole cycle; combined after Bach (sigma_res) and after
-    von Mises (sigma_v). Key values are exact and do not depend on --step. FILE needs 'crankshaft', one cylinder and
-    a pressure; it may be - for standard input.
+    von Mises (sigma_v). FILE needs 'crankshaft', one
+    cylinder and a pressure.
     """
     from kurbel.report.crank import stress_report
 
@@ -135,18 +136,15 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
 @click.command()
 @machine_table
 @cases_option
-def bearings(request: "Request", cases: bool) -> None:
+def bearings(request: "Request") -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
     The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
     and mean load, pressures, p v, and what of the surfaces is never loaded. Main bearings need 'crankshaft', whose
-    throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing. Key values
-    are exact and do not depend on --step. FILE may be - for standard input.
+    throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing.
     """
     from kurbel.report.crank import bearings_report
 
-    if cases:
-        return request.print_cases()
     request.print(bearings_report)
 
 
@@ -160,7 +158,7 @@ def balance(request: "Request", orders_only: bool) -> None:
     F_x is the free force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90 degrees
     on in the sense of rotation; M_x and M_y are their moments along the shaft; M_roll rolls the frame about it. The
     orders tell them as circles that turn with the crank and against it; what cancels is exactly 0. The best weights
-    stand for those of FILE. Key values are exact and do not depend on --step. FILE may be - for standard input.
+    stand for those of FILE.
     """
     from kurbel.report.balance import balance_report
 
@@ -178,7 +176,7 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 
     Orders count periods per turn of the shaft, so that a four-stroke cycle has halves. They are integrated piece by
     piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
-    cranks pull together. FILE may be - for standard input.
+    cranks pull together.
     """
     from kurbel.report.turning import harmonics_report
 
@@ -202,7 +200,6 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
 )
 def torsion(
     request: "Request",
-    cases: bool,
     orders: tuple[float, ...] | None,
     speeds: tuple[float, ...] | None,
     modes: int,
@@ -213,13 +210,10 @@ def torsion(
 
     Where damping and torques are given, also the steady vibration: torque and stress in every piece at the working
     speed, all orders together, and at the critical speeds that the machine meets, with orders up to 24; --columns
-    M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'; it may be -
-    for standard input.
+    M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'.
     """
     from kurbel.report.turning import Wanted, torsion_report
 
-    if cases:
-        return request.print_cases()
     if mode is not None and at is not None:
         raise click.UsageError(
             "--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out."
@@ -230,15 +224,12 @@ def torsion(
 @click.command()
 @machine_table
 @cases_option
-def delivery(request: "Request", cases: bool) -> None:
+def delivery(request: "Request") -> None:
     """Print what the pumps and compressors of FILE deliver.
 
     Of pumps the flow over the crank angle, its mean, how much it swings, and what air vessels and pipes make of it;
-    of compressors capacity, mass flow and temperature of every end and stage, by their ideal cards. Key values are
-    exact and do not depend on --step. FILE may be - for standard input.
+    of compressors capacity, mass flow and temperature of every end and stage, by their ideal cards.
     """
     from kurbel.report.delivery import delivery_report
 
-    if cases:
-        return request.print_cases()
     request.print(delivery_report)

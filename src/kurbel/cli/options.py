@@ -1,8 +1,7 @@
 """Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
-import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from typing import Any, NamedTuple, TypeVar
 
@@ -19,16 +18,20 @@ from kurbel.report.tables import Report
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-Item = TypeVar("Item")
 _MOST_STEPS = 10_000
+
+
+def _read(parse: Callable[..., float], *given: str) -> float:
+    """Return what is parsed; what cannot be is a bad parameter."""
+    try:
+        return parse(*given)
+    except UnitError as error:
+        raise click.BadParameter(str(error)) from None
 
 
 def number(text: str | float) -> float:
     """Return a finite number with a decimal point, also 10/3 or 75 %."""
-    try:
-        return parse_ratio(text) if isinstance(text, str) else text  # what holds where it is not given
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
+    return _read(parse_ratio, text) if isinstance(text, str) else text  # what holds where it is not given
 
 
 def numbers(text: str) -> tuple[float, ...]:
@@ -66,10 +69,8 @@ def speeds(text: str) -> tuple[float, ...]:
     """
     each = text.replace(":", ",").split(",")
     unit = written_unit(each[-1])
-    try:
-        found = tuple(parse_quantity(one if written_unit(one) else f"{one} {unit}".strip(), "speed") for one in each)
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
+    texts = (one if written_unit(one) else f"{one} {unit}".strip() for one in each)
+    found = tuple(_read(parse_quantity, one, "speed") for one in texts)
     if ":" in text:
         found = _stepped(found, text, "300:1500:10 rpm")
     if not all(speed > 0 for speed in found):
@@ -79,10 +80,7 @@ def speeds(text: str) -> tuple[float, ...]:
 
 def frequency(text: str) -> float:
     """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
-    try:
-        found = parse_quantity(text, "speed")
-    except UnitError as error:
-        raise click.BadParameter(str(error)) from None
+    found = _read(parse_quantity, text, "speed")
     if not found > 0:
         raise click.BadParameter(f"'{text}': a frequency is more than 0")
     return found
@@ -135,11 +133,14 @@ def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
     return every_place()
 
 
-def _columns(ctx: click.Context, begun: str) -> Iterable[str]:
-    """Return the columns of the command that may follow those named already."""
-    before, comma, _ = begun.rpartition(",")
-    known = _quantities().columns(ctx.info_name or "")
-    return [before + comma + one for one in known if one not in before.split(",")]
+def _listed(ids: Callable[[str], Iterable[str]]) -> Callable[..., list[str]]:
+    """Return what completes a list of ids of a command, by its word, by those that are not named already."""
+
+    def following(ctx: click.Context, begun: str) -> Iterable[str]:
+        before, comma, _ = begun.rpartition(",")
+        return [before + comma + one for one in ids(ctx.info_name or "") if one not in before.split(",")]
+
+    return completing(following)
 
 
 def _names(ctx: click.Context, of: str) -> list[str]:
@@ -157,6 +158,8 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     return (*(one.id for one in PICTURES), "all")
 
 
+complete_columns = _listed(lambda command: _quantities().columns(command))
+complete_key_values = _listed(lambda _: dict.fromkeys(one.id for one in _quantities().all_key_values))
 complete_key = completing(_keys)
 complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
 complete_cylinder = completing(lambda ctx, _: _names(ctx, "cylinders"))
@@ -186,6 +189,11 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
         return command
 
     return decorate
+
+
+def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
+    """Return an option that is completed by ids of key values."""
+    return click.option(*names, shell_complete=complete_key_values, **how)
 
 
 case_option = click.option(
@@ -231,7 +239,7 @@ columns_option = click.option(
     type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
-    shell_complete=completing(_columns),
+    shell_complete=complete_columns,
 )
 cylinder_option = click.option(
     "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
@@ -244,7 +252,7 @@ part_options = stacked(
         "everything",
         is_flag=True,
         expose_value=False,
-        help="Everything, on a low terminal, too, not a first selection.",
+        help="On a low terminal, print everything instead of a first selection.",
     ),
 )
 units_option = click.option(
@@ -363,12 +371,3 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 Spreads = tuple[tuple[str, str], ...]
 """Dotted keys, each with its standard uncertainty as a text."""
-
-
-def with_bar(items: Iterable[Item], label: str, **how: Any) -> Iterator[Item]:
-    """Yield what is computed one by one, with a bar on the terminal; how: it looks, see `click.progressbar`."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    with click.progressbar(items, file=sys.stderr, label=label, **how) as bar:
-        yield from bar

@@ -1,12 +1,11 @@
 """The commands that draw, write a whole page, check, or compare methods: plot, report, check, accuracy."""
 
 import os
-import sys
 import time
-from collections.abc import Callable
 
 import click
 
+from kurbel.cli.group import Progress
 from kurbel.cli.options import (
     Output,
     complete_picture,
@@ -24,9 +23,6 @@ from kurbel.cli.options import (
 from kurbel.render import Look
 from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.page import write_entries
-
-_PATIENCE = 1.0
-"""Seconds after which a terminal is told what is being done."""
 
 
 @click.command()
@@ -63,33 +59,21 @@ def report(
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
     refuse_overwriting(file_name, files)
-    progress = progress_of("kurbel report")
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
     keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
     system = units or "metric"
-    if len(cases) == 1:
-        load_cases = cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
-        document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
-    else:
-        document = side_by_side(cases, keys, system, progress)
+    with Progress("report") as progress:
+        if len(cases) == 1:
+            load_cases = cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
+            document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
+        else:
+            document = side_by_side(cases, keys, system, progress)
     document = document._replace(title=title or document.title)
-    progress("writing")
     look = Look("html", comma=decimal == "comma", digits=digits)
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     today = time.strftime("%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime())
     write_out(report_page(document, look, today), file_name, "utf-8")
-
-
-def progress_of(command: str) -> Callable[[str], None]:
-    """Return what is called with what is done next, of which a terminal is told from the second second on."""
-    begun = time.monotonic()
-
-    def progress(doing: str) -> None:
-        if sys.stderr.isatty() and time.monotonic() - begun > _PATIENCE:
-            click.echo(f"{command}: {doing} …", err=True)
-
-    return progress
 
 
 @click.command()
@@ -99,6 +83,9 @@ def progress_of(command: str) -> Callable[[str], None]:
 @click.option("--list", "listed", is_flag=True, help="List the pictures of this machine; without FILE, all pictures.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
+@click.option(
+    "--poster", "size", metavar="A0|...|A5", help="The machine in section as a sheet to hang, to a pdf or svg."
+)
 @cylinder_option
 @units_option
 @number_options
@@ -111,6 +98,7 @@ def plot(
     listed: bool,
     file_name: str | None,
     angles: tuple[float, ...] | None,
+    size: str | None,
     cylinder: str | None,
     units: str | None,
     decimal: str,
@@ -134,7 +122,15 @@ def plot(
         raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
     if file_name == "-":
         file_name = None
-    if file_name is not None:
+    if size is not None:
+        from kurbel.render.poster import check_poster, draw_poster
+        from kurbel.report.summary import facts_of, subtitle_of, tiles
+
+        size = check_poster(size, file_name)
+        if set(names) - {"mechanism"} or listed:
+            raise click.UsageError("--poster draws the mechanism alone; leave other pictures and --list out.")
+        names = ("mechanism",)
+    elif file_name is not None:
         check_file(file_name)
     options = PictureOptions(units or "metric", cylinder, angles)
     case = None if file is None else case_of(file, case_name, overrides, file_name)
@@ -143,7 +139,11 @@ def plot(
         write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
         return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    draw(pictures(case, names, options), look, file_name)
+    drawn = pictures(case, names, options)
+    if size is not None and file_name is not None:
+        facts = tiles(facts_of(case).values(), options.system)
+        return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
+    draw(drawn, look, file_name)
 
 
 @click.command()
@@ -153,8 +153,9 @@ def plot(
     "--format",
     "-f",
     "format",
-    type=click.Choice(["table", "json"]),
-    help="json: every finding with its place. By the suffix of --output, or table, if not given.",
+    type=click.Choice(["table", "json", "junit"]),
+    help="json: every finding with its place; junit: XML that CI services read. By the suffix of --output, or table, "
+    "if not given.",
 )
 @output_option
 @width_option
@@ -170,13 +171,11 @@ def check(
 
     Where the file gives 'limits', hold the key values to them, in every one of its 'cases'; where it gives 'expect',
     compare them with the figures there. As json every fault, limit, figure and warning has file, line, column, key,
-    message and severity. Of several files all are checked; the exit status is the gravest one.
+    message and severity; as junit each is a test. Of several files all are checked; the exit status is the gravest one.
     """
     from kurbel.cli.checking import check_files
 
-    written = format_of(format, file_name)
-    if written not in ("table", "json"):
-        raise click.UsageError(f"kurbel check writes table or json, no {written}; give {file_name} another suffix.")
+    written = format_of(format, file_name, {".json": "json", ".xml": "junit"})
     return check_files(files, case_name, overrides, written, file_name, width)
 
 
@@ -222,7 +221,8 @@ def accuracy(
         check_file(picture, "--plot")
     machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
     uncertain = data_uncertainty(machine) if machine and machine.uncertainty else ()
-    report = accuracy_report(machine, quick, loads, uncertain)
+    with Progress("accuracy") as progress:
+        report = accuracy_report(machine, quick, loads, uncertain, progress)
     output.write(report)
     if picture is not None:
         draw_file([accuracy_picture(report)], output.look, picture)

@@ -152,12 +152,10 @@ def keys(key: str | None) -> None:
       kurbel keys
       kurbel keys masses.connecting_rod.share
     """
-    from kurbel.report.keys import every_place, places_at
+    from kurbel.report.keys import described, every_place
 
-    if key is None:
-        write_entries([(path, ones[0].line) for path, ones in every_place().items()])
-    else:
-        write_entries([line for one in places_at(key) for line in one.full])
+    whole = [(path, ones[0].line) for path, ones in every_place().items()]
+    write_entries(whole if key is None else described(key))
 
 
 @click.command()

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import click
 from click.core import ParameterSource
 
-from kurbel.cli.options import Output, Spreads, with_bar
+from kurbel.cli.group import Progress
+from kurbel.cli.options import Output, Spreads
 from kurbel.errors import UsageError
 from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
@@ -47,7 +47,8 @@ def cases_of(machine: Machine) -> list[Case]:
 class Request:
     """What a command that prints a table for a machine is called with, by the names of the options.
 
-    units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle.
+    units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle;
+    cases: a row for each load case instead of all else.
     """
 
     command: str
@@ -64,6 +65,7 @@ class Request:
     where: str | None = None
     over: str | None = None
     compare: bool = False
+    cases: bool = False
 
     def given(self, **others: object) -> list[str]:
         """Return which of these options are given; others: some that only one command has."""
@@ -82,13 +84,15 @@ class Request:
 
         also: see `write`.
         """
+        if self.cases:
+            return self._print_cases()
         case = case or self.case()
         end = 360.0 * case.machine.revolutions if COMMANDS[self.command].turns else 360.0
         if self.command == "balance":
             end = case.balance.cycle
         self.write(report(case, self.frame(end, parts), *how), case, **also)
 
-    def print_cases(self) -> None:
+    def _print_cases(self) -> None:
         """Print a row for each load case of the file. Raises UsageError where it has none."""
         given = self.given(**{"--columns": None, "--case": self.case_name or None})
         if given:
@@ -124,8 +128,10 @@ class Request:
         if case and spreads is not None and (spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
-            bar = partial(with_bar, label="drawn machines")
-            report = with_uncertainty(report, case, spreads, self.units, bar)
+            progress = Progress(self.command)
+            report = with_uncertainty(
+                report, case, spreads, self.units, lambda items: progress.counted(items, "machines", len(items))
+            )
         context = click.get_current_context()
         names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
         given = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import click
 
-from kurbel.cli.group import to_stderr
-from kurbel.cli.options import format_of, with_bar
+from kurbel.cli.group import Progress, to_stderr
+from kurbel.cli.options import format_of
 from kurbel.designs.chosen import pareto_front, read_aim, read_condition, summary, summary_heads
 from kurbel.designs.plan import MOST_ROWS, shard
 from kurbel.designs.sweep import Design, Spec, Sweep
@@ -80,11 +80,13 @@ def run(wanted: SweepOptions) -> None:
     conditions = [read_condition(one, sweep.heads, sweep.texts) for one in wanted.conditions]
     aims = [read_aim(one, sweep.heads, "--pareto") for one in wanted.pareto or ()]
     order = read_aim(wanted.sort, sweep.heads, "--sort") if wanted.sort else None
+    for_people = written in ("table", "markdown")
     if wanted.summary:
         titles = Titles(summary_heads(sweep.heads), row="column")
     else:
         types = sweep.types() if written == "parquet" else ()
-        titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts, types=types)
+        heads = sweep.shown if for_people else [(one.id, place) for place, one in enumerate(sweep.heads)]
+        titles = Titles(tuple((name, sweep.heads[place].unit) for name, place in heads), sweep.texts, types=types)
     look = Look(written, comma=wanted.decimal == "comma", digits=wanted.digits)
     headed, kept = rows.start == 0, Kept()
     if wanted.resume:
@@ -96,11 +98,14 @@ def run(wanted: SweepOptions) -> None:
         found: Iterable[Design] = computed
         # else the rows themselves go to the terminal
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
-            found = with_bar(found, "designs", length=len(rows), update_min_steps=100)
+            found = Progress("sweep").counted(found, "designs", len(rows))
         chosen: Iterable[Design] = (row for row in found if all(one.holds(row) for one in conditions))
         chosen = pareto_front(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen
-        chosen = summary(chosen, sweep.heads) if wanted.summary else chosen
+        if wanted.summary:
+            chosen = summary(chosen, sweep.heads)
+        elif for_people:
+            chosen = (row._replace(values=tuple(row.values[place] for _, place in sweep.shown)) for row in chosen)
 
         def early(left: str) -> None:
             resumable = named and written in _LINES and in_order

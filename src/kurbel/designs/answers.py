@@ -16,7 +16,7 @@ from kurbel.machine.indicator import Card
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, ambiguity, called, joined
+from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
 from kurbel.report.frame import Subject, subjects_of, too_large
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
@@ -110,7 +110,7 @@ def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tu
     if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
         return found
     if not ids or ambiguity(name, ids):
-        near = did_you_mean(name, tuple(one.id for one in declared))
+        near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"{option}: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
     command = every_quantity().commands_of(ids[0])
     command = ("forces", *command) if "forces" in command and case.machine.cylinders else command

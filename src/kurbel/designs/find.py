@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import groupby, product
 from typing import NamedTuple
 
@@ -95,6 +95,7 @@ def find(
     least: str = "",
     greatest: str = "",
     conditions: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
 ) -> Solutions:
     """Return the values of keys of a machine file that give wanted key values, or an extreme one.
 
@@ -109,7 +110,7 @@ def find(
         raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions)
+    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions, progress)
     solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
     findings = designs.findings(solutions, jumps)
     if not solutions:
@@ -121,8 +122,15 @@ class _Designs:
     """Designs of a file by their places (n, keys), from 0 to 1 in each range, and all that was computed of them."""
 
     def __init__(
-        self, origin: Origin, vary: Sequence[str], wanted: Sequence[str], aim: str, conditions: Sequence[str]
+        self,
+        origin: Origin,
+        vary: Sequence[str],
+        wanted: Sequence[str],
+        aim: str,
+        conditions: Sequence[str],
+        progress: Callable[[str], None] | None = None,
     ) -> None:
+        self.progress = progress
         spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         if len({path_of(key) for key in keys}) < len(keys):
@@ -155,11 +163,11 @@ class _Designs:
 
         For a design that fails both texts are the reason of the failure.
         """
+        if self.progress:
+            self.progress(f"{len(self.computed)} designs computed")
         numbers, count = self.numbers(places), len(self.answers)
-        rows, found = (
-            numbers.tolist(),
-            answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits))),
-        )
+        rows = numbers.tolist()
+        found = answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits)))
         values, broken, unmet = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
         for number, (row, own) in enumerate(zip(rows, found)):
             if isinstance(own, str):

@@ -1,6 +1,7 @@
 """A sweep: rows of inputs and key values, computed in order, chunk by chunk, here or by other processes."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, lru_cache
 from itertools import chain, pairwise
@@ -16,9 +17,11 @@ from kurbel.designs.binding import Batch, Binder, written_texts
 from kurbel.designs.plan import Input, Plan, read_axis
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
+from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.given import case_names
 from kurbel.numerics.extreme import size_of
+from kurbel.report.alike import grouped, together
 from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
 
@@ -150,6 +153,34 @@ class Sweep:
             name = f"{one.subject}.{one.quantity.id}" if owned else one.quantity.id
             heads.append(Head(f"{name}_at" if one.angle else name, unit, False, one.kind, one.quantity.listed))
         return tuple(heads)
+
+    @cached_property
+    def shown(self) -> list[tuple[str, int]]:
+        """The heads for people, each with the place of its values: key values of cylinders that work alike once.
+
+        They are equal in every row if they are in one, unless a key of a single cylinder varies, or the load case.
+        """
+        heads = [(head.id, place) for place, head in enumerate(self.heads)]
+        cylinders = self._binder.machine.cylinders
+        if self.spec.cases or any(re.match(r"cylinders\W*\d", key) for key in self._keys):
+            return heads
+        alike = {one.name: number for number, group in enumerate(gathered(cylinders, work_alike)) for one in group}
+        values = answers_of([Batch(self._binder.machine, (0,))], self.requested)[0]
+        owned = dict(zip(range(len(self._keys), len(heads)), zip(self.requested, values)))
+
+        def content(head: tuple[str, int]) -> Hashable:
+            answer, value = owned.get(head[1], (None, None))
+            if answer is None or not isinstance(value, float):
+                return head
+            what, _, owner = answer.subject.rpartition(" of ")
+            return (what, alike[owner], answer.quantity.id, answer.angle, f"{value:.9g}") if owner in alike else head
+
+        def called(group: list[tuple[str, int]]) -> str:
+            names = [owned[place][0].subject for _, place in group]
+            return f"{together(names)}.{group[0][0].rpartition('.')[2]}"
+
+        groups = grouped(heads, content)
+        return [(called(group) if len(group) > 1 else group[0][0], group[0][1]) for group in groups]
 
     def types(self) -> list[str]:
         """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""

@@ -22,8 +22,10 @@ LETTERS = "*+ox#@"
 _BLANK = 0x2800
 _DOTS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]])
 """Bits of the dots of a character, four down and two across."""
-_ROLES = {"member": "curve0", "arrow": "curve1"}
+_ROLES = {"member": "curve0", "arrow": "curve1", "force": "curve1"}
 """How parts of mechanisms are drawn; others are thin lines."""
+_OUTLINED = {"wall": "rule", "metal": "curve0", "rod": "curve0", "web": "curve2"}
+"""Looks of bodies whose outlines are drawn."""
 
 
 class Canvas:
@@ -53,7 +55,8 @@ class Canvas:
             self._roles[row][column] = role
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
-        """Write a text over what is drawn."""
+        """Write a text over what is drawn, in the last row if it is below that."""
+        row = min(row, len(self._letters) - 1)
         for letter in text:
             wide = width(letter)
             if not wide:  # a mark on the letter before it, as the dots of θ̈
@@ -102,6 +105,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     if panel.plain:
         used = [number for number, row in enumerate(rows) if "".join(piece.text for piece in row).strip()]
         yield from rows[used[0] : used[-1] + 1]
+        yield from (line(one, "unit") for one in folded(look.text(panel.footnote), wide) if one)
         return
     at = {int(place // 2): text for place, text in up}
     for number, row in enumerate(rows):
@@ -121,6 +125,10 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
     """Draw curves, or bars where there are none, with their labels; areas between curves are left blank."""
     panel = frame.panel.at_moment(0)
     drawn = []
+    for body in panel.bodies:
+        for of, lines in body.outlines():
+            if of in _OUTLINED:
+                drawn.append((_OUTLINED[of], frame.place(lines[0].real, lines[0].imag)))
     for curve, look in zip(panel.curves, looks_of(panel)):
         role = f"curve{look}" if curve.kind in ("line", "dots") else _ROLES.get(curve.kind, "rule")
         drawn += [
@@ -136,6 +144,10 @@ def _draw(canvas: Canvas, frame: PanelFrame, dot: Array) -> None:
         ends = frame.y.place(np.array([shade.low[0], shade.high[0]])) / dot[1]
         for place in np.arange(np.ceil(start), end, 1 if shade.gain else 2):
             canvas.line(np.full(2, place), ends, "curve0" if shade.gain else "curve1")
+    for note in panel.notes:
+        at, text = complex(frame.place(note.place.real, note.place.imag)), frame.look.text(note.text)
+        left = min(max(round(at.real - width(text) / 2), 0), canvas.columns - width(text))
+        canvas.write(left, round(at.imag / 2), text, "head" if note.strong else "unit")
     for label in frame.labels(named=True):
         role = "head" if label.look is None else f"curve{label.look}"
         canvas.write(round(label.left), round(label.top / 2), label.text, role)

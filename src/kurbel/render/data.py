@@ -3,8 +3,10 @@
 import csv
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from html import escape
 from itertools import chain, repeat
 from typing import Any
 
@@ -149,6 +151,42 @@ def findings_json(
     """Yield a check as one JSON object in pieces, a line for every finding; machine: None where the file has none."""
     head = {"kurbel": __version__, "format": FORMAT, "command": "check", "machine": machine}
     return chain(_pieces({**head, **_made_from(made_from), "findings": findings}, "\n", look), "\n")
+
+
+def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], look: Look) -> Iterator[str]:
+    """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
+
+    An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
+    the case of a limit has no values, so that a CI service compares runs by it, and none occurs twice. Elements and
+    attributes are those of the schema of Jenkins.
+    """
+
+    def quoted(text: str) -> str:
+        return escape(look.data(text))
+
+    failures = sum(one["severity"] == "error" for _, found in checks for one in found)
+    total = sum(max(len(found), 1) for _, found in checks)
+    yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="kurbel" tests="{total}" failures="{failures}">\n'
+    for file, found in checks:
+        name, broken = quoted(file), sum(one["severity"] == "error" for one in found)
+        yield f'<testsuite name="{name}" tests="{max(len(found), 1)}" failures="{broken}" errors="0" skipped="0">\n'
+        if not found:  # a file of results without a test counts as a fault
+            yield f'<testcase classname="{name}" name="valid machine"/>\n'
+        names = Counter[str]()
+        for one in found:
+            message, key = one["message"], one["key"] or ""
+            own = message.partition(": ")[0] if key.startswith(("limits", "expect")) else message
+            names[own] += 1
+            own += f" ({names[own]})" if names[own] > 1 else ""
+            yield f'<testcase classname="{name}" name="{quoted(own)}">'
+            if one["severity"] == "error":
+                place = ":".join(str(part) for part in (file, one["line"], one["column"]) if part)
+                yield f'<failure message="{quoted(message)}" type="error">{quoted(f"{place}: {message}")}</failure>'
+            else:
+                yield f"<system-out>{quoted(message)}</system-out>"
+            yield "</testcase>\n"
+        yield "</testsuite>\n"
+    yield "</testsuites>\n"
 
 
 def _made_from(given: Provenance | None) -> dict[str, Any]:

@@ -20,15 +20,18 @@ _SHEET = b"""#set document(date: none)
 _DOTS_PER_INCH = 192.0
 
 
-def check_file(file_name: str, option: str = "--output") -> str:
-    """Return svg, png or pdf; raises UsageError where none can be drawn to this file, before anything is computed."""
+def check_file(file_name: str, option: str = "--output", poster: bool = False) -> str:
+    """Return svg, png or pdf; raises UsageError where none can be drawn to this file, before anything is computed.
+
+    poster: as a sheet of paper, for which svg needs typst, too.
+    """
     kind = os.path.splitext(file_name)[1].lower()[1:]
     if kind not in ("svg", "png", "pdf"):
         raise UsageError(f"{option} {file_name}: the name of a picture ends in .svg, .png or .pdf")
-    if kind != "svg" and importlib.util.find_spec("typst") is None:
+    if (kind != "svg" or poster) and importlib.util.find_spec("typst") is None:
         raise UsageError(
-            f"{option} {file_name}: a {kind} needs typst, which is not installed: "
-            "pip install 'kurbel[plot]'; svg needs no package"
+            f"{option} {file_name}: a {'poster' if poster else kind} needs typst, which is not installed: "
+            f"pip install 'kurbel[plot]'{'' if poster else '; svg needs no package'}"
         )
     return kind
 

@@ -21,7 +21,7 @@ WARN, WARNED = ("#d9a514", "#b98a10"), ("#fdf3d8", "#33291a")
 
 def html(report: Report, look: Look) -> Iterator[str]:
     """Yield the report as a page of its own."""
-    yield from page(look.text(report.title), document(report, look, Html(1)))
+    yield from page(look.text(report.title), document(report, look, Html()))
 
 
 def page(title: str, main: Iterable[str], more_style: str = "") -> Iterator[str]:

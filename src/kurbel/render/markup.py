@@ -59,16 +59,12 @@ class Markdown:
 
 
 class Html:
-    """What is in the body of a page of HTML; level: of the heading of the report."""
+    """What is in the body of a page of HTML."""
 
     across: int | None = _ON_PAPER
-    paragraph, strong = "<p>{}</p>\n", "<b>{}</b>"
-    item, list_end = "<li>{}</li>\n", "</ul>\n"
+    title, paragraph, strong = "<h1>{}</h1>\n", "<p>{}</p>\n", "<b>{}</b>"
+    list_head, item, list_end = "<h2>{}</h2>\n<ul>\n", "<li>{}</li>\n", "</ul>\n"
     table_end = "</tbody></table></div>\n"
-
-    def __init__(self, level: int = 2) -> None:
-        self.title = f"<h{level}>{{}}</h{level}>\n"
-        self.list_head = f"<h{level + 1}>{{}}</h{level + 1}>\n<ul>\n"
 
     def text(self, plain: str) -> str:
         """Return a text with everything escaped that HTML would take for markup."""
@@ -110,9 +106,10 @@ class Html:
             f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
             for one, (symbol, unit) in zip(table.columns, heads)
         )
+        titled = f"<caption>{in_thousands(caption, '&#8239;')}</caption>" if caption else ""
         return (
             f'<div class="wide" tabindex="0" role="region" aria-label="{caption or "values over the crank angle"}">'
-            f"<table>{f'<caption>{caption}</caption>' if caption else ''}\n"
+            f"<table>{titled}\n"
             f"<thead><tr>{''.join(cells)}</tr></thead>\n<tbody>\n"
         )
 

@@ -181,9 +181,10 @@ class PanelFrame:
     def __init__(self, panel: Panel, look: Look, medium: Medium, wide: float, tall: float) -> None:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
+        bare = not panel.bodies  # which leave no air around them
         spread = max((float(np.nanmax(one) - np.nanmin(one)) for one in (*across, *up) if one.size), default=0.0)
-        around = 0.1 * spread if panel.equal else 0.0
-        x, y = scale_of(panel.x, across, panel.plain, around), scale_of(panel.y, up, True, around)
+        around = 0.1 * spread if panel.equal and bare else 0.0
+        x, y = scale_of(panel.x, across, panel.plain and bare, around), scale_of(panel.y, up, bare, around)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
             least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
@@ -203,6 +204,11 @@ class PanelFrame:
             self.panel = panel._replace(x=panel.x._replace(name=Words(key), names=numbers))
         self.below = folded(axis_text(self.panel.x, look), int(wide / medium.letter))
         """What is written below the axis, line by line."""
+
+    @property
+    def points_per_unit(self) -> float:
+        """How long one unit of the x-axis is."""
+        return (self.x.end - self.x.start) / (self.x.high - self.x.low)
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
@@ -260,7 +266,7 @@ class PanelFrame:
         for curve in panel.curves:
             if curve.kind == "faint" and curve.name.symbol:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[-1], curve.y[-1])))
-            if curve.kind == "arrow" and curve.name.symbol and named:
+            if curve.kind in ("arrow", "force") and curve.name.symbol and named:
                 yield Label(symbol(curve.name, look), complex(self.place(curve.x[1], curve.y[1])))
 
         # of several curves each where it is farthest from the others

@@ -1,5 +1,6 @@
 """The long report as one page of HTML: a first page, answers with pictures and tables, and the input last."""
 
+import re
 from collections.abc import Iterable, Iterator
 from html import escape
 
@@ -13,6 +14,9 @@ from kurbel.render.text_tables import TextTable, key_value_table, part_name, pla
 from kurbel.report.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
+_OUT = Html()
+_CLOSE = 5
+"""Digits of a value next to its bound."""
 _STYLE = """\
 main{max-width:61rem;padding:1.5rem 1rem}
 h1{font-size:1.9rem;line-height:1.2;margin:0 0 .2rem}
@@ -55,7 +59,7 @@ def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
 def _parts(long: Document, look: Look, date: str) -> Iterator[str]:
     """Yield title, first page, links, sections, and what it was made from."""
     yield f"<header>\n<h1>{_text(long.title, look)}</h1>\n"
-    yield from (f'<p class="sub">{_text(one, look)}</p>\n' for one in long.subtitles if one)
+    yield from (f'<p class="sub">{_OUT.name(sentence_text(one, look))}</p>\n' for one in long.subtitles if one)
     yield "</header>\n"
     first = "".join(_item(one, look) for one in long.summary)
     yield f'<section id="summary" aria-label="Summary">\n{first}</section>\n'
@@ -67,7 +71,7 @@ def _parts(long: Document, look: Look, date: str) -> Iterator[str]:
         yield "</section>\n"
     yield f"<footer>\n<p>{_text(date, look)}, kurbel {__version__}</p>\n"
     for one in long.provenance:
-        yield from listed("Made from", _made_from(one), look, Html(1))
+        yield from listed("Made from", _made_from(one), look, _OUT)
     yield "</footer>\n"
 
 
@@ -90,11 +94,11 @@ def _item(item: Item, look: Look) -> str:
     if isinstance(item, Facts):
         return f'<div class="facts">\n{"".join(_fact(one, look) for one in item.facts)}</div>\n'
     if isinstance(item, Notice):
-        return f'<p class="notice {item.kind}">{Html().sentence(sentence_text(item.text, look))}</p>\n'
+        return f'<p class="notice {item.kind}">{_prose(item.text, look)}</p>\n'
     if isinstance(item, Pair):
         sides = "".join(_figure(one, look) if one else "<div></div>\n" for one in item)
         return f'<div class="pair">\n{sides}</div>\n'
-    return f"<p>{Html().sentence(sentence_text(item, look))}</p>\n"
+    return f"<p>{_prose(item, look)}</p>\n"
 
 
 def _answers(report: Report, look: Look) -> Iterator[str]:
@@ -102,24 +106,23 @@ def _answers(report: Report, look: Look) -> Iterator[str]:
     for part in report.all_parts:
         if part.key_values:
             yield from written(
-                key_value_table(part_name(report, part, look) or "Key values", part.key_values, look), Html()
+                key_value_table(part_name(report, part, look) or "Key values", part.key_values, look), _OUT
             )
     yield from _written(of_places(report, look, Html.across))
-    yield from (f"<p>{Html().sentence(sentence_text(one, look))}</p>\n" for one in report.notes)
+    yield from (f"<p>{_prose(one, look)}</p>\n" for one in report.notes)
 
 
 def _written(tables: Iterable[TextTable]) -> Iterator[str]:
-    return (piece for table in tables for piece in written(table, Html()))
+    return (piece for table in tables for piece in written(table, _OUT))
 
 
 def _fact(one: Fact, look: Look) -> str:
     """Return a key value as a tile: what it is, its value, its symbol with its place."""
-    out = Html()
-    unit = f" <small>{out.text(look.unit(one.unit))}</small>" if one.unit else ""
+    unit = f"{' ' * (one.unit != 'deg')}<small>{_OUT.text(look.unit(one.unit))}</small>" if one.unit else ""
     at = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}°"
     place = " ".join(filter(None, (look.text(one.where), at)))
-    value = f"<small>{_text(one.title, look)}</small><br><b>{out.number(_number(one.value, look))}</b>{unit}"
-    return f"<p>{value}<br><small>{out.symbol(look.text(one.symbol))} {out.text(place)}</small></p>\n"
+    value = f"<small>{_text(one.title, look)}</small><br><b>{_OUT.number(_number(one.value, look))}</b>{unit}"
+    return f"<p>{value}<br><small>{_OUT.symbol(look.text(one.symbol))} {_OUT.text(place)}</small></p>\n"
 
 
 def _number(value: float, look: Look) -> str:
@@ -129,7 +132,7 @@ def _number(value: float, look: Look) -> str:
 def _figure(picture: Picture, look: Look) -> str:
     label = _text(picture.heading, look)
     drawn = f'<div class="wide" tabindex="0" role="region" aria-label="{label}">{svg(picture, look)}</div>'
-    caption = f"<b>{label}.</b> {Html().sentence(look.text(picture.text))}"
+    caption = f"<b>{label}.</b> {_prose(picture.text, look)}"
     return f"<figure>\n<figcaption>{caption}</figcaption>\n{drawn}\n</figure>\n"
 
 
@@ -144,11 +147,21 @@ def _text_table(grid: Grid, look: Look) -> TextTable:
 
 def _shown(cell: Shown, head: str, look: Look) -> str:
     if isinstance(cell, tuple):
-        return f"{_number(cell[0], look)} {look.unit(cell[1])}".replace(" °", "°").strip()
+        number = look.counted(*single(cell[0], look.digits or _CLOSE, look.comma))
+        return f"{number} {_powers(look.unit(cell[1]))}".replace(" °", "°").strip()
     if isinstance(cell, float):
         return _number(cell, look)
-    return look.unit(cell) if head == "Unit" else sentence_text(cell, look)
+    return look.unit(cell) if head == "Unit" else _powers(cell) if head == "Bound" else sentence_text(cell, look)
+
+
+def _powers(unit: str) -> str:
+    """Return a unit as a file has it, `cm2`, with its powers above the line, and a minus sign in place of a hyphen."""
+    return re.sub(r"(?<=[a-z])[23]\b", lambda power: "²³"[int(power[0]) - 2], re.sub(r"^-", "−", unit))
 
 
 def _text(text: str, look: Look) -> str:
     return escape(look.text(text))
+
+
+def _prose(text: str, look: Look) -> str:
+    return _OUT.sentence(sentence_text(text, look))

@@ -20,6 +20,7 @@ from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 
 Loads = Callable[[str], Machine]
+Progress = Callable[[str, float], None]
 """Reads the text of a machine file: only the command line knows how."""
 NUMERICAL = "numerical_error"
 """Id of the table that the picture is drawn from."""
@@ -102,17 +103,24 @@ _NOTES = (
 
 
 def accuracy_report(
-    machine: Machine | None, quick: bool, loads: Loads, uncertain: Sequence[trials.Difference] = ()
+    machine: Machine | None,
+    quick: bool,
+    loads: Loads,
+    uncertain: Sequence[trials.Difference] = (),
+    progress: Progress | None = None,
 ) -> Report:
     """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
 
-    uncertain: what the uncertainties of the machine's data make of its quantities.
+    uncertain: what the uncertainties of the machine's data make of its quantities; progress: called with the name of
+    each scene and the share of them that is done.
     """
     scenes = [(machine, 0)] if machine else [(loads(one.text), one.turns) for one in _SCENES if one.quick or not quick]
     parts: list[Part] = []
     notes = [*_NOTES]
     with np.errstate(all="ignore"):
-        for one, turns in scenes:
+        for number, (one, turns) in enumerate(scenes):
+            if progress:
+                progress(one.name, number / len(scenes))
             degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
             rows, lacking = trials.examined(one, degrees, quick)
             heavy = any(cylinder.masses or cylinder.pistons for cylinder in one.cylinders)

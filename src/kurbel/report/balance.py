@@ -3,6 +3,7 @@
 import cmath
 import math
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
@@ -158,9 +159,10 @@ def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
 
     tables, best = [], zip("AB", balance.best_in_planes)
     rows = [row(f"counterweight {end}", one.place, one.product) for end, one in best if one.product]
-    for one in balance.best_shafts:
-        sense = "with" if one.order > 0 else "against"
-        rows.append(row(f"shaft n = {abs(one.order)}, {sense} the crank", one.place, one.product))
+    for order, weights in groupby(balance.best_shafts, lambda one: one.order):
+        name, given = f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank", [*weights]
+        for end, one in zip("AB", given):
+            rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
     if rows:
         title = "Counterweights in two planes, and balance shafts"
         tables.append(place_table("best_weights", title, ("weight",), WEIGHTS, rows, system))

@@ -32,7 +32,7 @@ _ROWS = (
         "Forces, work and friction loss of every cylinder.",
         _STALLS,
         "Forces",
-        first="x theta p_head P N T M_out c_m b_max P_max P_min N_max T_max T_min power mean_pressure friction_work",
+        first="x theta p_head P N T M_out c_m b_max P_max P_min N_max T_max T_min power mean_pressure",
     ),
     Command(
         "flywheel",

@@ -7,7 +7,6 @@ import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.report.alike import equal_loads, grouped
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values, subjects_of
@@ -29,7 +28,6 @@ from kurbel.report.warnings import (
     rod_ratio_notes,
     shell_verdict,
 )
-from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import OF_CYCLES
@@ -163,31 +161,15 @@ def bearings_report(case: Case, frame: Frame) -> Report:
     return report._replace(group="bearings")
 
 
-def equal_bearings(case: Case) -> list[list[Bearing]]:
-    """Return the pins and main bearings, those together that carry equal loads."""
+def equal_parts(case: Case, command: str) -> list[list[Subject]]:
+    """Return the cylinders, or the pins and bearings, those together whose key values of a command are equal."""
 
-    def load(pair: tuple[Subject, Bearing]) -> Hashable:
-        one = pair[0]
-        return equal_loads(one.name, one.of, shown_key_values(one.key_values("bearings"), "si"))
+    def figures(one: Subject) -> Hashable:
+        kind = (one.name, one.of) if command == "bearings" else ("", "")
+        return equal_loads(*kind, shown_key_values(one.key_values(command), "si"))
 
-    pairs = zip(subjects_of(case, "bearings"), case.bearings.parts)
-    return [[part for _, part in group] for group in grouped(pairs, load)]
-
-
-def equal_cylinders(case: Case, command: str, name: str | None = None) -> list[list[CylinderForces]]:
-    """Return the cylinders, or the one of this name, those together whose key values of a command are equal."""
-    wanted = [one for one in case.cylinders if name in (None, one.drive.name)]
-    classes = gathered(wanted, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
-    if len(classes) < 2:
-        return classes
-    subjects = {one.name: one for one in subjects_of(case, command)}
-
-    def figures(equal: list[CylinderForces]) -> Hashable:
-        one = subjects[equal[0].drive.name]
-        return equal_loads("", "", shown_key_values(one.key_values(command), "si"))
-
-    groups = [{one.drive.name for equal in group for one in equal} for group in grouped(classes, figures)]
-    return [[one for one in wanted if one.drive.name in names] for names in groups]
+    subjects = subjects_of(case, command)
+    return grouped(subjects, figures) if len(subjects) > 1 else [subjects]
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:

@@ -17,7 +17,7 @@ from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Lists, Quantity, called
+from kurbel.quantity import Lists, Quantity, called, in_sentences
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
@@ -230,11 +230,9 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     if found := called(name, key_values.values()):
         symbol = key_values[found[0]].symbol
         return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
-    near = ""
+    near = in_sentences(name, there.values())
     for some in (there, known):
         near = near or did_you_mean(name, tuple(word for one in some.values() for word in (one.id, one.symbol)))
-    if not near and len(name) > 2 and (ids := [one.id for one in there.values() if name.lower() in one.text.lower()]):
-        near = f"; it is in the sentences of {', '.join(ids)}"
     others = ", ".join(id for id in known if id not in there)
     listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
     return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, listed))})"

@@ -63,19 +63,25 @@ def every_place() -> dict[str, list[ListedKey]]:
     return places
 
 
-def places_at(path: str) -> list[ListedKey]:
-    """Return the key at a dotted path, as messages and `--set` write it; raises UsageError if there is none."""
+def described(path: str) -> list[tuple[str, str]]:
+    """Return heads with their texts: the key at a dotted path, as messages and `--set` write it; or the keys below it.
+
+    Raises UsageError if there are none.
+    """
     places = every_place()
+    above = dict.fromkeys(name[:end] for name in places for end, sign in enumerate(f"{name}.") if sign == ".")
     if not path.strip(". "):
         raise UsageError("no key is named; 'kurbel keys' without one lists them all")
     steps = _steps(path)
     if len(steps) > 1 and steps[0] == "cylinders":
         inner = steps[2:] if steps[1] == "each" else steps[1:]
-        steps = inner if inner and ".".join(inner) in places else steps
+        steps = inner if inner and ".".join(inner) in above else steps
     found = places.get(".".join(steps)) or places.get(".".join(steps[1:]) if steps[0] == "tandem" else "")
     if found:
-        return found
-    ends = [name for name in places if name.rpartition(".")[2] == steps[-1]]
+        return [line for one in found for line in one.full]
+    if below := [(name, ones[0].line) for name, ones in places.items() if name.startswith(".".join([*steps, ""]))]:
+        return below
+    ends = [name for name in above if name.rpartition(".")[2] == steps[-1]]
     hint = f"; it is at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
     if not hint and (word := near(steps[-1], tuple(name.rpartition(".")[2] for name in places))):
         hint = f"; did you mean {' or '.join(name for name in places if name.rpartition('.')[2] == word)}?"

@@ -25,7 +25,7 @@ class Entry(NamedTuple):
     """One line of a section of a check.
 
     severity: `error` of a limit that is broken or a figure that is off, `warning`, `info`, or '' of a plain statement;
-    path: of what it is about in the machine file. Of a verdict also the value with its unit, the bound and whose it is.
+    path: of what it is about in the machine file. Of a verdict also quantity, value with unit, bound, and whose it is.
     """
 
     what: str
@@ -36,6 +36,7 @@ class Entry(NamedTuple):
     unit: str = ""
     bound: str = ""
     where: str = ""
+    quantity: Quantity | None = None
 
 
 class Unjudged(NamedTuple):
@@ -102,7 +103,8 @@ def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str
         limit = f"{'≥' if quantity.bounded_below else '≤'} {_shown(bound, kind, unit)}"
     number = 100 * value if unit == "%" else float(convert(value, kind, unit))
     verdict = "info" if ok else "error"
-    return Entry(str(path[-1]), f"{text}  ({where})", verdict, path, number, unit or SI[kind], limit, where)
+    shown = f"{text}  ({where})"
+    return Entry(str(path[-1]), shown, verdict, path, number, unit or SI[kind], limit, where, quantity)
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:

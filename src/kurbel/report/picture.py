@@ -3,12 +3,13 @@
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
-from typing import NamedTuple, Union
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, ComplexArray
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
 
@@ -105,10 +106,91 @@ class Shade(NamedTuple):
     figure: PageFigure | None = None
 
 
+MOMENTS_PER_TURN = 48
+"""Moments of one turn of the crank, through which bodies and arrows move."""
+
+
+class Shape(NamedTuple):
+    """A closed polygon, or a circle of a radius round its only point, in the frame of a body; look: what it is made of.
+
+    Looks: `wall` and `web` (solid), `metal`, `rod`, `hollow`, `gas`, `liquid`, and the lines `thin`, `axis`, `guess`.
+    """
+
+    look: str
+    points: ComplexArray
+    radius: float = 0.0
+
+    @property
+    def outline(self) -> ComplexArray:
+        """The points of its outline, of a circle 24."""
+        around = self.radius * np.exp(2j * np.pi * np.arange(25) / 24) if self.radius else 0.0
+        return self.points + around if self.radius else np.append(self.points, self.points[:1])
+
+
+class Body(NamedTuple):
+    """Shapes that move together: x + iy of their frame is at place + e^{i turn} (stretch x + iy).
+
+    place: complex; turn: in degrees; stretch: of what seems to become shorter; tint: opacity. Each is (1,) where it is
+    always the same, else (1 + m,): at rest, then m moments, of which MOMENTS_PER_TURN make a turn of the crank.
+    """
+
+    shapes: tuple[Shape, ...]
+    place: ComplexArray
+    turn: Array
+    stretch: Array
+    tint: Array
+
+    @classmethod
+    def of(
+        cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0
+    ) -> "Body":
+        """Return the body of numbers or arrays."""
+        place, *others = (np.atleast_1d(one) for one in (np.asarray(place, dtype=complex), turn, stretch, tint))
+        return cls(tuple(shapes), place, *(np.asarray(one, dtype=float) for one in others))
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything of it changes."""
+        return any(len(one) > 1 for one in self[1:])
+
+    def seen(self, turned: float, mirrored: bool = False, moved: complex = 0.0) -> "Body":
+        """Return the body mirrored about the x-axis, turned by degrees about the origin, and moved."""
+        shapes, place, turn = self.shapes, self.place, self.turn
+        if mirrored:
+            shapes = tuple(one._replace(points=one.points.conj()) for one in shapes)
+            place, turn = place.conj(), -turn
+        place = place * np.exp(1j * np.radians(turned)) + moved
+        return self._replace(shapes=shapes, place=place, turn=turn + turned)
+
+    def scaled(self, by: float) -> "Body":
+        """Return the body in another unit of length."""
+        shapes = tuple(one._replace(points=one.points * by, radius=one.radius * by) for one in self.shapes)
+        return self._replace(shapes=shapes, place=self.place * by)
+
+    def outlines(self) -> list[tuple[str, ComplexArray]]:
+        """Return the look and the outline (moments, points) of each shape, wherever it moves."""
+        place, turn, stretch = np.broadcast_arrays(*(one[:, None] for one in (self.place, self.turn, self.stretch)))
+        turned, found = np.exp(1j * np.radians(turn)), []
+        for one in self.shapes:
+            line = one.outline
+            found.append((one.look, place + turned * (stretch * line.real + 1j * line.imag)))
+        return found
+
+
+class Note(NamedTuple):
+    """A text with its middle at a place x + iy; half: half of its width; strong: as a heading."""
+
+    text: str
+    place: complex
+    half: float
+    strong: bool = False
+
+
 class Panel(NamedTuple):
     """Two axes with what is on them; equal: both have one scale; plain: without axes.
 
-    title: what distinguishes it from the other panels of its picture.
+    title: what distinguishes it from the other panels of its picture; bodies: parts of a machine, below the curves, in
+    the order in which they cover each other; footnote: what of them is to scale.
     """
 
     x: Axis
@@ -119,6 +201,9 @@ class Panel(NamedTuple):
     equal: bool = False
     plain: bool = False
     title: str = ""
+    bodies: tuple[Body, ...] = ()
+    notes: tuple[Note, ...] = ()
+    footnote: str = ""
 
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
@@ -126,7 +211,16 @@ class Panel(NamedTuple):
         across = [curve.x for curve in self.curves] + [shade.x for shade in self.shades]
         up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
         marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
+        drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
+        drawn += [np.array([note.place - note.half, note.place + note.half]) for note in self.notes]
+        across += [one.real for one in drawn]
+        up += [one.imag for one in drawn]
         return [*across, marked[:, 0]], [*up, marked[:, 1]]
+
+    def called(self, words: Mapping[str, str]) -> "Panel":
+        """Return the panel with other words for curves, by their symbols."""
+        names = [one.name._replace(words=words.get(one.name.symbol, one.name.words)) for one in self.curves]
+        return self._replace(curves=tuple(one._replace(name=name) for one, name in zip(self.curves, names)))
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,9 @@ _HALVINGS = 12
 _BEADS = 30.0
 """Degrees from one mark to the next along the locus of a tip; every third one has its angle."""
 ZERO = "0 at every angle"
+_CROSSING = 1e-9
+"""Of the largest distance between two lines: where they cross, rounding alone is between them."""
+_MOST_SHADES = 100
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 
 Values = Callable[[Array, Array], Array]
@@ -237,4 +241,22 @@ def in_units(panel: Panel, system: str) -> Panel:
             Mark(float(to(0, x)), float(to(1, y)), shown(of, 0, units[0]) if of_x else shown(of, 1, y_unit))
             for x, y, of, of_x in panel.marks
         ),
+        bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
+        notes=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.notes),
     )
+
+
+def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
+    """Yield what is between two lines, cut where they cross; where they cross all over, what is above and below."""
+    apart = line - base
+    above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
+    # a point on the base belongs to the area before it, and to the next one, too
+    crossings = np.flatnonzero((above[1:-1] == 0) | (above[1:-1] * above[2:] < 0)) + 1
+    if len(crossings) > _MOST_SHADES:
+        yield Shade(x, base, np.maximum(line, base))
+        yield Shade(x, base, np.minimum(line, base), gain=False)
+        return
+    for start, end in pairwise((0, *crossings.tolist(), len(x) - 1)):
+        part = slice(start, end + 1)
+        if end > start and (above[part] != 0).any():
+            yield Shade(x[part], base[part], line[part], bool(above[part].sum() > 0))

@@ -1,10 +1,13 @@
 """The first page of a report: what a machine is, the key values that say most of its kind, verdicts, and warnings."""
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from typing import NamedTuple, TypeVar
+
+import numpy as np
 
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
@@ -91,6 +94,8 @@ _KINDS = {
 _SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min")
 """Key values of which the smallest one of several parts counts."""
 _MOST_FACTS = 8
+_CLAUSE = re.compile(r"[:;,(]| over the cycle")
+"""Where the first words of a sentence end that say which quantity it is."""
 
 
 def kind_of(case: Case) -> str:
@@ -149,6 +154,7 @@ class Found(NamedTuple):
     at_deg: float | None
 
 
+@np.errstate(all="ignore")
 def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     """Return key values for the first page by their ids; without ids, the eight that say most of its kind, none zero.
 
@@ -161,7 +167,8 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     found: dict[str, Found] = {}
     for id in dict.fromkeys(wanted):
         one = _largest(id, commands[id], subjects[commands[id]])
-        if one and (ids or (one.number and len(found) < _MOST_FACTS)):
+        numbers = {0.0, *(abs(other.number) for other in found.values())}  # none twice
+        if one and (ids or (abs(one.number) not in numbers and len(found) < _MOST_FACTS)):
             found[id] = one._replace(title="Largest ram force") if id == "P_peak" and kind == "ram" else one
     return found
 
@@ -227,12 +234,14 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in several load cases all that fail, or the one that is nearest to its bound
         nearest = (min if equal[0].bound.startswith("≥") else max)(equal, key=lambda one: one.value or 0.0)
         for one in [one for one in equal if one.severity == "error"] or [nearest]:
-            name, bad = str(one.path[-1]), one.severity == "error"
-            value, where = (one.value or 0.0, one.unit), one.where + one.what.removeprefix(name)
-            rows.append((name.replace("_", " "), value, one.bound, where, "FAIL" if bad else "PASS"))
+            bad, of = one.severity == "error", one.quantity
+            value, where = (one.value or 0.0, one.unit), one.where + one.what.removeprefix(str(one.path[-1]))
+            names = (of.symbol, _CLAUSE.split(of.text)[0]) if of else ("", one.what)
+            rows.append((*names, value, one.bound, where, "FAIL" if bad else "PASS"))
             marks.append("bad" if bad else "good")
     if rows:
-        yield Grid("", ("Limit", "Value", "Bound", "Where", ""), tuple(rows), numbers=(1,), verdicts=tuple(marks))
+        heads = "Symbol", "Limit or expectation", "Value", "Bound", "Where", ""
+        yield Grid("", heads, tuple(rows), numbers=(2,), verdicts=tuple(marks))
     yield from (Notice(str(error), "bad") for error in found.errors)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 

@@ -10,6 +10,7 @@ import numpy as np
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, shown_once, together
 from kurbel.report.balance import balance_report
@@ -23,7 +24,7 @@ from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAng
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures_if_any
 from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Report, stepped
+from kurbel.report.tables import Part, Report, stepped
 from kurbel.report.turning import flywheel_report, harmonics_report, torsion_report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
@@ -77,7 +78,7 @@ def whole_report(
             left_out[command.title, str(error).removeprefix(f"{machine.name}: ")] = []
             continue
         else:
-            items.append(Answers(report))
+            items.append(Answers(_without_motion(report) if word == "forces" else report))
             tables += [OverAngle(report, command.title)] if any(part.columns for part in report.all_parts) else []
             for part in report.all_parts:
                 for reason in part.left_out:
@@ -98,6 +99,17 @@ def whole_report(
     first = (*_mechanism(case, system), *summary(case, cases, system, warnings))
     sections = [one for one in sections if one.items]
     return Document(machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),))
+
+
+def _without_motion(report: Report) -> Report:
+    """Return the report on forces without the key values that the section on motion has."""
+    declared = every_quantity()
+
+    def of_forces(part: Part) -> Part:
+        found = (one for one in part.key_values if declared.commands_of(one.id)[0] == "forces")
+        return part._replace(key_values=tuple(found))
+
+    return report._replace(parts=tuple(map(of_forces, report.parts)))
 
 
 def _angles(case: Case, command: Command, step: float) -> Sequence[float]:
@@ -209,46 +221,50 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     left, right = ([one._replace(machine=name) for one in _mechanism(case, system)] for case, name in zip(cases, names))
     yield from (Pair(*both) for both in zip_longest(left, right))
     ids = dict.fromkeys(id for case in cases for id in facts_of(case))
-    both = [facts_of(case, ids) for case in cases]
-    shown = {id: one.quantity for some in both for id, one in some.items()}
-    pairs = {shown[id]: [some[id].number if id in some else None for some in both] for id in ids}
-    titles = {one.quantity: one.title for some in both for one in some.values()}
-    yield Grid("", ("Symbol", *names, "Unit", "Difference", "Meaning"), _compared(pairs, system, titles), (1, 2, 4))
+    facts = [facts_of(case, ids).values() for case in cases]
+    titles = {fact.quantity: fact.title for some in facts for fact in some}
+    one, other = ({fact.quantity: fact.number for fact in some} for some in facts)
+    yield Grid("", _heads(names), _compared(one, other, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
         warnings = of_machine(case)
         found = (*verdicts(case), *(Notice(text, "warning") for text in warnings))
         yield from (f"{name}:", *found) if found else (Notice(f"{name}: no warnings.", "good"),)
 
 
+def _heads(names: Sequence[str]) -> tuple[str, ...]:
+    return "Symbol", *names, "Unit", "Difference", "Meaning"
+
+
 def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, system: str) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder next to cylinder, equal ones once."""
     both = [if_any(partial(subjects_of, case, command)) for case in cases]
-    compared = [((one or other).name, _rows(one, other, command, system)) for one, other in zip_longest(*both)]
+    compared = []
+    for pair in zip_longest(*both):
+        one, other = (_numbers(subject, command) for subject in pair)
+        rows = _compared(one, other, system, {quantity: quantity.text for quantity in (*one, *other)})
+        compared.append(((pair[0] or pair[1]).name, rows))
     for equal in grouped(compared, itemgetter(1)):
         if rows := equal[0][1]:
             title = together([name for name, _ in equal]) if len(compared) > 1 else "Key values"
-            yield Grid(title, ("Symbol", *names, "Unit", "Difference", "Meaning"), rows, (1, 2, 4))
+            yield Grid(title, _heads(names), rows, (1, 2, 4))
 
 
-def _rows(left: Subject | None, right: Subject | None, command: str, system: str) -> tuple[tuple[Shown, ...], ...]:
-    """Return the single key values of two subjects with their difference; no lists, and no residuals of rounding."""
-    both: dict[Quantity, list[float | None]] = {}
-    for place, subject in enumerate((left, right)):
-        for quantity, value in if_any(partial(subject.key_values, command)) if subject else ():
-            number = number_of(value)
-            if isinstance(number, (int, float)) and not quantity.residual:
-                both.setdefault(quantity, [None, None])[place] = number
-    return _compared(both, system, {one: one.text for one in both})
+def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
+    """Return the single key values of a subject in SI; no lists, and no residuals of rounding."""
+    found = if_any(partial(subject.key_values, command)) if subject else []
+    numbers = {quantity: number_of(value) for quantity, value in found if not quantity.residual}
+    return {quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))}
 
 
 def _compared(
-    both: dict[Quantity, list[float | None]], system: str, meanings: dict[Quantity, str]
+    one: dict[Quantity, float], other: dict[Quantity, float], system: str, meanings: dict[Quantity, str]
 ) -> tuple[tuple[Shown, ...], ...]:
     """Return a row for each key value of two machines: symbol, both values, unit, difference, meaning."""
-    units = units_of([(one.kind, one.family, max(map(size_of, values))) for one, values in both.items()], system)
+    pairs = {quantity: (one.get(quantity), other.get(quantity)) for quantity in (*one, *other)}
+    units = units_of([(of.kind, of.family, max(map(size_of, pair))) for of, pair in pairs.items()], system)
     rows = []
-    for (quantity, (first, second)), unit in zip(both.items(), units):
-        shown = [_NONE if one is None else float(convert(one, quantity.kind, unit)) for one in (first, second)]
+    for (quantity, (first, second)), unit in zip(pairs.items(), units):
+        shown = [_NONE if value is None else float(convert(value, quantity.kind, unit)) for value in (first, second)]
         difference = _NONE
         if first is not None and second is not None and (first or not second):
             percent = 100 * (second - first) / abs(first) if first else 0.0

@@ -484,38 +484,50 @@ class MachineBalance(Results):
         with np.errstate(all="ignore"):
             return np.where(aside | (throw.mass == 0), np.nan, (opposite.real - throw.rotating) / throw.mass)
 
-    @cached_property
-    def best_in_planes(self) -> tuple[Weight, ...]:
-        """The counterweights in two planes that take away all that turns with the crank, force and moment.
-
-        u_a + u_b = −F and (z_a − z_0) u_a + (z_b − z_0) u_b = −M, with F and M of the forward circles of order 1. The
-        planes are those given, those of the wheels, or of the outer cylinders; () if these are one.
-        """
+    @property
+    def planes(self) -> tuple[float, ...]:
+        """The two planes of best weights: those given, those of the wheels, or of the outer cylinders; () if one."""
         given = self.machine.counterweights
         named = () if isinstance(given, tuple) else given.planes
         places = [one.place for one in self.throws if one.place is not None]
         outer = (min(places), max(places)) if places and min(places) < max(places) else ()
-        planes = named or self.wheels or outer
-        if not planes or self.bare.moment is None:
+        return named or self.wheels or outer
+
+    def _in_planes(self, order: int) -> tuple[Weight, ...]:
+        """Return the weights in two planes that take away an order, force and moment; () without planes.
+
+        u_a + u_b = −F/n² and (z_a − z_0) u_a + (z_b − z_0) u_b = −M/n², with F and M of the circles of the order.
+        """
+        if not self.planes or self.bare.moment is None:
             return ()
-        moment, (first, second) = self._of_one(self.bare.moment.of(1)), planes
-        far = ((first - self.z_0) * self.forward - moment) / (second - first)
-        return Weight(-self.forward - far, 1, first), Weight(far, 1, second)
+        force, moment = self._of_one(self.bare.force.of(order)), self._of_one(self.bare.moment.of(order))
+        first, second = self.planes
+        far = ((first - self.z_0) * force - moment) / (second - first)
+        return Weight((-force - far) / order**2, order, first), Weight(far / order**2, order, second)
+
+    @cached_property
+    def best_in_planes(self) -> tuple[Weight, ...]:
+        """The counterweights in two planes that take away all that turns with the crank, force and moment."""
+        return self._in_planes(1)
 
     @cached_property
     def best_shafts(self) -> tuple[Weight, ...]:
         """The weights on shafts that take away what no counterweight can: order 1 against, order 2 either way.
 
-        Two of order 2 are those of Lanchester. Weights of zero are left out. One that can cancel the
-        moment as well is placed so that it does.
+        Two of order 2 are those of Lanchester. Weights of zero are left out. One that can cancel the moment as well is
+        placed so that it does; where none can, as where there is a moment and no force, a shaft has two.
         """
         force, moment = self.bare.force, self.bare.moment
-        found = []
+        found: list[Weight] = []
         for order in (-1, 2, -2):
             circle = self._of_one(force.of(order))
-            if circle:
-                arm = 1j if moment is None else self._of_one(moment.of(order)) / circle
-                place = None if self.z_0 is None or abs(arm.imag) > _REAL * (1 + abs(arm)) else self.z_0 + arm.real
+            couple = None if moment is None else self._of_one(moment.of(order))
+            arm = 1j if couple is None or not circle else couple / circle
+            at_a_place = abs(arm.imag) <= _REAL * (1 + abs(arm)) and self.z_0 is not None
+            if couple and not at_a_place and self.planes:
+                found += self._in_planes(order)
+            elif circle:
+                place = self.z_0 + arm.real if at_a_place else None
                 found.append(Weight(-circle / order**2, order, place))
         return tuple(found)
 

@@ -1,11 +1,13 @@
-"""`kurbel sweep`: key values over a grid, a list or a sample of machines."""
+"""The commands that compute many designs of a machine: sweep and find."""
 
 from typing import Any
 
 import click
 
 from kurbel.cli.options import (
+    complete_key_values,
     complete_override,
+    key_value_option,
     machine_file,
     number_options,
     output_option,
@@ -30,21 +32,26 @@ _what_varies = stacked(
     click.option(
         "--sample", type=click.IntRange(1, 10**8), metavar="N", help="Points of a Latin hypercube of distributions."
     ),
-    click.option("--seed", type=click.IntRange(0), default=0, help="Of the sample; 0 if not given."),
+    click.option("--seed", type=click.IntRange(0), default=0, help="Seed of the sample; 0 if not given."),
 )
 _what_is_printed = stacked(
-    click.option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    key_value_option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
-    click.option(
+    key_value_option(
         "--where",
         "conditions",
         multiple=True,
         metavar="CONDITION",
         help="Only rows with 'c_max < 5 m/s' or 'keeps = yes'.",
     ),
-    click.option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
+    key_value_option("--sort", metavar="ID", help="The smallest of this column first; -ID: the largest."),
     click.option("--top", type=click.IntRange(1), metavar="N", help="Only the first N rows of --sort."),
-    click.option("--pareto", type=words, metavar="ID,ID", help="Only rows that no other betters; -ID: more is better."),
+    key_value_option(
+        "--pareto",
+        type=words,
+        metavar="ID,ID",
+        help="Only rows that no other betters; -ID: more is better.",
+    ),
     click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
 )
 _where_it_goes = stacked(
@@ -87,3 +94,42 @@ def sweep(**options: Any) -> None:
     from kurbel.cli.sweeping import SweepOptions, run
 
     run(SweepOptions(**options))
+
+
+@click.command()
+@machine_file
+@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_key_values)
+@click.option(
+    "--vary",
+    multiple=True,
+    required=True,
+    metavar="KEY=LOW:HIGH",
+    shell_complete=complete_override,
+    help="The key whose value is sought, and its range: rod_ratio=3:6, 'stroke=700:900 mm'; two with two equations.",
+)
+@key_value_option("--least", metavar="ID", help="Minimise this key value within the limits of FILE.")
+@key_value_option("--greatest", metavar="ID", help="Maximise this key value within the limits of FILE.")
+@key_value_option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
+@click.option("--plot", is_flag=True, help="Draw the key value over the key, in the terminal or with -o to a file.")
+@click.option("--write", is_flag=True, help="Print FILE with the values found in it, and nothing else.")
+@click.option("--take", type=click.IntRange(1), metavar="N", help="With --write, the solution of this number.")
+@units_option
+@click.option(
+    "--format",
+    "-f",
+    "format",
+    type=click.Choice(["table", "csv", "json", "markdown"]),
+    help="By the suffix of --output, or table.",
+)
+@output_option
+@number_options
+def find(**options: Any) -> None:
+    """Find the values of a key of FILE for which a key value has the wanted value, all in the range.
+
+    Any key value of any command, any dotted key of a number. Two --vary take two equations; --least and --greatest take
+    none. Places where the key value jumps over the wanted one, and parts of the range in which designs fail, are
+    reported. With --write, FILE is printed with what was found; comments stay.
+    """
+    from kurbel.cli.finding import FindOptions, run
+
+    run(FindOptions(**options))

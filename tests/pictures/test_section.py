@@ -1,0 +1,276 @@
+"""The machine in section: joints, strokes and volumes are those of the machine, and everything drawn can be read."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import combinations
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from kurbel.cli import kurbel
+from kurbel.machine_file import loads
+from kurbel.render import Look
+from kurbel.render.picture import PanelFrame
+from kurbel.render.svg import PAPER_SIZES, svg_file
+from kurbel.report.picture import Body, Panel, Shape
+from kurbel.report.picture_source import PictureOptions
+from kurbel.report.pictures import pictures
+from kurbel.solver.case import Case
+from representative import CONFIGS, case_of, few
+
+DRAWN = [name for name in CONFIGS if name != "punch"]  # which has no cylinder
+SOME = ["waterworks", "v8-cross-plane", "shaper", "radial-three", "yoke-frame-pump"]
+WIDE = 704.0
+
+
+def panel_of(case: Case, *angles: float) -> Panel:
+    (picture,) = pictures(case, ("mechanism",), PictureOptions("si", angles=angles or None))
+    return picture.panels[0]
+
+
+def placed(body: Body, point: complex, moment: int = 0) -> complex:
+    place, turn, stretch = (one[min(moment, len(one) - 1)] for one in (body.place, body.turn, body.stretch))
+    return place + np.exp(1j * math.radians(turn)) * (stretch * point.real + 1j * point.imag)
+
+
+def rods(panel: Panel) -> list[tuple[Body, complex]]:
+    """The connecting rods, each with the place of its crank pin in its own frame: a round eye at its far end."""
+    found = []
+    for body in panel.bodies:
+        eyes = [shape.points[0] for shape in body.shapes if shape.look == "rod" and shape.radius]
+        found += [(body, eye) for eye in eyes if eye.real < 0]
+    return found
+
+
+ANGLES = (0.0, 37.0, 90.0, 180.0, 251.5)
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+@pytest.mark.parametrize(
+    ("name", "R", "L", "e", "upright"),
+    [
+        ("waterworks", 0.4, 2.0, 0.0, False),
+        ("diesel-four-stroke", 0.21, 1.05, 0.0, True),
+        ("yoke-frame-pump", 0.08, 0.32, 0.0, False),
+    ],
+)
+def test_the_rod_runs_from_the_crank_pin_to_the_crosshead(
+    name: str, R: float, L: float, e: float, upright: bool, degrees: float
+) -> None:
+    ((rod, big_end),) = rods(panel_of(case_of(name), degrees))
+    turn = 1j if upright else 1.0
+    pin = R * np.exp(1j * math.radians(degrees))
+    crosshead = pin.real + math.sqrt(L**2 - (pin.imag - e) ** 2) + 1j * e
+    assert placed(rod, 0j) == pytest.approx(turn * crosshead, abs=1e-12)
+    assert placed(rod, big_end) == pytest.approx(turn * pin, abs=1e-12)
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_an_offset_engine(degrees: float) -> None:
+    """The crank is the root of s = √((L+R)² − e²) − √((L−R)² − e²) for s = 240 mm, L = 4.5 R, e = 25 mm."""
+    ((rod, big_end),) = rods(panel_of(case_of("offset-engine"), degrees))
+    crosshead, pin = placed(rod, 0j) / 1j, placed(rod, big_end) / 1j
+    R, e = abs(pin), 0.025
+    stroke = math.sqrt((5.5 * R) ** 2 - e**2) - math.sqrt((3.5 * R) ** 2 - e**2)
+    assert stroke == pytest.approx(0.24, rel=1e-9)
+    assert np.degrees(np.angle(pin)) % 360 == pytest.approx(degrees % 360, abs=1e-9)
+    assert abs(crosshead - pin) == pytest.approx(4.5 * R)
+    assert crosshead.imag == pytest.approx(e)
+
+
+def test_every_cylinder_is_at_its_own_crank_angle() -> None:
+    """Three rods on one pin; stroke lines 120° apart, the first one upright."""
+    drawn = rods(panel_of(case_of("radial-three"), 40.0))
+    pins = [placed(rod, eye) for rod, eye in drawn]
+    assert len(drawn) == 3
+    assert np.allclose(pins, 0.06 * np.exp(1j * math.radians(90 + 40)), atol=1e-12)
+    lines = sorted(np.degrees(np.angle([placed(rod, 0j) for rod, _ in drawn])) % 360)
+    assert np.allclose(lines, [90, 210, 330], atol=1e-9)
+
+
+@pytest.mark.parametrize(("rotation", "sense"), [("over", 1), ("under", -1)])
+def test_the_sense_of_rotation(rotation: str, sense: int) -> None:
+    text = f"{{rotation: {rotation}, inclination: 0 deg, crank: 400 mm, rod: 2 m, masses: {{piston: 9 kg}}}}"
+    ((rod, eye),) = rods(panel_of(Case(loads(text)), 30.0))
+    assert placed(rod, eye) == pytest.approx(0.4 * np.exp(sense * 1j * math.radians(30)), abs=1e-12)
+
+
+def test_a_throw_from_the_side_is_as_high_as_its_cosine() -> None:
+    """Cranks of 1-5-3-4-2-6 lag by 0, 240, 120, 180, 60 and 300°; the axes of shaft and cylinders are to scale."""
+    panel = panel_of(case_of("marine-diesel"), 25.0)
+    heights = [body.place[0].imag for body in panel.bodies if [one.look for one in body.shapes[:2]] == ["metal", "rod"]]
+    lags = np.array([0.0, 240.0, 120.0, 180.0, 60.0, 300.0])
+    assert np.allclose(heights, 0.45 * np.cos(np.radians(25.0 - lags)), atol=1e-12)
+
+
+def test_four_bars_are_as_long_as_the_file_says() -> None:
+    for degrees in ANGLES:
+        panel = panel_of(case_of("crank-rocker"), degrees)
+        bars = [one for one in panel.bodies if one.shapes[0].look == "rod"]
+        lengths = {max(shape.points[-1].real for shape in bar.shapes): bar for bar in bars}
+        assert sorted(lengths) == pytest.approx([0.08, 0.15])
+        coupler, rocker = lengths[max(lengths)], lengths[min(lengths)]
+        assert placed(coupler, 0j) == pytest.approx(0.04 * np.exp(1j * math.radians(degrees)), abs=1e-12)
+        assert placed(coupler, 0.15 + 0j) == pytest.approx(placed(rocker, 0j), abs=1e-12)
+        assert placed(rocker, 0.08 + 0j) == pytest.approx(0.15, abs=1e-12)
+
+
+# the chambers
+
+
+def chambers(panel: Panel) -> list[tuple[Body, Shape]]:
+    return [(one, one.shapes[0]) for one in panel.bodies if one.shapes[0].look in ("gas", "liquid")]
+
+
+def test_volumes_are_those_of_the_cylinder() -> None:
+    """π/4 d² × length of the drawn chamber is the volume at the head end, with the clearance that the file gives."""
+    case, angles = case_of("steam-ideal"), (0.0, 63.0, 180.0, 300.0)
+    for degrees in angles:
+        (_, _), (head, shape) = chambers(panel_of(case, degrees))
+        bore = np.ptp(shape.points.imag)
+        assert bore == pytest.approx(0.35)
+        assert math.pi / 4 * bore**2 * head.stretch[0] == pytest.approx(float(case.cylinders[0].at([degrees]).V[0]))
+
+
+@pytest.mark.parametrize("name", few(["waterworks", "scotch-yoke-pump", "compressor-two-stage"], ["waterworks"]))
+def test_what_a_piston_sweeps_is_the_stroke(name: str) -> None:
+    case = case_of(name)
+    inner, outer = (chambers(panel_of(case, degrees)) for degrees in (0.0, 180.0))
+    stroke = case.machine.cylinders[0].mechanism.stroke
+    for (before, _), (after, _) in zip(inner, outer):
+        assert abs(after.stretch[0] - before.stretch[0]) == pytest.approx(stroke)
+    bores = [piston.bore for one in case.machine.cylinders for piston in one.pistons for _ in piston.chambers]
+    assert sorted(np.ptp(shape.points.imag) for _, shape in inner) == pytest.approx(sorted(bores))
+
+
+def test_chambers_are_tinted_by_their_pressure() -> None:
+    """9.5 at against 1.2 at; water is not steam, and a single-acting engine has no second chamber."""
+    looks = [(shape.look, float(body.tint[0])) for body, shape in chambers(panel_of(case_of("waterworks"), 40.0))]
+    (steam_out, steam_in), pump = looks[:2], looks[2:]
+    assert (steam_out[0], {look for look, _ in pump}) == ("gas", {"liquid"})
+    assert steam_in[1] > 0.7 > 0.2 > steam_out[1]
+    assert len(chambers(panel_of(case_of("diesel-four-stroke"), 40.0))) == 1
+
+
+# what can be seen of it
+
+
+def texts_in(root: ElementTree.Element, at: complex = 0j) -> list[tuple[complex, float, str]]:
+    """The place, half the width, and the words of each text; nothing but translations is above texts."""
+    found = []
+    for one in root:
+        moved = at
+        if match := re.fullmatch(r"translate\(([-\d.]+) ([-\d.]+)\)", one.get("transform", "")):
+            moved += complex(*map(float, match.groups()))
+        if one.tag.endswith("text"):
+            words = "".join(one.itertext())
+            place, wide = moved + complex(float(one.get("x", 0)), float(one.get("y", 0))), 6.6 * len(words)
+            shift = {"middle": 0.0, "end": -wide / 2}.get(one.get("text-anchor", ""), wide / 2)
+            found.append((place + shift, wide / 2, words))
+        found += texts_in(one, moved)
+    return found
+
+
+@pytest.mark.parametrize("name", few(DRAWN, SOME))
+def test_every_machine_is_drawn_small_and_whole(name: str) -> None:
+    case = case_of(name)
+    (picture,) = pictures(case, ("mechanism",), PictureOptions())
+    text = svg_file([picture], Look())
+    assert len(text.encode()) <= 70_000
+    root = ElementTree.fromstring(text)
+    left, top, wide, tall = map(float, root.get("viewBox", "").split())
+    texts = texts_in(root)
+    for place, half, words in texts:
+        assert left - 1 <= place.real - half <= place.real + half <= left + wide + 1, words
+        assert top + 8 <= place.imag <= top + tall, words
+    notes = [one for one in texts if one[2] in {note.text for note in picture.panels[0].notes}]
+    for (one, half, _), (other, width, _) in combinations(notes, 2):
+        assert abs(one.real - other.real) > half + width or abs(one.imag - other.imag) > 11
+    assert any(words.startswith("To scale: ") for _, _, words in texts)
+    assert len(notes) >= (len(case.cylinders) if len(case.cylinders) > 1 else 0)
+
+
+@pytest.mark.parametrize("name", few(DRAWN, SOME))
+def test_nothing_leaves_the_frame_through_the_whole_turn(name: str) -> None:
+    (picture,) = pictures(case_of(name), ("mechanism",), PictureOptions())
+    frame = PanelFrame(picture.panels[0], Look(), PAPER_SIZES, WIDE, 250.0)
+    for body in picture.panels[0].bodies:
+        for _, line in body.outlines():
+            places = frame.place(line.real, line.imag)
+            assert places.real.min() >= -1e-6
+            assert places.real.max() <= frame.wide + 1e-6
+            assert places.imag.min() >= -1e-6
+            assert places.imag.max() <= frame.tall + 1e-6
+
+
+def test_forces_are_clear_of_rod_and_crosshead() -> None:
+    """No arrow of the waterworks engine crosses its connecting rod or its crosshead, at any angle."""
+    panel = panel_of(case_of("waterworks"))
+    ((rod, eye),) = rods(panel)
+    for curve in panel.curves:
+        assert curve.kind == "force"
+        for moment in range(1, 49):
+            tail, tip = curve.x[moment] + 1j * curve.y[moment]
+            points = tail + (tip - tail) * np.linspace(0, 1, 20)
+            start, end = placed(rod, 0j, moment), placed(rod, eye, moment)
+            along = ((points - start) / (end - start)).real.clip(0, 1)
+            assert np.abs(points - start - along * (end - start)).min() > 0.07
+
+
+def test_one_cylinder_of_several_has_its_forces() -> None:
+    case = case_of("v8-cross-plane")
+    whole, one = (next(pictures(case, ("mechanism",), PictureOptions(cylinder=name))) for name in (None, "left 2"))
+    assert (whole.panels[0].curves, whole.of) == ((), "")
+    assert one.of == "left 2"
+    assert {curve.name.symbol for curve in one.panels[0].curves} == {"P", "N", "T", "D"}
+
+
+# as a sheet
+
+
+def plot(*args: str) -> Result:
+    return CliRunner().invoke(kurbel, ["plot", str(CONFIGS["waterworks"]), *args])
+
+
+def test_a_poster(tmp_path: Path) -> None:
+    pytest.importorskip("typst")
+    for size, name in (("A2", "a.pdf"), ("a4", "b.svg")):
+        file = tmp_path / name
+        assert plot("mechanism", "--poster", size, "-o", str(file)).exit_code == 0
+        drawn = file.read_bytes()
+        assert len(drawn) <= 400_000
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+    root = ElementTree.parse(tmp_path / "b.svg").getroot()
+    points = sorted(float(root.get(side, "").removesuffix("pt")) for side in ("width", "height"))
+    assert points == pytest.approx([210 / 25.4 * 72, 297 / 25.4 * 72], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["--poster", "A9", "-o", "x.pdf"], "--poster A9: there are A0, A1, A2, A3, A4, A5"),
+        (["--poster", "A2"], "--poster A2: a poster is a file; give --output NAME.pdf or NAME.svg"),
+        (["--poster", "A2", "-o", "x.png"], "--poster A2: a poster is a file; give --output NAME.pdf or NAME.svg"),
+        (["card", "--poster", "A2", "-o", "x.pdf"], "--poster draws the mechanism alone"),
+        (["--poster", "A2", "-o", "nowhere/x.pdf"], "cannot write nowhere/x.pdf: No such file or directory"),
+    ],
+)
+def test_posters_that_cannot_be(args: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = plot(*args)
+    assert (result.exit_code, message in result.stderr) == (2, True), result.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_typst_a_poster_names_the_way_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import importlib.util
+
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *more: None)
+    result = plot("--poster", "A2", "-o", str(tmp_path / "x.svg"))
+    assert result.exit_code == 2
+    assert "a poster needs typst, which is not installed: pip install 'kurbel[plot]'" in result.stderr
