@@ -12,8 +12,8 @@ from click.testing import Result
 
 import command
 from kurbel.errors import KurbelError
+from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import dotted, leaves, tree_of
-from kurbel.machine_file.source import read
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 WATERWORKS = str(CONFIGS / "waterworks.yaml")
@@ -32,10 +32,10 @@ def rows(*args: str, file: str = WATERWORKS) -> list[dict[str, object]]:
     return [json.loads(line) for line in result.stdout.splitlines()]
 
 
-def numbers_in(file: Path) -> list[tuple[str, float, str]]:
+def numbers_in(origin: Origin) -> list[tuple[str, float, str]]:
     """Return every key of a machine file whose value is a positive number, the number, and its unit."""
     try:
-        texts = [(path, NUMBER.fullmatch(text)) for path, text in leaves(tree_of(read(file))) if isinstance(text, str)]
+        texts = [(path, NUMBER.fullmatch(text)) for path, text in leaves(tree_of(origin)) if isinstance(text, str)]
     except KurbelError:
         return []
     known = [(path, found) for path, found in texts if found and not NO_NUMBERS & {*map(str, path)}]

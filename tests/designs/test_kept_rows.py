@@ -90,10 +90,10 @@ def files(folder: Path) -> dict[str, str]:
 def lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweeps that get no further than 20 rows."""
 
-    def chunk(self: Sweep, company: range, wanted: range) -> Sequence[Design]:
+    def chunk(self: Sweep, together: range, wanted: range) -> Sequence[Design]:
         if wanted.start >= 20:
             raise KurbelError("a worker process was killed (SIGKILL)")
-        return whole(self, company, wanted)
+        return whole(self, together, wanted)
 
     whole = Sweep.chunk
     monkeypatch.setattr(Sweep, "chunk", chunk)

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 from kurbel import sweep
+from kurbel.machine_file.source import read
 from representative import SHIPPED, few
 from swept_rows import CONFIGS, EXAMPLES, numbers_in
 
 MOVING = re.compile(r"(.*\.)?(crank|stroke)")
-FILES = [path for path in (*SHIPPED, *EXAMPLES) if any(MOVING.fullmatch(key) for key, *_ in numbers_in(path))]
+FILES = [path for path in (*SHIPPED, *EXAMPLES) if any(MOVING.fullmatch(key) for key, *_ in numbers_in(read(path)))]
 
 
 def distance(found: Any, single: Any, name: str) -> float:
@@ -45,7 +46,7 @@ def farthest(file: Path, inputs: dict[str, list[str]], columns: list[str]) -> tu
 def test_numbers_of_a_file_vary(file: Path) -> None:
     """Up to four of them by a tenth, all that `forces` tells, and where a row fails, why."""
     random = np.random.default_rng(crc32(file.stem.encode()))
-    keys = numbers_in(file)
+    keys = numbers_in(read(file))
     chosen = [keys[place] for place in random.permutation(len(keys))[:4]]
     inputs = {
         key: [f"{value * by:.9g} {unit}".strip() for by in random.uniform(0.9, 1.1, 5)] for key, value, unit in chosen

@@ -30,7 +30,7 @@ class Probe(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """How the program answered; ulp: None where no value was expected, or none came."""
+    """What the program returned; ulp: None where no value was expected, or none was returned."""
 
     case: Probe
     expected: str
@@ -67,16 +67,16 @@ def noisy_trace() -> str:
 
 
 def verdicts(
-    cases: list[Probe], ask: Callable[[str, str], float | None], loads: Callable[[str], Machine]
+    cases: list[Probe], compute: Callable[[str, str], float | None], loads: Callable[[str], Machine]
 ) -> Iterator[Verdict]:
     """Yield the verdict on each case. What is no KurbelError is a fault of the program.
 
-    ask: runs the program: text of the machine, what is asked -> a value, or None where it is left out.
+    compute: runs the program: text of the machine, requested quantity -> its value, or None where it is left out.
     """
     for case in cases:
         text, expected, missed, answer = text_of(case), case.expected, None, None
         try:
-            answer = ask(text, case.asked)
+            answer = compute(text, case.asked)
         except KurbelError as error:
             message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
             words = expected.removeprefix(status)
@@ -107,7 +107,7 @@ def _missed(case: Probe, text: str, answer: float | None, loads: Callable[[str],
 
 
 def reference(machine: Machine, asked: str) -> Number:
-    """Return what the textbook makes of a question, in SI, to the digits that mpmath has now."""
+    """Return a requested quantity by the textbook, in SI, to the digits that mpmath is set to."""
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     if command != "motion":

@@ -2,7 +2,7 @@
 
 Nothing is shared with the solver: pressures are found and signs of friction chosen anew. Differences of nearly equal
 numbers are left as they are in the books; the digits pay for them. Angles are in radians of the own crank, all else in
-SI. `at` is any angle within a piece between corners: it says which side of a corner is meant.
+SI. `at` is any angle within a piece between corners: it selects the side of a corner.
 """
 
 import math

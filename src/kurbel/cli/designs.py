@@ -34,7 +34,7 @@ _what_varies = stacked(
     ),
     click.option("--seed", type=click.IntRange(0), default=0, help="Seed of the sample; 0 if not given."),
 )
-_what_is_told = stacked(
+_what_is_printed = stacked(
     key_value_option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
     click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
     key_value_option(
@@ -81,7 +81,7 @@ _who_computes = stacked(
 @click.command()
 @machine_file
 @_what_varies
-@_what_is_told
+@_what_is_printed
 @units_option
 @_where_it_goes
 @_who_computes

@@ -9,7 +9,7 @@ import click
 
 from kurbel.cli.group import Progress, to_stderr
 from kurbel.cli.options import format_of
-from kurbel.designs.chosen import read_aim, read_condition, summary, summary_heads, unbettered
+from kurbel.designs.chosen import pareto_front, read_aim, read_condition, summary, summary_heads
 from kurbel.designs.plan import MOST_ROWS, shard
 from kurbel.designs.sweep import Design, Spec, Sweep
 from kurbel.designs.workers import likely_jobs, rows_of
@@ -100,7 +100,7 @@ def run(wanted: SweepOptions) -> None:
         if wanted.file_name or not (sys.stdout and sys.stdout.isatty()):
             found = Progress("sweep").counted(found, "designs", len(rows))
         chosen: Iterable[Design] = (row for row in found if all(one.holds(row) for one in conditions))
-        chosen = unbettered(chosen, aims) if aims else chosen
+        chosen = pareto_front(chosen, aims) if aims else chosen
         chosen = sorted(chosen, key=order.of)[: wanted.top] if order else chosen
         if wanted.summary:
             chosen = summary(chosen, sweep.heads)

@@ -1,1 +1,1 @@
-"""Many designs of one machine: which ones, how they are bound to its file, and what is answered of all of them."""
+"""Many designs of one machine: sweeps over keys of its file, their key values and uncertainties, and inputs sought."""

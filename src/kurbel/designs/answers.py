@@ -81,12 +81,12 @@ def requested_answers(
             (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
         )
         for one, value in found:
-            angle = (one._replace(angle=True),) if with_angles and _stands(value) else ()
+            angle = (one._replace(angle=True),) if with_angles and _has_angle(value) else ()
             once.setdefault(one._replace(alone=False), (one, *angle))
     return tuple(part for parts in once.values() for part in parts)
 
 
-def _stands(value: object) -> bool:
+def _has_angle(value: object) -> bool:
     """Return whether a value occurs at a crank angle, or may do so in other designs."""
     return isinstance(value, (Extreme, KurbelError))
 

@@ -94,7 +94,7 @@ class Binder:
         return self._origin._replace(case=case, varied=given[self._cases :])
 
     def _read(self, texts: Sequence[str], reading: Reading) -> Any:
-        """Return what the file says with these texts, before records are made of it; REFUSED after noting its faults.
+        """Return the values of the file with these texts, before records are made; REFUSED after noting its faults.
 
         Raises UsageError for a key that is unknown with these texts.
         """

@@ -63,7 +63,7 @@ def parts_of(text: str) -> tuple[str, str, str]:
 
 
 def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
-    """Return what `c_max < 5 m/s` or, of the texts of a row, `keeps = yes` says; raises UsageError."""
+    """Read `c_max < 5 m/s` or, for a text of a row, `keeps = yes`; raises UsageError."""
     name, relation, written = parts_of(text)
     place = name if name in texts else place_of(name, heads, "--where", texts)
     if isinstance(place, str) or not heads[place].kind:
@@ -115,7 +115,7 @@ class Aim(NamedTuple):
 
 
 def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
-    """Return what `T_max` or `-T_max` says, the largest value first; raises UsageError."""
+    """Read `T_max`, the smallest value first, or `-T_max`, the largest first; raises UsageError."""
     name = text.strip()
     place = place_of(name.removeprefix("-"), heads, option)
     if not heads[place].kind:
@@ -123,7 +123,7 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
     return Aim(place, name.startswith("-"))
 
 
-def unbettered(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
+def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
     given = list(rows)
     found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}

@@ -159,7 +159,7 @@ class _Designs:
         return np.asarray(low * (1 - places) + high * places)
 
     def at(self, places: Array) -> tuple[Array, list[str], list[str]]:
-        """Return key values (n, answers), nan for designs that fail, and the limits and conditions that each breaks.
+        """Return key values (n, answers), nan where a design fails; the limits each breaks; the conditions each breaks.
 
         For a design that fails both texts are the reason of the failure.
         """
@@ -168,17 +168,17 @@ class _Designs:
         numbers, count = self.numbers(places), len(self.answers)
         rows = numbers.tolist()
         found = answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits)))
-        values, over, against = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
+        values, broken, unmet = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
         for number, (row, own) in enumerate(zip(rows, found)):
             if isinstance(own, str):
-                over[number] = against[number] = own
+                broken[number] = unmet[number] = own
             else:
                 values[number] = [np.nan if one is None else one for one in own[:count]]
-                over[number] = ", ".join(f"limits.{name}" for name in broken_of(self.limits, own[count:]))
+                broken[number] = ", ".join(f"limits.{name}" for name in broken_of(self.limits, own[count:]))
                 whole = Design(number, (*row, *own[:count]))
-                against[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
+                unmet[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
             self.computed.append((tuple(row), values[number], own if isinstance(own, str) else ""))
-        return values, over, against
+        return values, broken, unmet
 
     def findings(self, solutions: Sequence[Solution], jumps: Sequence[Solution]) -> Solutions:
         """Return what was found together with what was computed."""
@@ -224,12 +224,12 @@ def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
         jumps = np.zeros(len(places), dtype=bool)
     if not len(places):
         return [], []
-    key_values, over, against = designs.at(places)
+    key_values, broken, unmet = designs.at(places)
     solutions: list[list[Solution]] = [[], []]
-    designs.excluded = sum(map(bool, against))
+    designs.excluded = sum(map(bool, unmet))
     for number, row in enumerate(designs.numbers(places).tolist()):
-        if not against[number]:
-            notes = (f"breaks {over[number]}",) if over[number] else ()
+        if not unmet[number]:
+            notes = (f"breaks {broken[number]}",) if broken[number] else ()
             solutions[int(jumps[number])].append(Solution(tuple(row), tuple(key_values[number].tolist()), notes))
     return solutions[0], solutions[1]
 
@@ -238,8 +238,8 @@ def _extreme(designs: _Designs, sign: float) -> Sequence[Solution]:
     """Return the design whose first key value is the least (sign 1) or greatest (−1) within all limits; or none."""
 
     def cost(places: Array) -> Array:
-        values, over, against = designs.at(places)
-        fits = np.array([not one and not other for one, other in zip(over, against)])
+        values, broken, unmet = designs.at(places)
+        fits = np.array([not one and not other for one, other in zip(broken, unmet)])
         return np.where(fits, sign * values[:, 0], np.nan)
 
     place, best = lowest(cost, len(designs.varied))
@@ -259,12 +259,12 @@ def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
     """Return at which bounds an extreme is, and over which range of the only key it is as good."""
     notes: list[str] = []
     steps = _ASIDE * np.concatenate([np.eye(len(place)), -np.eye(len(place))])
-    _, over, against = designs.at(np.clip(place + steps, 0.0, 1.0))
+    _, broken, unmet = designs.at(np.clip(place + steps, 0.0, 1.0))
     for axis, one in enumerate(designs.varied):
         for end, word in ((0.0, "least"), (1.0, "greatest")):
             if abs(place[axis] - end) < _ASIDE:
                 notes.append(f"{one.key} is at the {word} of its range")
-    notes += [f"beyond it: {text}" for text in dict.fromkeys([*over, *against]) if text]
+    notes += [f"beyond it: {text}" for text in dict.fromkeys([*broken, *unmet]) if text]
     if len(place) == 1:
         rows = sorted(designs.computed, key=lambda one: one[0])
         same = [abs(one[1][0] - best) <= _EQUAL * abs(best) for one in rows]

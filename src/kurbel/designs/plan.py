@@ -74,7 +74,7 @@ def read_axis(text: str) -> tuple[Input, ...]:
 
 
 def read_input(text: str) -> Input:
-    """Return what `rod_ratio=3:6:0.25`, `speed=40,50,60 rpm` or `bore=normal(450 mm, 0.2 mm)` says; raises UsageError.
+    """Read `rod_ratio=3:6:0.25`, `speed=40,50,60 rpm` or `bore=normal(450 mm, 0.2 mm)`; raises UsageError.
 
     >>> read_input("speed=40,50,60 rpm").texts
     ('40 rpm', '50 rpm', '60 rpm')

@@ -199,17 +199,17 @@ class Sweep:
         sized = [(one.kind, one.quantity.family, size) for one, size in zip(self.requested, sizes, strict=True)]
         return tuple(units_of(sized, self.spec.system))
 
-    def chunk(self, company: range, wanted: range) -> list[Design]:
+    def chunk(self, together: range, wanted: range) -> list[Design]:
         """Return the wanted rows of a chunk, counted from 0."""
-        own = range(wanted.start - company.start, wanted.stop - company.start)
-        bound = self._binder.bound([self.plan.texts(row) for row in company], own)
+        own = range(wanted.start - together.start, wanted.stop - together.start)
+        bound = self._binder.bound([self.plan.texts(row) for row in together], own)
         found = bound.failures | answers_of(bound.batches, self._every, own)
         answered = {row: each for row in own if not isinstance(each := found[row], str)}
         columns = zip(zip(*answered.values()), self.requested, self._units)
         values = dict(zip(answered, zip(*(_in_unit(column, one.kind, unit) for column, one, unit in columns))))
         rows = []
         for number, inputs in zip(wanted, self.inputs(wanted)):
-            row = number - company.start
+            row = number - together.start
             if row in answered:
                 keeps, broken, unjudged = self._judged(answered[row][len(self.requested) :])
                 rows.append(Design(number + 1, (*inputs, *values[row]), keeps, broken, unjudged))
@@ -327,6 +327,6 @@ def broken_of(limits: Sequence[Limit], values: Sequence[Value]) -> Iterator[str]
 _sweep = lru_cache(maxsize=4)(Sweep)
 
 
-def computed(spec: Spec, company: range, wanted: range) -> list[Design]:
+def computed(spec: Spec, together: range, wanted: range) -> list[Design]:
     """Return rows of a sweep, in whatever process; a sweep is made once in each."""
-    return _sweep(spec).chunk(company, wanted)
+    return _sweep(spec).chunk(together, wanted)

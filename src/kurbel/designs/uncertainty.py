@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kurbel.accuracy.trials import Difference
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
-"""Machines that are drawn where the first order does not hold: side by side, and where each is answered alone."""
+"""Sampled machines where the first order does not hold: computed in batches, and where each is computed alone."""
 _HELD, _FEW_HELD = 200, 10
 """Of these the machines that are held, and counted, at once: a measured trace of each may be large."""
 _STEP = 0.1

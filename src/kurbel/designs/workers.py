@@ -51,8 +51,8 @@ def rows_of(
         with _processes(jobs) as submit:
             yield from _gathered(sweep, rows, submit, lambda: jobs)
     else:
-        for company, wanted in sweep.chunks(rows):
-            yield from sweep.chunk(company, wanted)
+        for together, wanted in sweep.chunks(rows):
+            yield from sweep.chunk(together, wanted)
 
 
 def likely_jobs(rows: int) -> int:
@@ -65,8 +65,8 @@ def likely_jobs(rows: int) -> int:
 def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], int]) -> Iterator[Design]:
     """Yield the rows that others compute, in order, with few chunks of them ahead; workers: how many there are now."""
     waiting: deque[Answer] = deque()
-    for company, wanted in sweep.chunks(rows):
-        waiting.append(submit(sweep.spec, company, wanted))
+    for together, wanted in sweep.chunks(rows):
+        waiting.append(submit(sweep.spec, together, wanted))
         if len(waiting) > _AHEAD * workers():
             yield from waiting.popleft()()
     while waiting:
@@ -172,9 +172,9 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
     def workers() -> int:
         return max(len(client.nthreads()), 1)
 
-    def submit(spec: Spec, company: range, wanted: range) -> Answer:
+    def submit(spec: Spec, together: range, wanted: range) -> Answer:
         key = f"kurbel-{hash(spec)}-{wanted}"
-        future = client.submit(computed, spec, company, wanted, retries=_RETRIES, key=key)
+        future = client.submit(computed, spec, together, wanted, retries=_RETRIES, key=key)
 
         def answer() -> list[Design]:
             waiting = False
