@@ -50,7 +50,7 @@ def tiles(page: str) -> list[tuple[str, str]]:
 
 
 def number_of(text: str) -> float:
-    return float(unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", ""))
+    return float(unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", "").removesuffix("°"))
 
 
 def test_the_waterworks_machine_is_whole_and_small() -> None:
