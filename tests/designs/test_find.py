@@ -61,7 +61,7 @@ def test_a_flat_optimum_is_a_range() -> None:
 
 @pytest.mark.parametrize("span", ["5%:30%", "5:30 %", "0.05:0.3"])
 def test_a_range_in_percent_is_one_of_shares(span: str) -> None:
-    """η_v = 1 − ε [(p_d/p_s)^(1/n) − 1] of the ideal compressor: half of the displacement at ε = 0.5/(4^(1/1.3) − 1)."""
+    """η_v = 1 − ε [(p_d/p_s)^(1/n) − 1] of the ideal compressor is ½ at ε = ½/(4^(1/1.3) − 1)."""
     card = "compressor: {suction: 1 bar, delivery: 4 bar, clearance: 8 %, exponent: 1.3}"
     indicator = f"indicator: {{pressures: absolute, head_end: {{{card}}}}}"
     text = f"{{speed: 1 1/s, stroke: 1 m, rod_ratio: 4, bore: 1 m, {indicator}}}"
