@@ -79,8 +79,9 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
         "facts": [
             {
                 "title": look.text(one.title),
-                "value": look.counted(*single(one.value, look.digits or DIGITS, look.comma)),
-                "unit": look.unit(one.unit),
+                "value": look.counted(*single(one.value, look.digits or DIGITS, look.comma))
+                + "°" * (one.unit == "deg"),
+                "unit": look.unit(one.unit) if one.unit != "deg" else "",
                 "symbol": subscripts(look.text(one.symbol)),
             }
             for one in facts.facts[:_MOST_FACTS]
