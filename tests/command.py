@@ -21,3 +21,10 @@ def answer(*words: object, text: str | None = None) -> dict[str, Any]:
     assert result.exit_code == 0, result.output
     parsed: dict[str, Any] = json.loads(result.stdout)
     return parsed
+
+
+def printed(*words: object, text: str | None = None) -> str:
+    """Return what a command prints that ends well, and says nothing beside it."""
+    result = run(*words, text=text)
+    assert (result.exit_code, result.stderr) == (0, "")
+    return result.stdout

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
 import kurbel as api
-from kurbel.cli import kurbel
+from command import run
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
@@ -37,10 +36,6 @@ def machine(kind: str, ratio: object, more: str = "") -> str:
     one = f"stroke: 200 mm, rod_ratio: {ratio}, bore: 100 mm, indicator: {{{SINGLE}{second}}}"
     cylinders = "".join(f"  - {{{one}, crank_position: {angle} deg}}\n" for angle in angles)
     return f"speed: 60 rpm\ncylinders:\n{cylinders}{more}"
-
-
-def run(*arguments: object, file: str = "") -> Result:
-    return CliRunner().invoke(kurbel, [str(one) for one in arguments], input=file or None)
 
 
 # pumps

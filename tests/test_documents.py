@@ -19,14 +19,13 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 import from_declarations  # docs/from_declarations.py
 import notebook  # docs/notebook.py
 import python_reference  # docs/python_reference.py
 import shipped  # docs/shipped.py
 import validation  # docs/validation.py
-from kurbel.cli import kurbel
+from command import run
 from representative import law_of_each
 from worked_examples import TABLE
 
@@ -91,7 +90,7 @@ def output_of(command: str, folder: Path) -> str:
     if words[:1] == ["kurbel"]:
         with pytest.MonkeyPatch.context() as place:
             place.chdir(folder)
-            ran = CliRunner().invoke(kurbel, words[1:])
+            ran = run(*words[1:])
         if not rest:
             return ran.output
         line, given, heard = rest, ran.stdout_bytes, ran.stderr

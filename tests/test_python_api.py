@@ -6,17 +6,15 @@ Figures are those of the command line: the same machine, the same quantity, whic
 from __future__ import annotations
 
 import inspect
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kurbel
-from kurbel.cli import kurbel as command_line
+from command import answer
 from representative import case_of
 
 CONFIGS = Path(__file__).parent.parent / "configs"
@@ -52,11 +50,7 @@ CLASSES_ALONE = {"KurbelError": Exception, "Mechanism": object}
 
 def printed(command: str, machine: str, *options: str) -> dict[str, Any]:
     """Return what the command line prints of a shipped machine as JSON, in SI."""
-    arguments = [command, str(CONFIGS / f"{machine}.yaml"), "-f", "json", *options]
-    result = CliRunner().invoke(command_line, arguments)
-    assert result.exit_code == 0, result.stderr
-    answer: dict[str, Any] = json.loads(result.stdout)
-    return answer
+    return answer(command, CONFIGS / f"{machine}.yaml", *options)
 
 
 def solved(machine: str) -> kurbel.Case:

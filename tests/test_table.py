@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 
 import mpmath
 import pytest
-from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.cli import kurbel
+from command import answer
 from kurbel.report.tables import Report
 from kurbel.report.zusammenstellung import ROWS, zusammenstellung
 from representative import law_of_each
-
-
-def run(*arguments: str) -> str:
-    result = CliRunner().invoke(kurbel, ["table", *arguments])
-    assert result.exit_code == 0, result.output
-    return result.stdout
 
 
 def values(report: Report, ratio: float, row: str) -> dict[float, float]:
@@ -90,6 +82,6 @@ def test_first_order_rows(ratio: float, phi: float) -> None:
 
 @pytest.mark.parametrize("ratio", ["1.0000000000000002", "1e300", "1.7976931348623157e308"])
 def test_extreme_ratios_stay_finite(ratio: str) -> None:
-    content = json.loads(run("--ratio", ratio, "--rows", "b,c,x,psi,S,N,D,T_b,x/s", "-f", "json"))
+    content = answer("table", "--ratio", ratio, "--rows", "b,c,x,psi,S,N,D,T_b,x/s")
     for column in content["ratios"][0]["columns"]:
         assert all(math.isfinite(value) for value in column["values"])

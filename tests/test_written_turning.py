@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
+from command import run
 from kurbel import load, loads, solve
-from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
@@ -63,7 +62,7 @@ def test_brake_torque() -> None:
     """At 60 rpm 10 kN m are 62.8 kW; 4 bar on the piston indicate 50.9 kW."""
     machine = loads(ENGINE + GAS + "brake_torque: 10 kN m\n")
     assert machine.brake_power == pytest.approx(2 * math.pi * 1e4, rel=1e-15)
-    told = CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
+    told = run("check", "-", text=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
     assert "is below the brake power" in " ".join(told.split())
     both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
     assert "'brake_power' and 'brake_torque' mean the same" in both
@@ -99,9 +98,9 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
     assert turning.rim_section == pytest.approx(inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12)
     assert turning.rim_speed == pytest.approx(omega * 1.5, rel=1e-15)
     assert turning.rim_stress == pytest.approx(7200 * (omega * 1.5) ** 2, rel=1e-14)
-    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    printed = run("flywheel", "-", text=text).stdout
     assert "hoop stress" not in printed.partition("Warnings")[2]
-    weak = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text.replace("6 MPa", "2 MPa")).stdout
+    weak = run("flywheel", "-", text=text.replace("6 MPa", "2 MPa")).stdout
     assert "the hoop stress of the rim, 2.55" in " ".join(weak.partition("Warnings")[2].split())
 
 
@@ -129,7 +128,7 @@ def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
     assert turning.delta_book == pytest.approx(turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14)
     if "width" in sizes:
         assert turning.rim_section == pytest.approx(0.1524 * 0.3048, rel=1e-14)
-    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    printed = run("flywheel", "-", text=text).stdout
     assert "arms and hub of the flywheel  J is that of the rim" in printed
 
 

@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import CliRunner
 
+from command import answer, printed, run
 from kurbel import loads
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
@@ -28,10 +29,6 @@ ENGINE = """
  indicator: {head_end: {unit: bar, expansion: [[0, 9], [0.3, 9], [1, 2]], compression: [[1, 1], [0.2, 1], [0, 9]]}},
  friction: {crosshead: 0.05}}
 """
-
-
-def run(*arguments: str, machine: str = MOTION) -> Result:
-    return CliRunner().invoke(kurbel, ["accuracy", *arguments], input=machine)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -78,7 +75,7 @@ def tables(content: dict[str, object]) -> dict[str, dict[str, object]]:
 
 
 def test_text_names_versions_methods_and_states() -> None:
-    text = run("-", "--quick").stdout
+    text = printed("accuracy", "-", "--quick", text=MOTION)
     assert text.startswith("plain. Accuracy and run time\nkurbel ")
     assert re.search(r"Python 3\.\d+\.\d+, numpy \d", text)
     assert "quantity  method             points  state" in text
@@ -112,9 +109,7 @@ def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engi
 
 def test_a_mechanism_without_a_reference_says_so() -> None:
     machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
-    result = run("-", "--quick", machine=machine)
-    assert result.exit_code == 0
-    assert "no independent calculation of the four-bar" in result.stdout
+    assert "no independent calculation of the four-bar" in printed("accuracy", "-", "--quick", text=machine)
 
 
 def scene(name: str, *rows: tuple[str, str, str, float | None, float | None]) -> Part:
@@ -155,7 +150,7 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
 
 
 def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
-    result = run("-", "--quick", "--plot", str(tmp_path / "no folder" / "picture.svg"))
+    result = run("accuracy", "-", "--quick", "--plot", tmp_path / "no folder" / "picture.svg", text=MOTION)
     assert result.exit_code == 2
     assert "cannot write" in result.stderr
 
@@ -166,12 +161,12 @@ def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatc
         Probe("wrong", MOTION, "motion c@30", "status 2: never"),
     ]
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases)
-    result = run("--extremes")
+    result = run("accuracy", "--extremes")
     assert result.exit_code == 1
     assert "1 of 2 cases passed" in result.stdout
     assert "FAILED" in result.stdout
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases[:1])
-    assert run("--extremes").exit_code == 0
+    assert run("accuracy", "--extremes").exit_code == 0
 
 
 IDLE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -194,10 +189,7 @@ def test_no_error_is_relative_to_zero(text: str) -> None:
         assert all(one.error < 2 for one in found)
 
 
-def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told(tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(IDLE + WORKLESS["zero"], encoding="utf-8")
-    result = CliRunner().invoke(kurbel, ["accuracy", str(tmp_path / "m.yaml"), "--quick", "-f", "json"])
-    assert result.exit_code == 0, result.stderr
-    (scene,) = json.loads(result.stdout)["scenes"]
+def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told() -> None:
+    (scene,) = answer("accuracy", "-", "--quick", text=IDLE + WORKLESS["zero"])["scenes"]
     assert [one["what"] for one in scene["left_out"]] == ["A_i", "T_max, T_min", "ΔE"]
     assert {one["why"] for one in scene["left_out"]} == {"it is zero, and no error is relative to that"}

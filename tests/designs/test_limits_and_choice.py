@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kurbel
-from swept_rows import CONFIGS, WATERWORKS, rows, run
+from swept_rows import CONFIGS, WATERWORKS, rows
 
 RATIOS = ("--vary", "rod_ratio=0.5,3,4,5,6")
 
@@ -34,8 +34,6 @@ def test_rows_are_chosen_by_their_texts() -> None:
     assert numbers(*asked, "--where", "keeps == no") == numbers(*asked, "--where", "broken = N_max") == [2, 3]
     assert numbers(*asked, "--where", "failure =") == [2, 3, 4, 5]
     assert numbers(*asked, "--where", "failure ≠") == [1]
-    wrong = run(*RATIOS, "--where", "keep = yes", "--set", "limits.N_max=20 kN")
-    assert "no column 'keep'; did you mean 'keeps'?" in wrong.output
 
 
 def test_an_infinite_rod_is_the_longest() -> None:

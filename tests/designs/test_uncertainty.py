@@ -10,10 +10,9 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kurbel
-from kurbel.cli import kurbel as command
+from command import run
 from kurbel.designs.answers import Answer
 from kurbel.designs.uncertainty import Uncertain, data_uncertainty, read_inputs, uncertainties
 from kurbel.machine_file import source
@@ -82,13 +81,13 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     file = tmp_path / "m.yaml"
     file.write_text(text, encoding="utf-8")
     for name, id, part in (("forces", "T_max", "cylinders"), ("flywheel", "dE", "machine_place_tables")):
-        result = CliRunner().invoke(command, [name, str(file), "--key-values", "-f", "json"])
+        result = run(name, file, "--key-values", "-f", "json")
         assert result.exit_code == 0, result.output
         told = json.loads(result.stdout)
         tables = told[part] if part == "machine_place_tables" else told[part][0]["place_tables"]
         (table,) = tables
         assert any(id in str(row) for row in table["rows"])
-    page = CliRunner().invoke(command, ["forces", str(file), "--key-values"]).stdout
+    page = run("forces", file, "--key-values").stdout
     assert "Standard uncertainty, and the share of each input in its square" in page
     assert "speed" in page
 
@@ -104,7 +103,7 @@ uncertainty:
   name: 2 %
   crank: 0.1 mm
 """
-    result = CliRunner().invoke(command, [asked, "-"], input=text)
+    result = run(asked, "-", text=text)
     assert result.exit_code == 2
     told = [line for line in result.stderr.splitlines() if line.startswith("<stdin>")]
     assert [line.split(":")[1:4] for line in told] == [

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
+from command import run
 from kurbel import load
-from kurbel.cli import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
@@ -53,10 +52,6 @@ def turning(*cylinders: Cylinder, eta: float = 1.0, **more: Any) -> MachineTurni
 def gas_torque(*pistons: Piston, behind: float = 0.0) -> np.ndarray:
     """Return P dx/dφ in N m of gas on these pistons alone."""
     return turning(Cylinder(ENGINE.mechanism, pistons=pistons, crank_position=behind)).at(ANGLES).M
-
-
-def run(command: str, file: Path, *words: str) -> Result:
-    return CliRunner().invoke(kurbel, [command, str(file), *words])
 
 
 def works() -> Machine:
