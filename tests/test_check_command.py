@@ -12,7 +12,6 @@ import pytest
 
 from command import run
 from kurbel import loads, solve
-from kurbel.errors import KurbelError
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -110,17 +109,6 @@ def test_expected_figures_are_compared() -> None:
     assert f"FAIL, {off:.9g} m/s2 too large  (cylinder 1)" in listed
     status, listed, _ = called(ENGINE + "expect: {c_m: [1.7 m/s, 1.8 m/s]}\n", "check")
     assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  FAIL, 0.1 m/s too small" in listed) == (1, True)
-
-
-def test_an_expectation_of_what_is_not_there_is_a_fault() -> None:
-    status, _, said = called(
-        ENGINE + "expect: {T_max: 1 N ± 1 %, phi_reversal: 1 deg ± 1 deg, c_mx: 1 N ± 1 %}\n", "check"
-    )
-    assert status == 2
-    assert "'phi_reversal' is a list of values; no expectation can be put on it" in said
-    assert "unknown key value 'c_mx'; did you mean 'c_max'?" in said
-    status, _, said = called(ENGINE + "expect: {T_max: 1 N ± 1 %}\n", "check")
-    assert (status, "expect.T_max: this machine has no T_max" in said) == (2, True)
 
 
 # findings for programs
@@ -381,12 +369,6 @@ def test_findings_stand_at_the_name_as_it_is_written() -> None:
     result = of_two(f"limits: {{machine.T_max: {newton(1)}}}", "check", "-f", "json")[1]
     found = [one for one in json.loads(result)["findings"] if one["key"] == "limits.machine.T_max"]
     assert [(one["line"], one["column"], one["severity"]) for one in found] == [(5, 10, "error")]
-
-
-def test_no_cylinder_is_called_machine() -> None:
-    with pytest.raises(KurbelError, match=r"cylinders\[0\]\.name: 'machine' means the whole machine"):
-        loads(TWO.replace("HP", "machine"))
-    assert loads("{name: machine, crank: 1 m, rod: 4 m}").name == "machine"
 
 
 def test_a_sweep_keeps_limits_of_those_they_name() -> None:

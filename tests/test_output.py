@@ -13,12 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from command import run
-from kurbel.cli import COMMANDS
+from command import printed, run
 from kurbel.errors import UsageError
 from kurbel.render.output import write_out
 from kurbel.report.tables import MOST_ROWS, check_rows, stepped
-from representative import few, law_of_each
+from representative import few
 
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")
 MACHINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -171,27 +170,11 @@ def test_no_status_hangs_on_standard_error(arguments: str, status: int, stderr: 
     assert subprocess.run(["bash", "-c", command], cwd=tmp_path, check=False, stdout=-3).returncode == status
 
 
-@law_of_each(["", *COMMANDS])
-def test_help_names_the_statuses(command: str) -> None:
-    text = " ".join(run(*command.split(), "--help").stdout.split())
-    said = text.partition("Exit status: ")[2]
+def test_help_names_the_statuses() -> None:
+    """Those of each command stand in docs/reference/commands.md, which is held against its help."""
+    said = " ".join(printed("--help").split()).partition("Exit status: ")[2]
     assert said.startswith("0 done; ")
-    assert all(f" {status} " in said for status in (2, 70, 130))
-    assert (" 1 " in said) == (command in ("", "check", "accuracy"))
-    solved = [
-        "forces",
-        "flywheel",
-        "stress",
-        "bearings",
-        "balance",
-        "torsion",
-        "delivery",
-        "plot",
-        "find",
-        "check",
-        "accuracy",
-    ]
-    assert (" 3 " in said) == (command in ("", *solved))
+    assert all(f" {status} " in said for status in (1, 2, 3, 70, 130))
 
 
 # long tables

@@ -92,29 +92,6 @@ def test_forces_and_flywheel_tell_it_beside_their_key_values(tmp_path: Path) -> 
     assert "speed" in page
 
 
-@pytest.mark.parametrize("asked", ["check", "forces"])
-def test_all_that_is_wrong_with_uncertainties_is_told_at_its_place(asked: str) -> None:
-    text = """\
-crank: 400 mm
-rod: 2 m
-uncertainty:
-  rd: 1 %
-  rod: 3 kg
-  name: 2 %
-  crank: 0.1 mm
-"""
-    result = run(asked, "-", text=text)
-    assert result.exit_code == 2
-    told = [line for line in result.stderr.splitlines() if line.startswith("<stdin>")]
-    assert [line.split(":")[1:4] for line in told] == [
-        ["4", "7", " uncertainty.rd"],
-        ["5", "8", " uncertainty.rod"],
-        ["6", "9", " uncertainty.name"],
-    ]
-    assert "did you mean 'rod'" in told[0]
-    assert "kg is a unit of mass" in told[1]
-
-
 @pytest.mark.parametrize("share", [1e-5, 1e-3, 0.02, 0.05])
 def test_differences_are_as_good_as_exact_derivatives(share: float) -> None:
     """Of c_max by L/R against thirty digits: u has eight of them from uncertainties of 1e-5 of the value to 5 %."""

@@ -22,14 +22,6 @@ def test_largest_speeds_of_the_book():
     assert machine.stroke == pytest.approx(2 * 1.3 * 0.3 / 0.8, rel=1e-15)
 
 
-def test_working_and_return_angle():
-    machine = SlottedLever(0.3, 0.6, 1.0)  # cos β = 1/2
-    assert machine.phi_return == pytest.approx(120, rel=1e-15)
-    assert machine.phi_work == pytest.approx(240, rel=1e-15)
-    assert machine.time_ratio == pytest.approx(2, rel=1e-15)
-    assert machine.swing == pytest.approx(60, rel=1e-15)
-
-
 @pytest.mark.parametrize(
     ("crank", "frame", "ratio", "swing"),
     [(120, 240, 2.0, 60.0), (75, 50, 2.735, None)],

@@ -33,14 +33,6 @@ def test_largest_velocity(rod_ratio, printed, exact, degrees, square_rod):
     assert 0 < 1 - rule / largest.value < 1.1e-4
 
 
-def test_mean_piston_speed():
-    """R 290: c_m/v = 2/π = 1/1.5708."""
-    machine = SliderCrank(0.4, 2.0)
-    mean_over_pin = 2 * machine.stroke / (2 * math.pi * machine.crank)
-    assert mean_over_pin == pytest.approx(0.6366, abs=5e-5)
-    assert 1 / mean_over_pin == pytest.approx(1.5708, abs=5e-5)
-
-
 @pytest.mark.parametrize("lam", [1 / 6, 1 / 5, 1 / 4])
 def test_acceleration_at_the_dead_centres_and_between(lam):
     """R 292 and 294 are exact; R 293, −λ at 90°, is exact with √(1 − λ²) below it."""
