@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+from threading import Timer
 from typing import Any
 
 from click.testing import CliRunner, Result
@@ -28,3 +30,10 @@ def printed(*words: object, text: str | None = None) -> str:
     result = run(*words, text=text)
     assert (result.exit_code, result.stderr) == (0, "")
     return result.stdout
+
+
+def limited(process: subprocess.Popen[Any], seconds: float = 60) -> None:
+    """Kill a process that takes longer, so that nobody waits for what it does not say."""
+    timer = Timer(seconds, process.kill)
+    timer.daemon = True
+    timer.start()

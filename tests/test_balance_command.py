@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from command import answer, printed, run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
 V90 = """
 speed: 600 rpm
 cylinders:
@@ -20,7 +19,7 @@ cylinders:
 
 
 def parsed(name: str, *more: str) -> dict[str, Any]:
-    return answer("balance", CONFIGS / f"{name}.yaml", *more)
+    return answer("balance", CONFIGS[name], *more)
 
 
 def ids(entries: list[dict[str, Any]]) -> list[str]:

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from command import run
+from command import limited, run
 from kurbel.cli import COMMANDS, group, kurbel
-from representative import few, law_of_each
+from representative import CONFIGS, few, law_of_each
 
 ESCAPE = b"\x1b"
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell or terminal")
@@ -51,7 +51,8 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
         env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "LINES")}
         | {"PYTHONIOENCODING": "utf-8"}
         | settings,
-    ):
+    ) as process:
+        limited(process)
         os.close(follower)
         written = b""
         while True:
@@ -117,7 +118,7 @@ def test_quick_commands_import_nothing_heavy() -> None:
 
 def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
-    machine = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+    machine = str(CONFIGS["waterworks"])
     for arguments in (["table"], ["forces", machine, "--layout", "rows"], ["check", machine]):
         plain = run(*arguments).stdout
         for columns in (80, 40):
@@ -180,7 +181,7 @@ def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
     assert "sin(φ+ψ)/cos ψ".encode() in written
 
 
-WATERWORKS = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+WATERWORKS = str(CONFIGS["waterworks"])
 SELECTED = b"First selection. All columns, angles and key values: kurbel forces FILE --all"
 
 
@@ -243,13 +244,12 @@ def test_a_terminal_shows_what_is_left_after_two_seconds(
 
 
 def test_example_lists_every_machine_with_its_first_line() -> None:
-    folder = Path(__file__).parent.parent / "configs"
     lines = run("example").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == sorted(path.stem for path in folder.glob("*.yaml"))
+    assert [line.split()[0] for line in lines] == sorted(CONFIGS)
     assert all(len(line.split()) > 3 for line in lines)
 
 
 def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
-    shipped = (Path(__file__).parent.parent / "configs" / "waterworks.yaml").read_bytes()
+    shipped = CONFIGS["waterworks"].read_bytes()
     assert run("example", "waterworks").stdout_bytes == shipped
     assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped

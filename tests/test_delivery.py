@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +11,8 @@ import pytest
 import kurbel as api
 from command import run
 from kurbel.solver.delivery import Delivery
+from representative import CONFIGS
 
-CONFIGS = Path(__file__).parents[1] / "configs"
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
 SINGLE, DOUBLE = "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}", ", crank_end: mirrored"
 PUMPS = {
@@ -239,7 +238,7 @@ def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
 
 @pytest.mark.parametrize("command", ["forces", "delivery"])
 def test_a_row_for_each_load_case(command: str) -> None:
-    file = CONFIGS / "compressor-two-stage.yaml"
+    file = CONFIGS["compressor-two-stage"]
     ids = {"forces": "rod_compression_max", "delivery": "capacity"}[command]
     found = json.loads(run(command, file, "--cases", "--columns", ids, "-f", "json").stdout)
     tables = {part["name"]: part["place_tables"][0] for part in found["cylinders"]}
@@ -268,7 +267,7 @@ PIPES = (
     "vessel: {volume: 0.2 l, exponent: 1.2}}}\n"
 )
 PUMP = machine("three single-acting", 5, PIPES)
-TWO_STAGES = CONFIGS / "compressor-two-stage.yaml"
+TWO_STAGES = CONFIGS["compressor-two-stage"]
 FLOWS = "flow_mean flow_max volume_fluctuation vessel_swing suction_lift_max acceleration_head_max"
 GAS = "mass_flow isentropic_power discharge_temperature capacity_normal"
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from command import printed
-from representative import few
+from representative import CONFIGS, few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
-FOUR = str(CONFIGS / "four-cylinder-generator.yaml")
+FOUR = str(CONFIGS["four-cylinder-generator"])
 EQUAL = """
 speed: 600 rpm
 cycle: four-stroke
@@ -45,7 +42,7 @@ def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
     assert "\ncylinders 1–4\n" in page
     lines = page.split("\nCranks\n")[1].split("\n\n")[0].splitlines()
     assert lines == [f"  cylinder {n}  {at} deg after the first" for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))]
-    assert "Cranks" not in printed("check", str(CONFIGS / "waterworks.yaml"))
+    assert "Cranks" not in printed("check", str(CONFIGS["waterworks"]))
 
 
 def test_one_that_differs_stands_alone() -> None:

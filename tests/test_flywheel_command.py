@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,12 +14,12 @@ from command import answer, printed, run
 from kurbel.machine_file import loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-CONFIGS = Path(__file__).parents[1] / "configs"
-ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
-PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
+ENGINE = CONFIGS["waterworks"].read_text(encoding="utf-8")
+PUNCH = CONFIGS["punch"].read_text(encoding="utf-8")
 
 
 @cache

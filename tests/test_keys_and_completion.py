@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from click.testing import CliRunner
 
 from command import printed
 from kurbel.cli import kurbel
-
-CONFIGS = Path(__file__).parent.parent / "configs"
+from representative import CONFIGS
 
 
 def completed(words: str) -> list[str]:
@@ -75,6 +72,6 @@ def test_what_a_shell_completes(words: str, some: list[str]) -> None:
 
 
 def test_cylinders_are_completed_from_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(CONFIGS)
+    monkeypatch.chdir(CONFIGS["waterworks"].parent)
     found = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
     assert found == [f"cylinder {i}" for i in (1, 2, 3, 4)]

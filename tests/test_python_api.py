@@ -14,10 +14,9 @@ import pytest
 
 import kurbel
 from command import answer
-from representative import case_of
+from representative import CONFIGS, case_of
 
-CONFIGS = Path(__file__).parent.parent / "configs"
-WATERWORKS = CONFIGS / "waterworks.yaml"
+WATERWORKS = CONFIGS["waterworks"]
 
 NAMES = "Case Cylinder Machine Piston SliderCrank draw find load loads solve sweep"
 """Their signatures stand in docs/reference/python.md, which is held against the code."""
@@ -27,11 +26,11 @@ CLASSES_ALONE = {"KurbelError": Exception, "Mechanism": object}
 
 def printed(command: str, machine: str, *options: str) -> dict[str, Any]:
     """Return what the command line prints of a shipped machine as JSON, in SI."""
-    return answer(command, CONFIGS / f"{machine}.yaml", *options)
+    return answer(command, CONFIGS[machine], *options)
 
 
 def solved(machine: str) -> kurbel.Case:
-    return kurbel.solve(kurbel.load(CONFIGS / f"{machine}.yaml"))
+    return kurbel.solve(kurbel.load(CONFIGS[machine]))
 
 
 def test_public_names() -> None:
@@ -77,7 +76,7 @@ def test_key_values_by_id_by_symbol_and_as_attributes(command: str, machine: str
 
 
 def test_machines_made_and_changed() -> None:
-    file = str(CONFIGS / "waterworks.yaml")
+    file = str(CONFIGS["waterworks"])
     faster = kurbel.load(file, ["speed=100 rpm"])
     assert faster.speed == 2 * kurbel.load(file).speed
     assert isinstance(faster, kurbel.Machine)
@@ -118,7 +117,7 @@ def test_a_name_that_is_not_there_is_told(name: str, told: str) -> None:
 
 
 def test_of_several_cylinders_each_has_its_own() -> None:
-    case = kurbel.solve(kurbel.load(CONFIGS / "waterworks-two-cranks.yaml"))
+    case = kurbel.solve(kurbel.load(CONFIGS["waterworks-two-cranks"]))
     assert case["T_max"].value == case.flywheel.T_max.value
     with pytest.raises(kurbel.KurbelError, match="each cylinder has its own P_max"):
         _ = case["P_max"]

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
-from click.testing import CliRunner
 
 from command import answer, printed, run
 from kurbel import loads
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
 from kurbel.accuracy.trials import data_errors, model_errors
-from kurbel.cli import kurbel
 from kurbel.report import accuracy
 from kurbel.report.accuracy import accuracy_picture
 from kurbel.report.tables import Column, Part, PlaceTable, Report
@@ -47,31 +45,18 @@ def once(run: Callable[[], object], quick: bool) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def measured() -> Report:
-    """What is measured of the engine: seconds of work, once for all formats."""
+    """What is measured of the engine: seconds of work, once."""
     return accuracy.accuracy_report(loads(ENGINE), True, loads)
 
 
 @pytest.fixture
-def formatted(measured: Report, monkeypatch: pytest.MonkeyPatch) -> Callable[..., bytes]:
-    """The command as it runs in a format, with what was measured before."""
-
-    def output(*arguments: str, charset: str = "utf-8") -> bytes:
-        monkeypatch.setattr(accuracy, "accuracy_report", lambda *_: measured)
-        result = CliRunner(charset=charset).invoke(kurbel, ["accuracy", "-", "--quick", *arguments], input=ENGINE)
-        assert result.exit_code == 0, result.output
-        return result.stdout_bytes
-
-    return output
+def engine(measured: Report, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    monkeypatch.setattr(accuracy, "accuracy_report", lambda *_: measured)
+    return answer("accuracy", "-", "--quick", text=ENGINE)
 
 
-@pytest.fixture
-def engine(formatted: Callable[..., bytes]) -> dict[str, object]:
-    content: dict[str, object] = json.loads(formatted("-f", "json"))
-    return content
-
-
-def tables(content: dict[str, object]) -> dict[str, dict[str, object]]:
-    return {table["id"]: table for table in content["scenes"][0]["place_tables"]}  # type: ignore[index]
+def tables(content: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    return {table["id"]: table for table in content["scenes"][0]["place_tables"]}
 
 
 def test_text_names_versions_methods_and_states() -> None:
@@ -85,7 +70,7 @@ def test_text_names_versions_methods_and_states() -> None:
     assert "leaving out saves" not in text  # nothing to leave out
 
 
-def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
+def test_json_has_the_four_sections(engine: dict[str, Any]) -> None:
     assert engine["command"] == "accuracy"
     assert engine["machine"] == "engine"
     assert list(tables(engine)) == ["numerical_error", "model_error", "data_error", "leaving_out"]
@@ -94,7 +79,7 @@ def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
     assert {row["state"] for row in rows} == {"ok"}
 
 
-def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engine: dict[str, object]) -> None:
+def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engine: dict[str, Any]) -> None:
     found = tables(engine)
     numerical = found["numerical_error"]
     errors = next(column for column in numerical["columns"] if column["id"] == "error")["values"]

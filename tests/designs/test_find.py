@@ -13,18 +13,17 @@ from kurbel.designs.find import Solutions, find
 from kurbel.machine_file.source import decode, read
 from kurbel.numerics.search import lowest
 from kurbel.render.findings import picture
-
-CONFIGS = Path(__file__).parents[2] / "configs"
+from representative import CONFIGS
 
 
 def found_in(name: str, vary: str, *equations: str, **how: object) -> Solutions:
-    return find(read(CONFIGS / f"{name}.yaml"), vary.split("; "), equations, **how)  # type: ignore[arg-type]
+    return find(read(CONFIGS[name]), vary.split("; "), equations, **how)  # type: ignore[arg-type]
 
 
 def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
     """J_δ,ω of `kurbel flywheel` is found by another way: Newton's method on the speed line of one machine."""
     found = found_in("waterworks-two-cranks", "flywheel.inertia=10000:80000 kg m2", "delta = 1/50").found
-    told = json.loads(run("flywheel", str(CONFIGS / "waterworks-two-cranks.yaml"), "-f", "json").stdout)
+    told = json.loads(run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout)
     by_id = {one["id"]: one["value"] for one in told["machine_key_values"]}
     assert [one.values[0] for one in found] == pytest.approx([by_id["J_exact"]], rel=1e-9)
 
@@ -56,7 +55,7 @@ def test_a_flat_optimum_is_a_range() -> None:
 def test_two_planted_values_are_found_again() -> None:
     """A machine with s = 0.8 m and L/R = 5 has these T_max and N_max: both equations give its sizes back."""
     planted = found_in("waterworks", "rod_ratio=4.999:5.001", least="T_max", conditions=["N_max > 0 N"])
-    case = json.loads(run("forces", str(CONFIGS / "waterworks.yaml"), "-f", "json", "--set", "rod_ratio=5").stdout)
+    case = json.loads(run("forces", str(CONFIGS["waterworks"]), "-f", "json", "--set", "rod_ratio=5").stdout)
     by_id = {one["id"]: one["value"] for one in case["cylinders"][0]["key_values"]}
     equations = [f"{id} = {by_id[id]!r} N" for id in ("T_max", "N_max")]
     found = found_in("waterworks", "stroke=600:1000 mm; rod_ratio=4:8", *equations).found
@@ -83,7 +82,7 @@ def test_parts_of_the_range_that_fail_are_reported() -> None:
 
 
 def test_the_written_file_has_what_was_wanted(tmp_path: Path) -> None:
-    file = CONFIGS / "waterworks-two-cranks.yaml"
+    file = CONFIGS["waterworks-two-cranks"]
     asked = ("find", str(file), "--vary", "flywheel.inertia=10000:80000 kg m2", "delta = 1/80")
     written = run(*asked, "--write")
     new = tmp_path / "new.yaml"
@@ -123,7 +122,7 @@ def test_the_key_value_is_drawn_over_the_key(tmp_path: Path) -> None:
     level = picture(found_in("waterworks", "speed=40:60 rpm", least="stroke"), "metric")
     assert len(level.panels[0].curves) == 1
 
-    arguments = "find", str(CONFIGS / "waterworks.yaml"), "--vary", "rod_ratio=3:8", "N_max = 20 kN", "--plot"
+    arguments = "find", str(CONFIGS["waterworks"]), "--vary", "rod_ratio=3:8", "N_max = 20 kN", "--plot"
     assert "rod_ratio 4.123" in run(*arguments).stdout
     file = tmp_path / "found.svg"
     assert run(*arguments, "-o", str(file)).exit_code == 0
@@ -166,5 +165,5 @@ def test_an_end_of_the_range_may_fail_by_what_is_wanted() -> None:
     assert len(found.found) == 1
     assert "would empty" in found.failed[0].why
     vary = ("--vary", "pump.delivery_pipe.vessel.volume=0.001,1 l", "--columns", "vessel_swing", "-f", "csv")
-    ran = run("sweep", str(CONFIGS / "triplex-pump.yaml"), *vary)
+    ran = run("sweep", str(CONFIGS["triplex-pump"]), *vary)
     assert [("would empty" in line) for line in ran.stdout.splitlines()] == [False, True, False]

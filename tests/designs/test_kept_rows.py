@@ -9,15 +9,15 @@ import pytest
 from command import run
 from kurbel.designs.sweep import Design, Sweep
 from kurbel.errors import KurbelError
+from representative import CONFIGS
 
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 ASKED = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
 
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Path:
     file = tmp_path / "engine.yaml"
-    file.write_text((CONFIGS / "waterworks.yaml").read_text())
+    file.write_text(CONFIGS["waterworks"].read_text())
     return file
 
 

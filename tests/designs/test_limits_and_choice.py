@@ -51,14 +51,14 @@ def test_rows_are_chosen_by_printed_symbols() -> None:
     asked = (*RATIOS, "--columns", "dE,P_start_max")
     assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
     assert numbers(*asked, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
-    compressor = str(CONFIGS / "compressor-two-stage.yaml")
+    compressor = str(CONFIGS["compressor-two-stage"])
     by_symbol = ("--vary", "speed=300,500 rpm", "--columns", "p_i", "--sort", "low pressure.p_i")
     assert [one["row"] for one in rows(*by_symbol, file=compressor)]
 
 
 def test_every_extreme_has_its_angle() -> None:
     """Not of `forces` alone: ω_max of the speed line, loads and stresses stand somewhere, too."""
-    file = str(CONFIGS / "gas-engine.yaml")
+    file = str(CONFIGS["gas-engine"])
     (found,) = rows("--vary", "speed=200 rpm", "--columns", "P_dc,sigma_pin_max,E_max,dE", "--angles", file=file)
     case = kurbel.solve(kurbel.load(file, ["speed=200 rpm"]))
     assert found["E_max_at_deg"] == case["E_max"].degrees

@@ -17,8 +17,9 @@ from kurbel.designs.answers import Answer
 from kurbel.designs.uncertainty import Uncertain, data_uncertainty, read_inputs, uncertainties
 from kurbel.machine_file import source
 from kurbel.quantities import every_quantity
+from representative import CONFIGS
 
-WATERWORKS = Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml"
+WATERWORKS = CONFIGS["waterworks"]
 
 
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:

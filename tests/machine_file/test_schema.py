@@ -19,10 +19,12 @@ from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import ZEROED_UNITS, example, parse_quantity, unit_names
 from kurbel.errors import RuleError, UnitError
 from kurbel.machine_file.reader import ROOT
-from kurbel.machine_file.schema import describe
+from kurbel.machine_file.schema import describe, json_schema
 from kurbel.traces.correct import Trace
 from representative import law_of_each
-from schemas import whole_schema
+
+whole_schema = cache(json_schema)
+"""Made once: that takes a third of a second."""
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +55,8 @@ SLIDER = {"crank": "400 mm", "rod": "2 m"}
         *({"crank": "400 mm", "rod_ratio": wrong} for wrong in ("5:1", "10/")),
         *({"mechanism": "four-bar", "crank": "400 mm"}, {"mechanism": "gearwheel"}, {"cylinders": []}),
         {"bore": "400 mm", "cylinders": [SLIDER]},
+        {"cylinders": {"count": 4}},
+        {"cylinders": [{"like": "A", "boore": "5 m"}]},
         {"effort": {"unit": "N m", "points": [[0, 1, 5], [360, 2]]}},
     ],
 )

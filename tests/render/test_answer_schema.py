@@ -9,9 +9,9 @@ import pytest
 from jsonschema import Draft7Validator
 
 from command import run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parents[2] / "configs"
 BROKEN = """\
 name: Engine with five mistakes
 speed: 50
@@ -37,9 +37,9 @@ MACHINES = [
 ANSWERS = [
     ["table", "--compare"],
     ["friction", "--incline", "30", "--coefficient", "0.1"],
-    *([command, str(CONFIGS / f"{name}.yaml")] for command, name in MACHINES),
-    ["check", str(CONFIGS / "waterworks.yaml"), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
-    ["forces", str(CONFIGS / "waterworks.yaml"), "--uncertainty", "bore=0.1mm"],
+    *([command, str(CONFIGS[name])] for command, name in MACHINES),
+    ["check", str(CONFIGS["waterworks"]), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
+    ["forces", str(CONFIGS["waterworks"]), "--uncertainty", "bore=0.1mm"],
 ]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,10 +18,10 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from machines import AT, STEAM_CARD, constant_pressure
+from representative import CONFIGS
 from turning_machines import of_points
 
-CONFIGS = Path(__file__).parents[2] / "configs"
-TWO_CRANKS = CONFIGS / "waterworks-two-cranks.yaml"
+TWO_CRANKS = CONFIGS["waterworks-two-cranks"]
 ETA = 0.9
 
 STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
