@@ -1,7 +1,5 @@
 """Commands run in the process of the tests."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from threading import Timer

@@ -1,7 +1,5 @@
 """Machines that several tests build in a line."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

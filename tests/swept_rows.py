@@ -1,7 +1,5 @@
 """`kurbel sweep` run in the process, the rows that it tells as json, and the numbers in machine files that may vary."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Pressures that a file gives as absolute are shown, asked for and limited as absolute; what hangs on them is not."""
 
-from __future__ import annotations
-
 import csv
 import math
 

@@ -1,7 +1,5 @@
 """`kurbel balance` as it is called: its columns, tables, switches, and what it says where it cannot answer."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

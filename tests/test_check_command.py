@@ -1,7 +1,5 @@
 """kurbel check: limits, expectations, findings for programs, warnings, firing order."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

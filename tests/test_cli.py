@@ -1,7 +1,5 @@
 """The command line as a process: pipes, terminals, encodings, full disks, start-up."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

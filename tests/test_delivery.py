@@ -1,7 +1,5 @@
 """`kurbel delivery`: flows against the books and an own quadrature, vessels, pipes, compressors, load cases."""
 
-from __future__ import annotations
-
 import json
 import math
 

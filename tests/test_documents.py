@@ -4,8 +4,6 @@ A block of another language with a title is a file of that name for the commands
 ```yaml title="engine.yaml"
 """
 
-from __future__ import annotations
-
 import doctest
 import os
 import re

@@ -1,7 +1,5 @@
 """Equal cylinders are told once to people and each to programs; where the cranks of a firing order stand."""
 
-from __future__ import annotations
-
 import pytest
 
 from command import printed

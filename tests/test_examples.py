@@ -1,7 +1,5 @@
 """The machines that come with kurbel: each runs through every command that fits it, and keeps the figures it claims."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """kurbel flywheel, and --where: crank angles at which a column of the whole machine has a value."""
 
-from __future__ import annotations
-
 import math
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """`kurbel forces` and `kurbel check` as a user calls them."""
 
-from __future__ import annotations
-
 import pytest
 
 from command import answer, run

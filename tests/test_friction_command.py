@@ -1,7 +1,5 @@
 """`kurbel friction`: the inclined plane by Redtenbacher's own cases, by statics, and by its limits."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """How the work of a command grows with what it is given: counted calls, which are the same at every run."""
 
-from __future__ import annotations
-
 import cProfile
 import pstats
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """`kurbel keys`, and what TAB completes."""
 
-from __future__ import annotations
-
 import pytest
 from click.testing import CliRunner
 

@@ -1,7 +1,5 @@
 """`kurbel harmonics` and `kurbel torsion` as their users call them: formats, options, and what they refuse."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

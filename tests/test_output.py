@@ -1,7 +1,5 @@
 """Where results go: files that are replaced whole or not at all, never what is read; statuses whatever stderr does."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

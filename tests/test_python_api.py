@@ -3,8 +3,6 @@
 Figures are those of the command line: the same machine, the same quantity, whichever way it is asked for.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Declared quantities: each has one definition, and what mechanisms offer joins the lists of their commands."""
 
-from __future__ import annotations
-
 import pytest
 
 from command import run

@@ -1,7 +1,5 @@
 """What is refused, by every command and in every file: `refused.txt` has the line, its status, and what is said."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`kurbel stress` and what `kurbel check` says of a crankshaft, as a user calls them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

@@ -1,7 +1,5 @@
 """`kurbel table` against the book, against independent formulas, and at its limits."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

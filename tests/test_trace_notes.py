@@ -1,7 +1,5 @@
 """Notes on measured traces: what is seen, what it changes, and a way out that leads to no further note."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Units by their definitions, and what is said about texts that are no quantity."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

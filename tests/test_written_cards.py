@@ -1,7 +1,5 @@
 """Cards as people have them: one pressure, millimetres on paper, a planimeter, a mean pressure."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

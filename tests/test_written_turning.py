@@ -1,7 +1,5 @@
 """Masses, friction and what turns with the shaft, as people know them: a sum, a force, a rim, harmonics, a file."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -4,8 +4,6 @@
 both read it here.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """`kurbel accuracy` as a user sees it."""
 
-from __future__ import annotations
-
 import math
 import re
 import time

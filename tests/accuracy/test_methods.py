@@ -1,7 +1,5 @@
 """The methods that kurbel is compared with converge as their textbooks say; rows, errors and savings."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

@@ -1,7 +1,5 @@
 """A sweep on a cluster of Dask, of which parts are killed or missing. Left out where dask is not installed."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

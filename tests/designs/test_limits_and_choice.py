@@ -1,7 +1,5 @@
 """What a sweep tells of limits, and which rows it keeps, by every name that a column has."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

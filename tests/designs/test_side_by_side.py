@@ -1,7 +1,5 @@
 """Many machines at once answer as each alone: those of books and those that are shipped, with numbers that vary."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

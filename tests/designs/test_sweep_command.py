@@ -1,7 +1,5 @@
 """`kurbel sweep` from the command line: rows, order, choice, parts, and what goes wrong."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Standard uncertainties: against closed derivatives, and against a large sample."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from statistics import NormalDist

@@ -3,8 +3,6 @@
 `answers.yaml` beside this file says how each is asked, or why it cannot be.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`kurbel report`: one self-contained page with all that a machine has, or two machines side by side."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from hashlib import sha256

@@ -1,7 +1,5 @@
 """Every bad machine file with its full expected message; what a file may hold has bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

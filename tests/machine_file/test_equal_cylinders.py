@@ -1,7 +1,5 @@
 """Equal cylinders: one `like` another, or several at once, and what a firing order makes of their cranks."""
 
-from __future__ import annotations
-
 import itertools
 import random
 

@@ -1,7 +1,5 @@
 """Good machine files: what arrives in the machine, in SI; values set over the file by --set."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

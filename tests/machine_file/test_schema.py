@@ -1,7 +1,5 @@
 """The JSON Schema and records made in Python accept and refuse what the reader does."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import cache

@@ -1,7 +1,5 @@
 """Files of traces as loggers and people write them: read as they are meant, or refused with a way out that works."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Traps of YAML 1.1 and of word processors: read as a person reads them, or refused."""
 
-from __future__ import annotations
-
 import io
 import math
 import re

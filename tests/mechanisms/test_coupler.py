@@ -1,7 +1,5 @@
 """How rods and couplers turn, and how their points move: against mpmath, which knows the two pins alone."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Four-bar linkage: loop closure in 50 digits, limits, the slider-crank as its own limit, and Grashof's rule."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Slotted lever: R 304, 305, its limits, the connecting link, and the lever that turns fully."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

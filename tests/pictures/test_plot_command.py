@@ -1,7 +1,5 @@
 """`kurbel plot`: what it draws, what it lists, and what it answers to wrong wishes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

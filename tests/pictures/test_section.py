@@ -1,7 +1,5 @@
 """The machine in section: joints, strokes and volumes are those of the machine, and everything drawn can be read."""
 
-from __future__ import annotations
-
 import math
 import re
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Blau 1905, § 6, examples 31–35: first-order formulas (22), (25), (26), to three figures."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

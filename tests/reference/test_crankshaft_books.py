@@ -1,7 +1,5 @@
 """Crankshafts worked out in textbooks, and the page of *Öl- und Gasmaschinen* (G) that the model follows."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """F. Redtenbacher, Der Maschinenbau (1862): crosshead, inclined plane, piston rings. Equation numbers D are his."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

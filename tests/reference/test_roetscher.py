@@ -1,7 +1,5 @@
 """F. Rötscher, Die Maschinenelemente (1927), ch. 14: motion, and the forces of the waterworks engine (pp. 602-615)."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

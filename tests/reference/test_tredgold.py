@@ -1,7 +1,5 @@
 """T. Tredgold, The Steam Engine (1838): rotary force, T/P = sin(φ + ψ)/cos ψ for L/R from 2 to 7, two decimals."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What `-f json` prints keeps the schema that `kurbel schema --answers` hands out."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Markup: every text is escaped, and LaTeX uses nothing but what article, booktabs and longtable know."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

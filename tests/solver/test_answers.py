@@ -1,7 +1,5 @@
 """Answers beside the columns of the book: magnitudes, the rod at its pins, points of the rod, places of a value."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

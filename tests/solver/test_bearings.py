@@ -1,7 +1,5 @@
 """Loads on pins and main bearings: against the free forces, against the statics of one throw, by closed form."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Lead and diagram factor of ideal cards, metals of shells, a shaper by its stroke, the rod of a yoke frame, L/R."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Crankshafts: equilibrium, an independent free body, brute force over the cycle, two textbooks, and rules."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

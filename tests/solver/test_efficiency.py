@@ -1,7 +1,5 @@
 """Efficiency as the book uses it (R p. 610–613, Abb. 1062, 1064, 1065): driving pistons pay for the losses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

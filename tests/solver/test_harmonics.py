@@ -1,7 +1,5 @@
 """Orders of the turning effort: against integrals with 40 digits, by laws, and the same effort given by its orders."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

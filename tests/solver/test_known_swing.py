@@ -1,7 +1,5 @@
 """Efforts of which the swing of energy alone is known, loads by harmonics, and cycles of several turns."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

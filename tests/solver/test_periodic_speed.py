@@ -1,7 +1,5 @@
 """The speed of the shaft over a cycle: exact solutions, laws, stalling, and the angular acceleration."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

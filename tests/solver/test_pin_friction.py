@@ -1,7 +1,5 @@
 """Friction in the pins of the rod and in the journals: closed forms, the free rod, and the balance of energy."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

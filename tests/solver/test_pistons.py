@@ -1,7 +1,5 @@
 """Several pistons on one rod: their forces, works and mean pressures, and pistons driven by a rocker."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

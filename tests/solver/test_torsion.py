@@ -1,7 +1,5 @@
 """Torsional vibration of shaft lines: natural frequencies by 60 digits, Holzer's table, and forced vibration."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

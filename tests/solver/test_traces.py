@@ -1,7 +1,5 @@
 """Measured traces: work, pressures, many cycles, exponents, volumes, level, the motored dead centre, and the brake."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json
