@@ -1,7 +1,6 @@
 """`kurbel table` against the book, against independent formulas, and at its limits."""
 
 import math
-from pathlib import Path
 
 import mpmath
 import pytest
@@ -11,24 +10,12 @@ from hypothesis import strategies as st
 from command import answer
 from kurbel.report.tables import Report
 from kurbel.report.zusammenstellung import ROWS, zusammenstellung
-from representative import law_of_each
 
 
 def values(report: Report, ratio: float, row: str) -> dict[float, float]:
     part = next(part for part in report.parts if part.name == ratio)
     phi, column = part.columns[0], next(column for column in part.columns if column.id == row)
     return dict(zip(phi.values, column.values))
-
-
-BOOK = (Path(__file__).parent / "reference" / "zusammenstellung_112.csv").read_text("utf-8").splitlines()
-
-
-@law_of_each(tuple(line.split(",")) for line in BOOK if line[0] != "#")
-def test_every_legible_figure_is_reproduced_or_a_known_misprint(ratio, phi, acceleration, velocity) -> None:
-    for printed, row in ((acceleration, "acceleration_factor"), (velocity, "velocity_factor")):
-        computed = values(zusammenstellung(), float(ratio), row)[float(phi)]
-        agrees = abs(computed - float(printed.strip("*"))) <= 0.0005 * (1 + 1e-9)
-        assert agrees != printed.endswith("*")
 
 
 RATIO = st.floats(1.001, 1e6)

@@ -16,12 +16,6 @@ FULL_ADMISSION = Constant.from_keys(expansion=6e5, compression=0.0)
 LOCOMOTIVE = Piston(0.42, indicator=Indicator(FULL_ADMISSION, FULL_ADMISSION))
 
 
-def test_loss_of_the_locomotive() -> None:
-    """D 7: r/l = 1/6, f = 1/10: e/(Pv) = 1/120 = 0.83 %."""
-    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
-    assert forces.loss_crosshead_redtenbacher == pytest.approx(1 / 120, rel=1e-15)
-
-
 def test_loss_over_the_way_is_half_as_much_again() -> None:
     """∮ f|N||dx|/(P s) at constant P, by quadrature in high precision from D 3; his mean is over the rod angle."""
     lam, f = mpmath.mpf(1) / 6, mpmath.mpf(1) / 10
