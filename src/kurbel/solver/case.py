@@ -80,7 +80,7 @@ class Case(Shown):
 
     @cached_property
     def balance(self) -> MachineBalance:
-        """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
+        """Unbalanced forces and moments of the whole machine. Raises UsageError where no masses move."""
         return MachineBalance(self.effort)
 
     @cached_property

@@ -439,7 +439,7 @@ class CylinderForces(SampledCylinder, Results):
         if friction.rings is not None:
             found["rings"] = drive.ring_force * drive.path
             if some(drive.ring_surface != 0):
-                drag = np.abs(self.samples.across_piston) * self.pieces.of(drive.ring_surface)
+                drag = np.abs(self.samples.pressure_difference) * self.pieces.of(drive.ring_surface)
                 found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
             found["constant"] = friction.constant * drive.path

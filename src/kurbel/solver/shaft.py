@@ -80,7 +80,7 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
     angle: crank angles φ (n,) of that cylinder; the inclination given is that of the stroke line of cylinder 1.
     """
     shaft, first = machine.crankshaft, machine.cylinders[0]
-    lean = machine.lean_of(first)
+    lean = machine.inclination_of(first)
     if shaft is None or lean is None or not some(shaft.flywheel_mass != 0):
         return Vector(0.0, 0.0)
     inclination = lean + cylinder.bank_angle - first.bank_angle
