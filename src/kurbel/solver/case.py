@@ -1,4 +1,4 @@
-"""The machine as a whole, solved: results depend on each other and are computed on first use."""
+"""All results of a machine, each computed on first use."""
 
 from __future__ import annotations
 
