@@ -129,7 +129,7 @@ def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tu
 def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
     """Return the value of a key value, None where there is none; or the error, since other designs may have one."""
     try:
-        return None if default and not subject.says(quantity) else subject.answer(quantity)
+        return None if default and not subject.is_printed(quantity) else subject.answer(quantity)
     except KurbelError as error:
         return error
 

@@ -178,7 +178,7 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None
     for one in subjects:
         quantity = one.lists.key_values(command).get(id)
         with suppress(KurbelError):
-            value = one.answer(quantity) if quantity and one.says(quantity) else None
+            value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
                 each.append((number, one.name, quantity, value))
     if not each:
