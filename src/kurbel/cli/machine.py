@@ -23,7 +23,7 @@ from kurbel.cli.options import (
     units_option,
     where_option,
 )
-from kurbel.declared.unit_systems import told_in
+from kurbel.declared.unit_systems import messages_in
 
 if TYPE_CHECKING:
     from kurbel.cli.request import Request
@@ -38,7 +38,7 @@ def _with_request(command: Callable[..., None]) -> Callable[..., None]:
         from kurbel.cli.request import Request
 
         own = {name: options.pop(name) for name in Request.__annotations__ if name in options}
-        with told_in(units or "metric"):
+        with messages_in(units or "metric"):
             system = units or ("si" if output.look.format in ("csv", "json") else "metric")
             command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
 
@@ -47,13 +47,11 @@ def _with_request(command: Callable[..., None]) -> Callable[..., None]:
 
 
 machine_places = stacked(machine_file, part_options, units_option, output_options, _with_request)
-"""Gives a command FILE and the options of one that has nothing over the crank angle; see `machine_table`."""
+"""Adds FILE and the options of a command without a table over the crank angle; see `machine_table`."""
 machine_table = stacked(
     machine_file, angle_options, columns_option, part_options, units_option, output_options, _with_request
 )
-"""Gives a command FILE and all options of a table, which reach it as one `Request`."""
-
-
+"""Adds FILE and all options of a table, which the command gets as one `Request`."""
 cases_option = click.option(
     "--cases", is_flag=True, help="A row of key values for every load case of FILE, those of --columns if given."
 )
