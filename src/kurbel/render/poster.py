@@ -37,12 +37,13 @@ _SHEET = """
       line(length: 100%, stroke: 0.08 * u + rgb("#9aa5ae"))
       v(0.6 * u)
       let faint(of) = text(size: 1.4 * u, fill: rgb("#66727c"), of)
-      let symbol(of) = [#emph(of.at(0))#sub(of.at(1, default: ""))]
       grid(
         columns: (1fr,) * of.facts.len(), column-gutter: 2 * u, row-gutter: 1.1 * u,
         ..of.facts.map(one => grid.cell(align: center + bottom, faint(one.title))),
         ..of.facts.map(one => align(center)[#text(size: 2.9 * u, one.value) #text(size: 1.6 * u, one.unit)]),
-        ..of.facts.map(one => align(center, faint[#symbol(one.symbol)#one.where])),
+        ..of.facts.map(one => align(center, faint[
+          #emph(one.symbol.at(0))#sub(one.symbol.at(1, default: ""))#one.where
+        ])),
       )
     },
   ))
