@@ -38,7 +38,7 @@ tr.bad td:nth-child(4){color:var(--bad);font-weight:600}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.3rem;list-style:none;padding:0}
 footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
-figure svg{width:100%;min-width:30rem;height:auto;display:block}
+figure svg{width:100%;min-width:30rem;height:auto;display:block}#summary svg{min-width:0}
 @media print{main{padding:0}figure svg{min-width:0;max-height:23cm}nav{display:none}
 h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
 a{color:inherit;text-decoration:none}}
