@@ -80,7 +80,7 @@ class Html:
 
     def name(self, plain: str) -> str:
         """Return a name or a value, with no line break between a number and its unit."""
-        text = re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain))
+        text = self._signed(re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain)))
         return in_thousands(measures().sub(r'<span class="n">\g<0></span>', text), "&#8239;")
 
     def sentence(self, plain: str) -> str:
@@ -95,10 +95,14 @@ class Html:
     def number(self, plain: str) -> str:
         """Return a number with thin spaces and a minus sign instead of a hyphen, in any encoding.
 
-        >>> print(Html().number("-18066.25"))
-        &minus;18&#8239;066.25
+        >>> print(Html().number("-18066.25, -1.5"))
+        &minus;18&#8239;066.25, &minus;1.5
         """
-        return re.sub(r"^-(?=\d)", "&minus;", in_thousands(escape(plain), "&#8239;"))
+        return self._signed(in_thousands(escape(plain), "&#8239;"))
+
+    def _signed(self, escaped: str) -> str:
+        """Return a text with minus signs in place of the hyphens before its numbers."""
+        return re.sub(r"(?<![\w.-])-(?=\d)", "&minus;", escaped)
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table, which can be scrolled in a narrow window."""

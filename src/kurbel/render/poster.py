@@ -11,6 +11,7 @@ from kurbel.render import Look
 from kurbel.render.drawing import check_file
 from kurbel.render.numbers import DIGITS, single
 from kurbel.render.output import opened
+from kurbel.render.picture import printed
 from kurbel.render.svg import poster_svg
 from kurbel.render.text import subscripts
 from kurbel.report.picture import Facts, Picture
@@ -81,7 +82,7 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
         "facts": [
             {
                 "title": look.text(one.title),
-                "value": look.counted(*single(one.value, look.digits or DIGITS, look.comma))
+                "value": printed(look.counted(*single(one.value, look.digits or DIGITS, look.comma)), look)
                 + "°" * (one.unit == "deg"),
                 "unit": look.unit(one.unit) if one.unit != "deg" else "",
                 "symbol": subscripts(look.text(one.symbol)),

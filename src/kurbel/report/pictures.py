@@ -153,7 +153,7 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
                 place = np.asarray(swept * gas.areas[0 if head else 1])
             places.append(place)
             end = source.words(id)._replace(words=id.replace("p_", "") + " end")
-            curves.append(samples.curve(end, place, pressure))
+            curves.append(samples.curve(end, place, pressure).closed())
         marks: tuple[Mark, ...] = ()
         if number == 0 and not over_volume and (highest := results.p_max):
             marks = (source.mark("p_max", highest, float(results.at(np.array([highest.degrees])).displacement[0])),)
@@ -193,8 +193,9 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     rings = [(Words("T = 0"), base * around)]
     if mean := source.results.W:
         rings.append((Words("W"), (base + mean) * around))
+    reach = 1.04 * (base + max(float(force.max()), mean or 0.0, 0.15 * size))
     for angle in range(0, 360, 90):
-        spoke = np.array([base, 1.04 * (base + size)]) * np.exp(1j * np.radians(angle))
+        spoke = np.array([base, reach]) * np.exp(1j * np.radians(angle))
         rings.append((Words(f"φ = {angle}°", f"phi = {angle}"), spoke))
     faint = [Curve(name, places.real, places.imag, "faint") for name, places in rings]
     marks = source.marks("T", lambda angle: tip(angle)[:, 0])

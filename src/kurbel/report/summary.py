@@ -125,7 +125,7 @@ def kind_of(case: Case) -> str:
 def subtitle_of(machine: Machine) -> str:
     """Return number of cylinders, cycle, speed, stroke, rod and bores in a line."""
     cylinders, texts = machine.cylinders, list[str]()
-    if cylinders:
+    if any(one.mechanism.slides and not one.mechanism.quick_return for one in cylinders):  # else no piston moves
         texts.append(f"{len(cylinders)} cylinder{'s' * (len(cylinders) > 1)}")
     if firings(machine):
         texts.append(machine.cycle)
