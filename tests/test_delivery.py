@@ -95,12 +95,6 @@ def test_own_quadrature_of_offset_and_unequal_machines() -> None:
         ]
     )
     assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
-    for kind, ratio in (("one double-acting", "infinite"), ("three single-acting", 5)):
-        angles, second = PUMPS[kind]
-        L = math.inf if ratio == "infinite" else 0.1 * float(ratio)
-        own = by_quadrature([(0.1, L, 0.0, AREA, AREA if second else 0.0, angle) for angle in angles])
-        pump = pump_of(machine(kind, ratio))
-        assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
 
 
 def test_a_vessel_saves_what_the_books_say() -> None:
