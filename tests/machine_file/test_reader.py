@@ -32,7 +32,7 @@ def test_several_cylinders_with_everything() -> None:
     assert (high.mechanism.crank, low.mechanism.rod, low.crank_position) == (0.4, math.inf, 90)
     assert [piston.bore for piston in high.pistons] == [0.45, 0.285]
     masses, friction = high.masses, high.friction
-    assert (masses.parts, masses.reciprocating) == (717, 717 + 110)
+    assert (masses.parts, masses.at_crosshead(math.inf)) == (717, 717 + 110)
     assert friction.rings.count == 3
     steam = high.pistons[0].indicator.head_end
     assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)

@@ -61,7 +61,7 @@ def exact(state: State) -> ExactRod:
 LOSSES = State.losses.func
 COUPLE = State.rod_couple.func
 FAULTS: dict[str, tuple[Any, str, Any]] = {
-    "side of the guide friction in N": (State, "below", property(wrong_side)),
+    "side of the guide friction in N": (State, "guide_denominator", property(wrong_side)),
     "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),
     "turning of the rod on the pin": (
         State,

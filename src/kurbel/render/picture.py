@@ -49,7 +49,8 @@ def figure_text(figure: PageFigure, look: Look) -> str:
     if figure.value is None:
         return f"{symbol(figure.name, look)} {at}".strip()
     number, power = single(figure.value, look.digits, look.comma)
-    parts = symbol(figure.name, look), look.counted(_printed(number, look), power), look.unit(figure.unit)
+    value, unit = look.counted(printed(number, look), power), look.unit(figure.unit)
+    parts = symbol(figure.name, look), f"{value}{unit}" if unit == "°" else f"{value} {unit}".rstrip()
     return ", ".join(filter(None, (" ".join(filter(None, parts)), at)))
 
 
@@ -62,7 +63,7 @@ def picture_text(picture: Picture, look: Look) -> str:
     return f"{sentence} {texts}." if texts else sentence
 
 
-def _printed(number: str, look: Look) -> str:
+def printed(number: str, look: Look) -> str:
     """Return a number with a minus sign in place of a hyphen, and with thin spaces, where the output has them."""
     if not look.has("−\N{NARROW NO-BREAK SPACE}"):
         return number
@@ -126,7 +127,7 @@ def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[flo
             texts = [decimal(f"{value:.4g}", look.comma) for value in values]
         else:
             texts = [cell(value, angle_scale(values), look.comma) for value in values]
-        texts = [_printed(text, look) for text in texts]
+        texts = [printed(text, look) for text in texts]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
@@ -184,7 +185,8 @@ class PanelFrame:
         bare = not panel.bodies  # which leave no air around them
         spread = max((float(np.nanmax(one) - np.nanmin(one)) for one in (*across, *up) if one.size), default=0.0)
         around = 0.1 * spread if panel.equal and bare else 0.0
-        x, y = scale_of(panel.x, across, panel.plain and bare, around), scale_of(panel.y, up, bare, around)
+        airy = bare and (panel.plain or panel.equal)
+        x, y = scale_of(panel.x, across, airy, around), scale_of(panel.y, up, bare, around)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
             least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
@@ -247,7 +249,9 @@ class PanelFrame:
             tracks.append(np.concatenate([x * wide / 4 + 1j * y * tall / 4 for x, y in steps]))
         wanted = list(self._wanted(panel, tracks, named))
         reach = np.add.outer(np.array([-1.0, 0.0, 1.0]), np.array([-1j, 0j, 1j])).ravel() * dot
-        marks = [self.place(mark.x, mark.y) + reach for mark in panel.marks]
+        points = [(mark.x, mark.y) for mark in panel.marks]
+        points += [(one.x[0], one.y[0]) for one in panel.curves if one.kind == "pole"]
+        marks = [self.place(*point) + reach for point in points]
 
         # on a grid: which cells curves cross, and which labels and marks have
         shape = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)

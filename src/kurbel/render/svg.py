@@ -38,6 +38,8 @@ _POSTER = (1150.0, 640.0)
 """Room for a picture on a sheet, the longer side first."""
 _LONGEST_BAR, _NOTE = 110.0, 7.0
 """Length of the longest bar that shows a scale, and width of a character of a note."""
+_CLEAR = 4.0
+"""How far labels are at least from the upright axis."""
 _SHORTEST = 2.0
 """Length of an arrow below which it has no name, where it does not move."""
 _STRAIGHT = 0.1
@@ -158,7 +160,7 @@ def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> st
 def svg(picture: Picture, look: Look) -> str:
     """Return a picture as a part of a page that has the style sheet, and its heading."""
     tall, items = _drawn(picture, look, False, headed=False)
-    head = f'<svg class="s" viewBox="0 0 {WIDTH:g} {tall:g}" role="img">'
+    head = f'<svg class="s" viewBox="-1 0 {WIDTH + 2:g} {tall:g}" role="img">'
     return f"{head}<title>{escape(picture_text(picture, look))}</title>\n{items}</svg>"
 
 
@@ -230,7 +232,8 @@ def _panel(frame: PanelFrame, left: float, paper: bool, legend: Sequence[Entry])
     labels = frame.labels(named=False)
     yield "".join(_shape("f", _path(np.array([one.point, one.lead]))) for one in labels if one.lead is not None)
     yield "".join(_shape("o", _dot(complex(frame.place(mark.x, mark.y)), 0, 2.6)) for mark in panel.marks)
-    yield "".join(_text(label.left, label.top + 9.5, label.text, "halo") for label in labels)
+    clear = -math.inf if panel.plain else _CLEAR  # of the axis
+    yield "".join(_text(max(label.left, clear), label.top + 9.5, label.text, "halo") for label in labels)
     for one in panel.captions:
         at, of = complex(frame.place(one.place.real, one.place.imag)), "mark strong" if one.strong else "mark note"
         yield _text(at.real, at.imag + 4.5, frame.look.text(one.text), of, "middle", plain=True)

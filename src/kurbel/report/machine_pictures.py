@@ -24,6 +24,8 @@ _FASTEST, _MOST_ORDERS = 1.25, 8
 """Of a Campbell diagram: its highest speed over the working speed, and how many orders it has."""
 _MOST_CRANKS = 4
 """Each has a stroke of its own, next to the sum with and without losses."""
+_SLENDEREST = 15.0
+"""Length over height of a locus from which on it is drawn as little as a line."""
 _FRAMES = {"load_throw": "throw: outward →", "load_engine": "engine: stroke line →", "load_rod": "rod: its line →"}
 
 
@@ -138,7 +140,8 @@ def torque_orders(source: Source) -> Iterator[Panel]:
     orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
     inertia = np.abs(found.inertia.amplitudes)[drawn] if found.inertia else np.zeros(0)
     both = gas.any() and inertia.any()  # one alone is all
-    yield _bars(orders, [whole], name, "torque", "all" if both else "")
+    if whole.any():
+        yield _bars(orders, [whole], name, "torque", "all" if both else "")
     if both:
         yield _bars(orders, [gas, inertia], name, "torque", "left: gas, weight, friction; right: inertia")
 
@@ -149,7 +152,7 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
     for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
         if source.having("F_x") and vector is not None and free.orders:
             sizes = [np.array([abs(vector.of(sense * n)) for n in free.orders]) * omega**2 for sense in (1, -1)]
-            title = "left: circles with the rotation, right: against it"
+            title = "left: turning with the shaft, right: against it"
             panels.append(_bars(free.orders, sizes, Words(name, words="radius"), kind, title))
     # what is balanced has nothing to show, unless all is
     yield from [one for one in panels if any(shade.high.any() for shade in one.shades)] or panels[:1]
@@ -238,8 +241,10 @@ def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:
-    """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod."""
+    """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod, unless it is
+    all but a straight line."""
     largest = source.results.load_max if "load_max" in source.key_values and source.marks("load", float) else None
+    panels = list[Panel]()
     for frame in source.having(*_FRAMES):
 
         def tip(degrees: Array, within: Array, frame: str = frame) -> Array:
@@ -255,4 +260,11 @@ def polar_loads(source: Source) -> Iterator[Panel]:
             sides = tip(at, at + np.array([-1e-6, 1e-6]))
             side = int(np.argmin(np.abs(np.hypot(*sides) - largest.value)))
             marks = (source.mark("load_max", largest, *sides[:, side].tolist()),)
-        yield source.locus(("load", "load"), tip, source.words("load"), marks, _FRAMES[frame])
+        panels.append(source.locus(("load", "load"), tip, source.words("load"), marks, _FRAMES[frame]))
+    yield from [one for one in panels if _slenderness(one) < _SLENDEREST] or panels[:1]
+
+
+def _slenderness(panel: Panel) -> float:
+    """Return the longer over the shorter side of what the curve of a panel covers."""
+    short, long = sorted(float(np.nanmax(one) - np.nanmin(one)) for one in (panel.curves[0].x, panel.curves[0].y))
+    return long / short if short else math.inf

@@ -12,6 +12,9 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
+_SAME = 1e-9
+"""Share of its largest coordinate by which two points of a curve may differ and be one."""
+
 
 class Words(NamedTuple):
     """A symbol as it is printed, its form without Greek letters if that is not each sign by itself, and its words."""
@@ -69,6 +72,12 @@ class Curve(NamedTuple):
             for before, after in pairwise(self._parted())
             if len(before[0]) and len(after[0])
         ]
+
+    def closed(self) -> "Curve":
+        """Return the curve of a cycle with a jump from its end to its beginning, if these are apart."""
+        x, y = (np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y))  # a piece has two points
+        apart = [abs(one[0] - one[-1]) > _SAME * np.nanmax(np.abs(one)) for one in (self.x, self.y)]
+        return self._replace(x=x, y=y) if any(apart) else self
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""

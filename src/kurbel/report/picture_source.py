@@ -183,7 +183,7 @@ class Source:
         cycle: degrees after which it repeats, if before the end of the cycle of the machine.
         """
         samples = self.samples(ids, values=tip)
-        curve, axis = samples.curve(name, *samples.values), Axis(Words("F"), "force")
+        curve, axis = samples.curve(name, *samples.values).closed(), Axis(Words("F"), "force")
         angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
         x, y = tip(angles, angles)
         labelled = [Mark(*place) for place in zip(x[::3].tolist(), y[::3].tolist(), map(_at, angles[::3].tolist()))]
