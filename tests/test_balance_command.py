@@ -37,21 +37,6 @@ def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
     assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
 
 
-@pytest.mark.parametrize(
-    ("text", "left"),
-    [
-        (V90, "unbalanced moments no axial_position given of A, B"),
-        (V90.replace("{like: A,", "{crank: 50 mm, rod_ratio: 4,"), "inertia of B no masses given"),
-        (V90.replace("speed: 600 rpm", ""), "unbalanced forces and moments no speed given"),
-        (V90.replace("like: A,", "like: A, offset: 5 mm,"), "figures of first order the book has no such formula"),
-    ],
-)
-def test_what_is_left_out_is_said(text: str, left: str) -> None:
-    result = run("balance", "-", "--compare", "--width", "200", text=text)
-    assert (result.exit_code, result.stderr) == (0, "")
-    assert left in " ".join(result.stdout.split())
-
-
 def test_pins_that_are_not_shared_are_told() -> None:
     apart = V90.replace("bank_angle: 90 deg, crank_position: 90", "bank_angle: 60 deg, crank_position: 90").replace(
         "name: A,", "name: A, axial_position: 0 mm,"

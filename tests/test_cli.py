@@ -74,7 +74,7 @@ def test_a_terminal_gets_no_page_of_a_report_and_a_word_on_many_columns() -> Non
 def test_a_file_named_without_its_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "mill.yaml").write_text("crank: 1 m\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    assert "did you mean 'mill.yaml'?" in CliRunner().invoke(kurbel, ["check", "mill"]).stderr
+    assert "did you mean 'mill.yaml'?" in run("check", "mill").stderr
 
 
 @law_of_each(COMMANDS)

@@ -95,12 +95,6 @@ def test_own_quadrature_of_offset_and_unequal_machines() -> None:
         ]
     )
     assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
-    for kind, ratio in (("one double-acting", "infinite"), ("three single-acting", 5)):
-        angles, second = PUMPS[kind]
-        L = math.inf if ratio == "infinite" else 0.1 * float(ratio)
-        own = by_quadrature([(0.1, L, 0.0, AREA, AREA if second else 0.0, angle) for angle in angles])
-        pump = pump_of(machine(kind, ratio))
-        assert pump["volume_fluctuation"].value == pytest.approx(own, rel=1e-9)
 
 
 def test_a_vessel_saves_what_the_books_say() -> None:
@@ -258,32 +252,3 @@ def test_temperatures(written: str) -> None:
     gas = api.loads(ENDS.replace("35 °C", written)).gas
     assert gas
     assert gas.inlet_temperature == pytest.approx(308.15, abs=1e-9)
-
-
-PIPES = (
-    "pump: {suction_pipe: {length: 5 m, diameter: 80 mm}, delivery_pipe: {length: 9 m, diameter: 50 mm, "
-    "vessel: {volume: 0.2 l, exponent: 1.2}}}\n"
-)
-PUMP = machine("three single-acting", 5, PIPES)
-TWO_STAGES = CONFIGS["compressor-two-stage"]
-FLOWS = "flow_mean flow_max volume_fluctuation vessel_swing suction_lift_max acceleration_head_max"
-GAS = "mass_flow isentropic_power discharge_temperature capacity_normal"
-
-
-@pytest.mark.parametrize(
-    ("file", "key", "values", "columns"),
-    [
-        (PUMP, "speed", ["50 rpm", "60 rpm", "70 rpm", "80 rpm"], FLOWS),
-        (TWO_STAGES, "gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45"], GAS),
-        (TWO_STAGES, "gas.molar_mass", ["28 g/mol", "28.5 g/mol", "29 g/mol", "29.5 g/mol"], GAS),
-        (TWO_STAGES, "gas.inlet_temperature", ["10 °C", "15 °C", "20 °C", "25 °C"], GAS),
-    ],
-    ids=["pump", "exponent", "molar mass", "temperature"],
-)
-def test_many_machines_answer_as_each(file: object, key: str, values: list[str], columns: str) -> None:
-    """Arrays of gas constants and exponents were asked whether they are true."""
-    together = api.sweep(file, {key: values}, columns.split())
-    for row, value in enumerate(values):
-        alone = api.sweep(file, {key: [value]}, columns.split())
-        for name in set(together) - {"failure", "keeps"}:
-            assert together[name][row] == pytest.approx(alone[name][0], rel=1e-12), name

@@ -89,11 +89,3 @@ def test_a_shaft_line_alone() -> None:
     assert table(answer("torsion", "-", text=TWO), "modes")["frequency"][1] == pytest.approx(1.1253953951963827)
     for command in ("motion", "forces", "flywheel", "stress", "harmonics"):
         assert run(command, "-", text=TWO).exit_code == 2
-
-
-def test_a_cylinder_without_any_inertia_is_refused() -> None:
-    text = "crank: 100 mm\nrod: 400 mm\n" + TWO.replace("inertia: 2 kg m2", "cylinder: cylinder 1", 1)
-    result = run("torsion", "-", text=text)
-    assert result.exit_code == 2
-    assert "cylinder 1 has no inertia in the shaft line; give its item 'inertia', or it 'masses'" in result.stderr
-    assert "torsional vibration: cylinder 1 has no inertia" in run("check", "-", text=text).stdout

@@ -1,4 +1,5 @@
-"""What is refused, by every command and in every file: `refused.txt` has the line, its status, and what is said."""
+"""What is refused, by every command and in every file: `refused.txt` has the line, its status, and what is said; and
+beside it what is nearly the same and is not refused."""
 
 import re
 import shlex

@@ -22,17 +22,6 @@ def without(*keys: str) -> str:
     return "".join(line for line in ENGINE.splitlines(True) if line.strip().split(":")[0] not in keys)
 
 
-def test_text_lists_every_place_in_three_tables() -> None:
-    text = run("stress", "-", "--step", "90", text=ENGINE).stdout
-    titles = ["Dead centre", "Position of the largest torque", "Whole cycle"]
-    places = [text.index(title) for title in titles]
-    assert places == sorted(places)
-    for name in ("wide face", "narrow face", "corner"):
-        assert text.count(name) == 6
-    assert text.count("journal B  at web") == 3
-    assert "Key values" in text
-
-
 def test_csv_over_the_crank_angle_and_by_place() -> None:
     rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35", text=ENGINE).stdout)))
     assert [row["phi_deg"] for row in rows] == ["0", "35"]

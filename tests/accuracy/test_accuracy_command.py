@@ -4,7 +4,6 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -130,12 +129,6 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
     assert math.isnan(drawn["book"][2][0])
     assert drawn["book"][3] == (0.2, 4.0)
     assert [curve.name.symbol for curve in c.curves if curve.kind == "dots"] == ["kurbel"]
-
-
-def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
-    result = run("accuracy", "-", "--quick", "--plot", tmp_path / "no folder" / "picture.svg", text=MOTION)
-    assert result.exit_code == 2
-    assert "cannot write" in result.stderr
 
 
 def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:

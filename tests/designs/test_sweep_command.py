@@ -228,19 +228,6 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     assert parquet.read_table(file).num_rows == 0
 
 
-def test_python_gets_arrays() -> None:
-    machine = kurbel.load(WATERWORKS)
-    ratios = np.array([0.9, 4.0, 5.0])
-    found = kurbel.sweep(machine, {"rod_ratio": ratios, "speed": [0.5, 0.6, 0.7]}, ["T_max", "dE", "phi_reversal"])
-    assert np.isnan(found["T_max"][0])
-    assert found["failure"].tolist()[1:] == ["", ""]
-    for place in (1, 2):
-        case = kurbel.solve(kurbel.load(WATERWORKS, [f"rod_ratio={ratios[place]}", f"speed={0.5 + place / 10!r} 1/s"]))
-        assert found["T_max"][place] == pytest.approx(case.cylinders[0]["T_max"].value, rel=1e-13)
-        assert found["dE"][place] == case.flywheel.dE
-        assert found["phi_reversal"][place] == pytest.approx(case.cylinders[0].phi_reversal, rel=1e-13)
-
-
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [

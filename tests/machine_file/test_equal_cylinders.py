@@ -10,20 +10,6 @@ from kurbel.machine.several import intervals
 from kurbel.machine_file import loads
 
 EACH = "each: {stroke: 80 mm, rod_ratio: 4}"
-FOUR = """\
-name: Four in line
-speed: 300 rpm
-cycle: four-stroke
-cylinders:
-  count: 4
-  firing_order: 1-3-4-2
-  spacing: 96 mm
-  each:
-    stroke: 380 mm
-    rod_ratio: 4.6
-    bore: 280 mm
-    indicator: {head_end: {otto: {intake: -0.05 bar, exhaust: 0.1 bar, peak: 25 at, compression_ratio: 6}}}
-"""
 
 
 def equal(keys: str, cycle: str = "four-stroke") -> tuple[Cylinder, ...]:
@@ -33,16 +19,6 @@ def equal(keys: str, cycle: str = "four-stroke") -> tuple[Cylinder, ...]:
 def throws(cylinders: tuple[Cylinder, ...]) -> list[float]:
     """Where the throws stand in space when crank 1 is at its inner dead centre: γ − β (formulas of the free forces)."""
     return [(one.bank_angle - one.crank_position) % 360 for one in cylinders]
-
-
-def test_a_four_cylinder_engine_takes_twelve_lines() -> None:
-    machine = loads(FOUR)
-    assert len(FOUR.splitlines()) == 12
-    assert [one.name for one in machine.cylinders] == [f"cylinder {i}" for i in (1, 2, 3, 4)]
-    # as configs/four-cylinder-generator.yaml has them one by one
-    assert [one.crank_position for one in machine.cylinders] == [0, 540, 180, 360]
-    assert [one.axial_position for one in machine.cylinders] == pytest.approx([0, 0.096, 0.192, 0.288])
-    assert len({id(one.pistons[0]) for one in machine.cylinders}) == 1
 
 
 def test_the_cross_plane_v8_has_two_rods_on_each_pin() -> None:

@@ -1,13 +1,11 @@
 """Good machine files: what arrives in the machine, in SI; values set over the file by --set."""
 
-import json
 import math
 import re
 from pathlib import Path
 
 import pytest
 
-from command import run
 from good_machines import ALL, DEMO
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import load, loads
@@ -120,11 +118,3 @@ def test_a_fault_names_the_override(override: str, message: str) -> None:
     with pytest.raises(KurbelError, match=re.escape(message)) as caught:
         loads(DEMO, "m", [override])
     assert "Traceback" not in str(caught.value)
-
-
-def test_the_answer_is_that_of_the_changed_machine(tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(DEMO)
-    asked = ["motion", str(tmp_path / "m.yaml"), "-f", "json", "--set", "crank=500 mm", "--set", "speed=60 rpm"]
-    found = json.loads(run(*asked).stdout)["cylinders"][0]["key_values"]
-    # c_m = 2 s n
-    assert next(one["value"] for one in found if one["id"] == "c_m") == pytest.approx(2 * 1.0 * 1)

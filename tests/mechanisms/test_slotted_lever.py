@@ -4,20 +4,11 @@ import math
 
 import pytest
 
-from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-
-
-def test_largest_speeds_of_the_book():
-    machine = SlottedLever(0.3, 0.8, 1.3)
-    found = Case(Machine((Cylinder(machine),), speed=1 / math.tau)).cylinders[0].motion
-    assert found.c_max == (pytest.approx(1.3 * 0.3 / (0.8 + 0.3), rel=1e-13), 0.0)  # R 304, v = r ω
-    assert found.c_min == (pytest.approx(-1.3 * 0.3 / (0.8 - 0.3), rel=1e-13), 180.0)  # R 305
-    assert machine.stroke == pytest.approx(2 * 1.3 * 0.3 / 0.8, rel=1e-15)
 
 
 @pytest.mark.parametrize(

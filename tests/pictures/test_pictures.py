@@ -11,7 +11,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.picture import PanelFrame, axis_text, legend_text
+from kurbel.render.picture import PanelFrame
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain
 from kurbel.report.picture import Panel, Picture
@@ -221,15 +221,6 @@ def test_no_polar_diagram_is_flattened(name: str) -> None:
                 assert frame.tall >= min(0.8 * frame.wide, 200.0)
                 across, up = frame.x.high - frame.x.low, frame.y.high - frame.y.low
                 assert across / frame.wide == pytest.approx(up / frame.tall, rel=1e-9)
-
-
-def test_axes_and_legends_have_words() -> None:
-    panel = drawn("waterworks", "forces")[0].panels[0]
-    assert (axis_text(panel.x, Look()), axis_text(panel.y, Look())) == ("Crank angle φ in °", "Force in kN")
-    named = [legend_text(one.name, Look()) for one in panel.curves if one.kind == "line"]
-    assert named == ["S rod force", "N guide force", "D radial force", "T tangential force"]
-    speed = drawn("waterworks", "motion")[0].panels[1]
-    assert axis_text(speed.y, Look()) == "Velocity c in m/s"
 
 
 def test_noise_of_a_trace_has_no_scale_of_its_own() -> None:

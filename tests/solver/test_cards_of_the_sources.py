@@ -66,12 +66,6 @@ def test_diagram_factor_says_what_it_leaves_out() -> None:
     assert "keeps its peak" in told
 
 
-def test_rod_ratio_beyond_the_usual_of_steam_engines_is_noted() -> None:
-    for ratio, noted in (("5", False), ("4", False), ("7", True)):
-        told = run("forces", "-", text=steam(ratio=ratio)).output
-        assert ("usual in steam engines" in told) == noted
-
-
 def beside(ratio: object, card: str, more: str = "crank_end_rod: 80 mm") -> str:
     """Return a machine of 400 mm stroke with this card at the head end."""
     return f"stroke: 400 mm\nrod_ratio: {ratio}\nspeed: 50 rpm\nbore: 450 mm\n{more}\nindicator: {{head_end: {card}}}\n"

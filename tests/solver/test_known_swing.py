@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import kurbel
-from command import run
 from kurbel.solver.case import Case
 
 CYLINDERS = """
@@ -64,26 +63,6 @@ def test_swings_in_a_sweep_are_those_of_single_machines() -> None:
     for id in ("dE", "delta", "omega_max"):
         assert np.asarray(rows[id])[:3].tolist() == pytest.approx([one[id] for one in alone], rel=1e-15)
     assert np.isnan(np.asarray(rows["delta"])[3])  # it stalls
-
-
-def test_check_lists_what_a_swing_leaves_out() -> None:
-    text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    told = run("check", "-", text=text).output
-    assert "computed  ΔE, δ\n" in told
-    assert "power: no mean torque given" in told
-
-
-def test_every_command_knows_a_swing() -> None:
-    text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    for arguments, status in (
-        (["check"], 0),
-        (["flywheel"], 0),
-        (["report"], 0),
-        (["harmonics"], 2),
-        (["accuracy"], 0),
-    ):
-        result = run(*arguments, "-", text=text)
-        assert (result.exit_code, "Traceback" in result.output) == (status, False), result.output
 
 
 def test_a_load_by_harmonics_is_that_by_many_points() -> None:
