@@ -1,7 +1,5 @@
 """Elastic coupling: against the two masses in time by scipy, its limits, resonance, and the flywheel for a wish."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Newton's law for every body sees a fault in any of the forces, and nothing where they are right."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,12 +1,9 @@
 """The speed of the shaft over a cycle: exact solutions, laws, stalling, and the angular acceleration."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -23,7 +20,7 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from machines import STEAM_CARD
-from representative import few
+from representative import CONFIGS, few
 from turning_machines import of_points, rectangles
 
 POINTS = [(0, 500), (40, 1500), (40, 900), (120, 200), (200, 300), (200, 1300), (290, 100), (360, 250)]
@@ -161,7 +158,6 @@ def test_the_exact_flywheel_meets_the_wish(load: Load | None, efficiency: float)
 
 # the angular acceleration of the shaft: by Newton's law where the inertia is constant, else as the slope of ω²/2
 
-CONFIGS = Path(__file__).parents[2] / "configs"
 ENGINE = """
 speed: 300 rpm
 crank: 100 mm
@@ -186,7 +182,7 @@ def test_over_a_constant_inertia_it_is_the_excess_torque() -> None:
 @cache
 def _solved(name: str) -> MachineTurning:
     more = {"constant": "", "power law": "load: {power_law: 2}\n", "slip": "load: {slip: 2 %}\n"}
-    return Case(loads(ENGINE + more[name])).flywheel if name in more else Case(load(str(CONFIGS / name))).flywheel
+    return Case(loads(ENGINE + more[name])).flywheel if name in more else Case(load(CONFIGS[name])).flywheel
 
 
 @pytest.mark.parametrize(
@@ -195,9 +191,9 @@ def _solved(name: str) -> MachineTurning:
         "constant",
         "power law",
         "slip",
-        "four-cylinder-generator.yaml",
-        "coupled-blower.yaml",
-        "waterworks-two-cranks.yaml",
+        "four-cylinder-generator",
+        "coupled-blower",
+        "waterworks-two-cranks",
     ],
 )
 def test_it_is_the_slope_of_half_the_square_of_the_speed(name: str) -> None:

@@ -1,9 +1,6 @@
 """Friction in the pins of the rod and in the journals: closed forms, the free rod, and the balance of energy."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +11,9 @@ from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import on_crosshead_pin, on_pin
-from representative import few
+from representative import CONFIGS, few
 
-ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
            journals: 0.04}
 """

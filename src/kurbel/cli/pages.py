@@ -107,7 +107,7 @@ def plot(
 ) -> None:
     """Draw pictures of the machine in FILE: those that are named, 'all', or the most informative picture.
 
-    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
+    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need typst. FILE may be - for standard input.
     """

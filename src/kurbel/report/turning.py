@@ -208,7 +208,7 @@ def _orders_table(
         if area:
             values["t_order"] = abs(amplitude) / area
         rows.append((("major" if order in major else "",), values))
-    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(said=_uniform(orders))
+    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=_uniform(orders))
 
 
 def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
@@ -228,7 +228,7 @@ def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[f
             rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
     title = "Orders of the turning effort at other speeds"
     table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
-    return table._replace(said=_uniform(found.machine))
+    return table._replace(in_note=_uniform(found.machine))
 
 
 def _uniform(found: Orders) -> bool:
