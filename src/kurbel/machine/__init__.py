@@ -346,7 +346,7 @@ class Machine(Record):
         files = (one.files for one in measured if isinstance(one, (Trace, Effort)))
         return tuple(dict.fromkeys(chain(*files)))
 
-    def lean_of(self, cylinder: Cylinder) -> float | None:
+    def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
         inclination = cylinder.inclination
         return inclination if inclination is None or self.rotation != "under" else 180.0 - inclination

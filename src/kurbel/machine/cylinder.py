@@ -50,10 +50,10 @@ class Cylinder(Record):
     """One cylinder with its crank mechanism and all that is on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1, None in a cylinder from a file that gives
-    none, until the machine has it; bank_angle: degrees from the stroke line
-    of cylinder 1 to its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not
-    known; ram_force, moment: what the output works against, where it slides or only swings. Raises
+    is left out; crank_position: degrees by which its inner dead centre follows that of cylinder 1, None in a cylinder
+    from a file that gives none, until the machine sets it; bank_angle: degrees from the stroke line of cylinder 1 to
+    its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not known;
+    ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
     """
 
@@ -91,7 +91,7 @@ class Cylinder(Record):
     )
     crank_position: float = field(
         "angle",
-        "Angle by which this crank lags crank 1",
+        "Crank angle by which the inner dead centre of this cylinder follows that of cylinder 1",
         default=0.0,
         absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
     )

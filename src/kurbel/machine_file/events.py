@@ -17,6 +17,7 @@ from kurbel.errors import Fault, Path, Step
 from kurbel.machine.origin import lines_of
 
 DEPTH_LIMIT = 32
+_TOO_DEEP = f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that"
 _LIKE = "; a cylinder may be 'like: NAME' of another"
 _MOST_SCALARS = 3 * MOST_POINTS
 Place = tuple[int, int]
@@ -97,7 +98,7 @@ class Parser:
         wrong = self._guard(event)
         if isinstance(event, yaml.CollectionStartEvent):
             if len(self._path) >= DEPTH_LIMIT:
-                self._stop(event, f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that")
+                self._stop(event, _TOO_DEEP)
             found = self._mapping() if isinstance(event, yaml.MappingStartEvent) else self._items()
         return REFUSED if wrong else found
 
@@ -186,6 +187,7 @@ def explain(error: Any, lines: list[str]) -> Fault:
     no_start = "cannot start any token" in problem or "node content" in problem
     table = (
         ("tab character" in problem or sign == "\t", here, "a tab in the indentation; indent with spaces"),
+        ("nesting depth" in problem, begin, _TOO_DEEP),
         (
             "quoted scalar" in context and "end of stream" in problem,
             begin,

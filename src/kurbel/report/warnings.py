@@ -370,7 +370,7 @@ def turning_warnings(case: Case) -> Iterator[str]:
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is counted twice"
-    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_the_wish:
+    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_wanted_delta:
         better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
         yield (
             f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
