@@ -190,8 +190,8 @@ class PanelFrame:
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
         names = panel.x.names
         between = abs(float(self.x.place(1.0) - self.x.place(0.0))) - medium.letter if names else 0.0
-        numbers = all(name.replace(".", "", 1).isdecimal() for name in names)
-        if not numbers and any(width(name) * medium.letter > between for name in names):
+        numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
+        if not numeric and any(width(name) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
             key = ", ".join(
                 f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
