@@ -26,8 +26,8 @@ from kurbel.solver.figures import Results, Shown
 class ShownCase(solved.Case):
     """A machine with its results; machine: given itself, or as the path or the text of a machine file."""
 
-    def __init__(self, machine: Machine | str | os.PathLike[str]) -> None:
-        super().__init__(machine_of(machine))
+    def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
+        super().__init__(machine_of(machine), count)
 
 
 Case = ShownCase
