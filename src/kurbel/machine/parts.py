@@ -1,4 +1,4 @@
-"""What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
+"""The parts of a cylinder: moving masses, friction, resistance, a point of the rod, the piston."""
 
 import math
 from collections.abc import Iterator
