@@ -22,7 +22,7 @@ class Samples(NamedTuple):
     """Laps of a trace in order: of one cycle each, or of one turn each if only the machine file decides the cycle.
 
     angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was corrected; completed: the
-    closing sample is a copy of the first, since the file has none; headed: the unit in the heading of the values, or ''.
+    closing sample is a copy of the first, as the file has none; headed: the unit in the heading of the values, or ''.
     """
 
     angles: Array
