@@ -187,7 +187,8 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
     suites = {suite.attrib["name"]: suite for suite in root}
     assert list(suites) == [str(good), str(bad), str(wrong)]
     failed = {name: len(suite.findall("testcase/failure")) for name, suite in suites.items()}
-    assert list(failed.values()) == [0, 1, 2]  # the length has no unit, and the rod is missing
+    assert list(failed.values()) == [0, 1, 2]  # the length is no number, and the rod is missing
+    assert any(case.attrib["name"].startswith("crank: ") for case in suites[str(wrong)])
     for name, suite in suites.items():
         cases = suite.findall("testcase")
         assert (int(suite.attrib["tests"]), int(suite.attrib["failures"])) == (len(cases), failed[name])

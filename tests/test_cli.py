@@ -65,6 +65,18 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
     return written
 
 
+@POSIX_ONLY
+def test_a_terminal_gets_no_page_of_a_report_and_a_word_on_many_columns() -> None:
+    assert b"give --output NAME.html" in on_terminal("report", WATERWORKS)
+    assert b"'--columns ID,ID' prints fewer" in on_terminal("sweep", WATERWORKS, "--vary", "rod_ratio=4,5")
+
+
+def test_a_file_named_without_its_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mill.yaml").write_text("crank: 1 m\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert "did you mean 'mill.yaml'?" in CliRunner().invoke(kurbel, ["check", "mill"]).stderr
+
+
 @law_of_each(COMMANDS)
 def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None:
     result = run(command, "--help")

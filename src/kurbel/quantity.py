@@ -178,10 +178,11 @@ def ambiguity(name: str, found: tuple[str, ...]) -> str:
 def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
     """Return a hint which of these quantities have a word in their sentences, for a word that is no id; or ''.
 
-    >>> in_sentences("piston", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
+    >>> in_sentences("piston_area", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
     '; it is in the sentences of A_head'
     """
-    ids = dict.fromkeys(one.id for one in quantities if len(word) > 2 and word.lower() in one.text.lower())
+    words = word.lower().replace("_", " ")
+    ids = dict.fromkeys(one.id for one in quantities if len(words) > 2 and words in one.text.lower())
     return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
 
 

@@ -52,6 +52,18 @@ def test_a_flat_optimum_is_a_range() -> None:
     assert "as good from 40 to 60 rpm" in notes
 
 
+@pytest.mark.parametrize("span", ["5%:30%", "5:30 %", "0.05:0.3"])
+def test_a_range_in_percent_is_one_of_shares(span: str) -> None:
+    """η_v = 1 − ε [(p_d/p_s)^(1/n) − 1] of the ideal compressor is ½ at ε = ½/(4^(1/1.3) − 1)."""
+    card = "compressor: {suction: 1 bar, delivery: 4 bar, clearance: 8 %, exponent: 1.3}"
+    indicator = f"indicator: {{pressures: absolute, head_end: {{{card}}}}}"
+    text = f"{{speed: 1 1/s, stroke: 1 m, rod_ratio: 4, bore: 1 m, {indicator}}}"
+    vary = f"indicator.head_end.compressor.clearance={span}"
+    ended = run("find", "-", "--vary", vary, "volumetric_efficiency = 50 %", "-f", "json", text=text)
+    (found,) = json.loads(ended.stdout)["found"]
+    assert found["values"] == pytest.approx([0.5 / (4 ** (1 / 1.3) - 1)], rel=1e-9)
+
+
 def test_two_planted_values_are_found_again() -> None:
     """A machine with s = 0.8 m and L/R = 5 has these T_max and N_max: both equations give its sizes back."""
     planted = found_in("waterworks", "rod_ratio=4.999:5.001", least="T_max", conditions=["N_max > 0 N"])

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import html5lib
+import numpy as np
 import pytest
 from pages import page_of, page_of_case
 
@@ -42,7 +43,7 @@ def tiles(page: str) -> list[tuple[str, str]]:
 
 
 def number_of(text: str) -> float:
-    return float(unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", ""))
+    return float(unescape(text).replace("−", "-").replace("\N{NARROW NO-BREAK SPACE}", "").removesuffix("°"))
 
 
 def test_the_waterworks_machine_is_whole_and_small() -> None:
@@ -77,6 +78,20 @@ def test_the_first_page_says_most(name: str) -> None:
     facts = [number for _, number in tiles(page)]
     assert len(facts) == 8
     assert sum(f">{one}" in unescape(rest) or one.split(".")[0] in unescape(rest) for one in facts) == 8
+
+
+def test_the_torque_of_a_driven_machine_is_its_largest_in_size() -> None:
+    """A compressor is driven: its largest torque is against the rotation, and its smallest magnitude near zero."""
+    title, number = next(one for one in tiles(page_of("compressor-two-stage")) if one[0] == "Largest torque")
+    torques = case_of("compressor-two-stage").flywheel.at(np.arange(0.0, 360.0, 0.05)).M
+    assert number_of(number) * 1e3 == pytest.approx(torques[np.argmax(np.abs(torques))], rel=1e-3), title
+
+
+def test_the_fluctuating_volume_is_that_of_the_whole_pump() -> None:
+    """Three single-acting cranks at 120 deg at L/R = 5 have 0.029388 A s, one alone 0.553084 (docs/delivery.md)."""
+    number = dict(tiles(page_of("triplex-pump")))["Fluctuating volume"]
+    bore, stroke, slip = 8.0, 16.0, 0.04  # cm, cm
+    assert number_of(number) == pytest.approx(0.029388 * np.pi / 4 * bore**2 * stroke * (1 - slip), rel=1e-3)
 
 
 FIRST = {

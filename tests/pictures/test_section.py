@@ -154,6 +154,13 @@ def test_chambers_are_tinted_by_their_pressure() -> None:
     assert len(chambers(panel_of(case_of("diesel-four-stroke"), 40.0))) == 1
 
 
+def test_a_picture_at_one_angle_is_tinted_like_the_moving_one() -> None:
+    """A compressor draws in no water, though it has one pressure at one angle; a charge is darkest as it burns."""
+    assert {shape.look for _, shape in chambers(panel_of(case_of("compressor"), 40.0))} == {"gas"}
+    ((burning, _),), ((drawn_in, _),) = (chambers(panel_of(case_of("diesel-four-stroke"), at)) for at in (10.0, 450.0))
+    assert float(burning.tint[0]) > 0.7 > 0.2 > float(drawn_in.tint[0])
+
+
 # what can be seen of it
 
 

@@ -1,6 +1,7 @@
 """The commands that draw, write a whole page, check, or compare methods: plot, report, check, accuracy."""
 
 import os
+import sys
 import time
 
 import click
@@ -58,6 +59,8 @@ def report(
         raise click.UsageError("a report is of one machine, or of two side by side.")
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    if file_name is None and sys.stdout and sys.stdout.isatty():  # a page of HTML is nothing to read there
+        raise click.UsageError("a report is a page for the browser; give --output NAME.html, or - for this terminal.")
     refuse_overwriting(file_name, files)
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
     keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]

@@ -38,7 +38,8 @@ class EqualCylinders(Record):
     )
     _spacing = alternative(
         "length",
-        "Distance between neighbouring cylinders of a bank along the shaft; 0 mm: two rods on one pin",
+        "Distance between neighbouring cylinders of a bank along the shaft, the first of every bank at 0; 0 mm: two "
+        "rods at one place; for rods side by side list the cylinders, each with its axial_position",
         least=0,
         absent="unbalanced moments left out",
     )

@@ -40,7 +40,8 @@ def read_override(text: str, option: str = "--set") -> Override:
     key, equals, value = text.partition("=")
     path = path_of(key)
     if not equals or "" in path:
-        _refused(given, f"write KEY=VALUE, such as {option} cylinders.0.bore='450 mm'")
+        one = f"{option} bore='450 mm'"
+        _refused(given, f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'")
     if any(str(step).endswith(":") for step in path):
         _refused(given, "write KEY=VALUE, without the colon")
     try:  # bytes that the locale cannot decode are surrogates in an argument

@@ -158,19 +158,31 @@ class Found(NamedTuple):
 def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     """Return key values for the first page by their ids; without ids, the eight most informative ones, none zero.
 
-    Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`.
+    Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`; a key value
+    of the whole machine is taken from there.
     """
     kind = kind_of(case)
-    wanted = ids or (*_KINDS[kind].split(), *_USUAL.split())
+    wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
     commands = {id: word for word, labels in _LABELS.items() for id in labels}
     subjects = {word: if_any(partial(subjects_of, case, word)) for word in _LABELS}
     found: dict[str, Found] = {}
+    if not ids and kind != "effort" and _against(subjects["flywheel"]):
+        wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
+    titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
+    if "M_max" not in wanted:  # the largest torque of a machine that is driven
+        titles["M_min"] = _LABELS["flywheel"]["M_max"]
     for id in dict.fromkeys(wanted):
         one = _largest(id, commands[id], subjects[commands[id]])
         numbers = {0.0, *(abs(other.number) for other in found.values())}  # none twice
         if one and (ids or (abs(one.number) not in numbers and len(found) < _MOST_FACTS)):
-            found[id] = one._replace(title="Largest ram force") if id == "P_peak" and kind == "ram" else one
+            found[id] = one._replace(title=titles.get(id, one.title))
     return found
+
+
+def _against(subjects: Sequence[Subject]) -> bool:
+    """Return whether the largest torque is against the rotation, as that of a pump or a compressor."""
+    most, least = (_largest(id, "flywheel", subjects) for id in ("M_max", "M_min"))
+    return bool(most and least and abs(least.number) > abs(most.number))
 
 
 def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None:
@@ -184,7 +196,8 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None
     if not each:
         return None
     sign = -1 if id in _SMALLEST else 1
-    number, _, quantity, value = max(each, key=lambda one: sign * abs(one[0]))
+    whole = [one for one in each if one[1] == "whole machine"]
+    number, _, quantity, value = max(whole or each, key=lambda one: sign * abs(one[0]))
     equal = [name for size, name, *_ in each if f"{size:.6g}" == f"{number:.6g}"]
     where = together(equal) if len(equal) < len(each) else ""
     return Found(_LABELS[command][id], number, quantity, where, getattr(value, "degrees", None))

@@ -113,7 +113,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
             "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
         )
     elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        notes.append("Such a load determines no speed: the mean of ω over time is taken as the nominal speed.")
+        notes.append("The load does not determine the speed: the mean of ω over time is taken as the nominal speed.")
     if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
         notes.append(
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "

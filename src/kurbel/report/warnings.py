@@ -255,8 +255,8 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
         elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
             yield (
-                f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires "
-                "15 deg and 3 %"
+                f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
+                "requires 15 deg and 3 %"
             )
     on_guide = _on_guide(forces)
     if on_guide and forces.lifted:

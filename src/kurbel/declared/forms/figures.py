@@ -11,7 +11,7 @@ from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
-from kurbel.quantity import Quantity, ambiguity, called
+from kurbel.quantity import Quantity, ambiguity, called, in_sentences
 
 
 class Bound(float):
@@ -97,7 +97,8 @@ class Figures(Form):
             id, wrong = self._meant(own, known)
             return f"{scope}.{id}", wrong
         if not found:
-            hint = did_you_mean(name, tuple(id for id, one in known.items() if not one.listed))
+            single = {id: one for id, one in known.items() if not one.listed}
+            hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
             some = f"; known are {', '.join([*known][:6])}, …"
             return "", f"unknown key value '{shown(name)}'{hint or some}"
         wrong = f"'{name}' is a list of values; no {self.what} can be put on it" if known[found[0]].listed else ""
