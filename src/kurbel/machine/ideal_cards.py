@@ -159,7 +159,7 @@ class Compressor(_TwoStroke):
     expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression", None)
     unloaded: bool = field(
         bool,
-        "Whether the suction valves are held open, so that nothing is delivered; stands beside `compressor`, too",
+        "Whether the suction valves are held open, so that nothing is delivered; may also be given with `compressor`",
         default=False,
         absent="false",
     )

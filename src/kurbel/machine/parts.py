@@ -300,7 +300,7 @@ class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
     origin: `crank_pin`, or the other pin as the mechanism calls it; across: positive to the side to which the crank
-    pin stands at φ = 90°.
+    pin is at φ = 90°.
     """
 
     origin: str = field(

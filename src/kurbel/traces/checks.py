@@ -127,7 +127,7 @@ def doubt(trace: Trace, setting: Setting, each: Array) -> str:
 # the samples
 
 _PULSE = 0.02, 0.9
-"""Share of the swing, and of the samples that are within it of one level where only pulses stand out."""
+"""Share of the swing, and of the samples that are within it of one level if there are only pulses."""
 _FEWEST = 36
 _TURNS_DIFFER = 0.2
 """Share of the range by which the turns of a two-stroke cycle never differ in pairs."""
