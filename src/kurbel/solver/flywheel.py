@@ -9,7 +9,7 @@ The books take J as constant and the load as independent of the speed; the speed
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -330,7 +330,7 @@ class MachineTurning(Results):
         try:
             return self._line(1.0 if self._needs_no_inertia else self.J)
         except Unsettled as stop:
-            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
+            raise self._stalled(self.J, stop) from None
 
     @key_value("δ_0", "ratio", after="delta")
     def delta_book(self) -> Any:
@@ -385,8 +385,8 @@ class MachineTurning(Results):
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
-    def _why_it_stalls(self, flywheel: float, stop: Unsettled) -> str:
-        """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
+    def _stalled(self, flywheel: float, stop: Unsettled) -> NoSolutionError:
+        """Return the error that says where the machine stands still, if it does, and with which flywheel it turns."""
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
         message = f"{with_this} no speed line is found that repeats under this load"
@@ -394,13 +394,15 @@ class MachineTurning(Results):
             message = (
                 f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
             )
-        enough = self._enough(flywheel, stop.enough)
-        if enough is None:
-            return f"{message}, nor is one with any other flywheel: look at its effort, load and speed"
-        return (
-            f"{message}; it turns with a flywheel from J = {show(enough, 'inertia')} "
-            f"(GD2 = {show(4 * enough, 'gd2')}) on"
-        )
+
+        def remedy() -> str:
+            enough = self._enough(flywheel, stop.enough)
+            if enough is None:
+                return ", nor is one with any other flywheel: look at its effort, load and speed"
+            inertia, gd2 = show(enough, "inertia"), show(4 * enough, "gd2")
+            return f"; it turns with a flywheel from J = {inertia} (GD2 = {gd2}) on"
+
+        return NoSolutionError(message, cache(remedy))
 
     def _enough(self, flywheel: float, more: float | None) -> float | None:
         """Return the least flywheel of three digits, within a fiftieth, with which a machine turns; None without any.
