@@ -100,7 +100,7 @@ class MotionColumns(AtAngles):
     def __init__(
         self, mechanism: Mechanism, angle: CrankAngle, within: Array, omega: Any, of_point: RodPoint | None = None
     ) -> None:
-        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
+        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, np.asarray(angle.degrees)
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
         self._of_point = of_point

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from typing import Any, NamedTuple
 
+from kurbel.arrays import Number
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -69,7 +70,7 @@ def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[OwnThrow]:
 
 def middle_of(machine: Machine) -> Any:
     """Return from where moments are taken in m: the place given, or the middle of the outer cylinders."""
-    places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
+    places: list[Number] = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
     if machine.moment_reference is not None or not places:
         return machine.moment_reference
     lowest = reduce(lambda one, other: where(other < one, other, one), places)
