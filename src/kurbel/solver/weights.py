@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from kurbel.arrays import Number
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -20,9 +19,9 @@ class Weight(NamedTuple):
     owner: number of the cylinder, from 0, whose throw it belongs to, the first one's if it is of the whole machine.
     """
 
-    product: Any
+    product: complex
     order: int
-    place: Any
+    place: float | None
     owner: int = 0
 
 
@@ -38,20 +37,20 @@ class OwnThrow(NamedTuple):
     name: str
     mechanism: Mechanism
     counterweights: SharedCounterweights | tuple[Counterweight, ...]
-    bank: Any
-    late: Any
-    place: Any
-    arm: Any
-    rotating: Any
-    unbalanced: Any
-    mass: Any
+    bank: float
+    late: float
+    place: float | None
+    arm: complex
+    rotating: float
+    unbalanced: float
+    mass: float
 
-    def weight(self, mass: Any) -> Weight:
+    def weight(self, mass: float) -> Weight:
         """Return a mass at the crank pin."""
         return Weight(mass * self.arm, 1, self.place, self.number)
 
 
-def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[OwnThrow]:
+def throws_with_masses(machine: Machine, first: float = 0.0) -> list[OwnThrow]:
     """Return the throws of all cylinders of a machine; first: stroke line from which their directions count."""
     found = []
     for number, one in enumerate(machine.cylinders):
@@ -68,9 +67,9 @@ def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[OwnThrow]:
     return found
 
 
-def middle_of(machine: Machine) -> Any:
+def middle_of(machine: Machine) -> float | None:
     """Return from where moments are taken in m: the place given, or the middle of the outer cylinders."""
-    places: list[Number] = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
+    places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
     if machine.moment_reference is not None or not places:
         return machine.moment_reference
     lowest = reduce(lambda one, other: where(other < one, other, one), places)
@@ -78,12 +77,12 @@ def middle_of(machine: Machine) -> Any:
     return (lowest + highest) / 2
 
 
-def wheels_of(machine: Machine) -> tuple[Any, ...]:
+def wheels_of(machine: Machine) -> tuple[float, ...]:
     """Return the places in m of the counterweights in the wheels of a locomotive; () of another machine."""
     if machine.locomotive is None:
         return ()
-    middle, half = middle_of(machine), machine.locomotive.wheel_distance / 2
-    middle = 0.0 if middle is None else middle
+    given, half = middle_of(machine), machine.locomotive.wheel_distance / 2
+    middle = 0.0 if given is None else given
     return middle - half, middle + half
 
 
@@ -108,7 +107,7 @@ def counterweights_of(machine: Machine, throws: Sequence[OwnThrow]) -> Iterator[
             yield from levered(weight, planes, throw.name) if planes else (weight,)
 
 
-def levered(weight: Weight, planes: tuple[Any, ...], owner: str) -> tuple[Weight, Weight]:
+def levered(weight: Weight, planes: tuple[float, ...], owner: str) -> tuple[Weight, Weight]:
     """Return two weights in these planes that have the force and the moment of one.
 
     Raises UsageError, in the name of the cylinder that it is of, where its place is not known.
