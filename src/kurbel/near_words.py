@@ -1,13 +1,13 @@
 """What was probably meant by a misspelt word."""
 
+from difflib import get_close_matches
+
 _OTHERWISE = 0.85
 _LONGEST = 40  # characters of a word worth comparing
 
 
 def near(word: str, known: tuple[str, ...]) -> str:
     """Return the known word that is most like this one, or ''."""
-    from difflib import get_close_matches
-
     if len(word) > _LONGEST:
         return ""
     lower = word.lower().replace("-", "_").replace(" ", "_")

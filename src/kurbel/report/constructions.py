@@ -64,7 +64,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
     radius = _SMALL * (float(np.nanmax(np.hypot(all_x, all_y))) or 1.0)
     for degrees in source.angles or (_USUAL,):
         angle = CrankAngle.of(np.asarray(degrees))
-        sin, cos = map(float, mechanism.rod_angle(angle)) or (0.0, 1.0)
+        sin, cos = map(float, mechanism.rod_angle(angle) or (0.0, 1.0))
         outward = complex(angle.cos, angle.sin)
         x, y = tip(degrees)[:, 0].tolist()
         force = x * angle.cos + y * angle.sin
