@@ -1,7 +1,5 @@
 """Load cases: what they set, where their faults are shown, and that the limits are checked in all of them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

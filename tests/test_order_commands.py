@@ -1,17 +1,14 @@
 """`kurbel harmonics` and `kurbel torsion` as their users call them: formats, options, and what they refuse."""
 
-from __future__ import annotations
-
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from command import answer, run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
-BLOWER, SHIP = (str(CONFIGS / f"{name}.yaml") for name in ("coupled-blower", "marine-diesel"))
+BLOWER, SHIP = (str(CONFIGS[name]) for name in ("coupled-blower", "marine-diesel"))
 TWO = "shaft: [{inertia: 2 kg m2}, {stiffness: 50 N m/rad}, {inertia: 2 kg m2}]\n"
 
 
@@ -37,7 +34,7 @@ def test_the_columns_that_scripts_rely_on() -> None:
 
 
 def test_half_orders_of_four_strokes() -> None:
-    found = answer("harmonics", str(CONFIGS / "four-cylinder-generator.yaml"))
+    found = answer("harmonics", str(CONFIGS["four-cylinder-generator"]))
     assert table(found, "orders")["order"] == [half / 2 for half in range(1, 49)]
     marks = found["machine_place_tables"][0]["rows"]
     assert [index / 2 + 0.5 for index, mark in enumerate(marks) if mark["kind"] == "major"] == list(range(2, 25, 2))

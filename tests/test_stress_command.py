@@ -1,18 +1,16 @@
 """`kurbel stress` and what `kurbel check` says of a crankshaft, as a user calls them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
-from pathlib import Path
 
 import pytest
 
 from command import run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-ENGINE = (Path(__file__).parents[1] / "configs" / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 PLACES = [
     *(("pin", place) for place in ("middle", "at_web_A", "at_web_B")),
     *((web, place) for web in ("web_A", "web_B") for place in ("wide_face", "narrow_face", "corner")),

@@ -14,8 +14,8 @@ class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
 
     degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
-    `sin` and `cos`, which may be floats, arrays or numbers of higher precision alike. rod: (sin ψ, cos ψ) at
-    these angles of the one mechanism that they are used with, where known: most of its formulas need them.
+    `sin` and `cos`, which may be floats, arrays or numbers of higher precision. rod: (sin ψ, cos ψ) of the mechanism
+    that is evaluated at these angles, if known: most of its formulas need them.
     """
 
     degrees: Number
@@ -37,7 +37,7 @@ class CrankAngle(NamedTuple):
             quarter = round(whole / 90.0)
             rest = math.radians(whole - 90.0 * quarter)
             turn = complex(math.cos(rest), math.sin(rest)) * (1, 1j, -1, -1j)[quarter % 4]
-            return cls(degrees, turn.imag + 0.0, turn.real + 0.0)  # adding 0.0 turns −0.0 into 0.0
+            return cls(degrees, turn.imag + 0.0, turn.real + 0.0)  # adding 0.0 makes 0.0 of −0.0
         if not np.isfinite(degrees).all():
             raise ValueError("a crank angle must be finite")
         within_turn = np.fmod(degrees, 360.0)
@@ -73,7 +73,7 @@ def unit_vector(degrees: Number) -> Any:
 
 
 def within_cycle(degrees: Array, cycle: float) -> Array:
-    """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
+    """Return angles (n,) in degrees modulo the cycle, from 0 to less than its end."""
     if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # numpy.mod is slow
         return np.where(degrees == cycle, 0.0, degrees)
     return np.asarray(np.mod(degrees, cycle))

@@ -1,7 +1,5 @@
 """Many machines at once answer as each alone: those of books and those that are shipped, with numbers that vary."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path
@@ -67,13 +65,23 @@ OTHER_COMMANDS = {
 @pytest.mark.parametrize("name", OTHER_COMMANDS)
 def test_key_values_of_other_commands(name: str) -> None:
     inputs = {"speed": [f"{speed} rpm" for speed in (237, 243, 251, 259, 263)]}
-    assert farthest(CONFIGS / f"{name}.yaml", inputs, OTHER_COMMANDS[name].split()) <= (1e-11, "~")
+    assert farthest(CONFIGS[name], inputs, OTHER_COMMANDS[name].split()) <= (1e-11, "~")
 
 
 def test_one_that_locks_itself_fails_beside_others_with_the_reason_that_it_has_alone(tmp_path: Path) -> None:
     file = tmp_path / "steam.yaml"
-    machine = (CONFIGS / "waterworks.yaml").read_text("utf-8").replace("crosshead: 0.1", "crosshead: 2")
+    machine = CONFIGS["waterworks"].read_text("utf-8").replace("crosshead: 0.1", "crosshead: 2")
     file.write_text(f"{machine}\ninclination: 0 deg\n", encoding="utf-8")
     inputs = {"rod_ratio": ["1.5", "2.2", "2.3", "3", "5"]}
     assert "locks itself near φ" in sweep(file, inputs)["failure"][0]
     assert farthest(file, inputs, []) <= (1e-12, "~")
+
+
+def test_flywheels_on_both_sides_of_their_bearing(tmp_path: Path) -> None:
+    """Other places of the shaft are examined beyond bearing B and before it."""
+    lines = CONFIGS["gas-engine"].read_text("utf-8").partition("limits:")[0].splitlines(keepends=True)
+    file = tmp_path / "engine.yaml"
+    text = "".join(line for line in lines if "journal_length" not in line)
+    file.write_text(text.replace("flywheel_mass: 4 t", "flywheel_mass: 400 t"), encoding="utf-8")
+    inputs = {"crankshaft.flywheel_position": ["450 mm", "300 mm", "-100 mm", "-120 mm", "200 mm"]}
+    assert farthest(file, inputs, ["sigma_journal_B_max", "mises_journal_B_max"]) <= (1e-12, "~")

@@ -1,7 +1,5 @@
 """Pictures are as exact as the tables: every point is the solver's, extremes stand where the key value does."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

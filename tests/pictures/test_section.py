@@ -1,7 +1,5 @@
 """The machine in section: joints, strokes and volumes are those of the machine, and everything drawn can be read."""
 
-from __future__ import annotations
-
 import math
 import re
 from itertools import combinations
@@ -10,9 +8,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.machine_file import loads
 from kurbel.render import Look
 from kurbel.render.picture import PanelFrame
@@ -157,6 +154,13 @@ def test_chambers_are_tinted_by_their_pressure() -> None:
     assert len(chambers(panel_of(case_of("diesel-four-stroke"), 40.0))) == 1
 
 
+def test_a_picture_at_one_angle_is_tinted_like_the_moving_one() -> None:
+    """A compressor draws in no water, though it has one pressure at one angle; a charge is darkest as it burns."""
+    assert {shape.look for _, shape in chambers(panel_of(case_of("compressor"), 40.0))} == {"gas"}
+    ((burning, _),), ((drawn_in, _),) = (chambers(panel_of(case_of("diesel-four-stroke"), at)) for at in (10.0, 450.0))
+    assert float(burning.tint[0]) > 0.7 > 0.2 > float(drawn_in.tint[0])
+
+
 # what can be seen of it
 
 
@@ -233,15 +237,11 @@ def test_one_cylinder_of_several_has_its_forces() -> None:
 # as a sheet
 
 
-def plot(*args: str) -> Result:
-    return CliRunner().invoke(kurbel, ["plot", str(CONFIGS["waterworks"]), *args])
-
-
 def test_a_poster(tmp_path: Path) -> None:
     pytest.importorskip("typst")
     for size, name in (("A2", "a.pdf"), ("a4", "b.svg")):
         file = tmp_path / name
-        assert plot("mechanism", "--poster", size, "-o", str(file)).exit_code == 0
+        assert run("plot", CONFIGS["waterworks"], "mechanism", "--poster", size, "-o", str(file)).exit_code == 0
         drawn = file.read_bytes()
         assert len(drawn) <= 400_000
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
@@ -250,27 +250,10 @@ def test_a_poster(tmp_path: Path) -> None:
     assert points == pytest.approx([210 / 25.4 * 72, 297 / 25.4 * 72], abs=0.1)
 
 
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (["--poster", "A9", "-o", "x.pdf"], "--poster A9: there are A0, A1, A2, A3, A4, A5"),
-        (["--poster", "A2"], "--poster A2: a poster is a file; give --output NAME.pdf or NAME.svg"),
-        (["--poster", "A2", "-o", "x.png"], "--poster A2: a poster is a file; give --output NAME.pdf or NAME.svg"),
-        (["card", "--poster", "A2", "-o", "x.pdf"], "--poster draws the mechanism alone"),
-        (["--poster", "A2", "-o", "nowhere/x.pdf"], "cannot write nowhere/x.pdf: No such file or directory"),
-    ],
-)
-def test_posters_that_cannot_be(args: list[str], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    result = plot(*args)
-    assert (result.exit_code, message in result.stderr) == (2, True), result.stderr
-    assert not list(tmp_path.iterdir())
-
-
 def test_without_typst_a_poster_names_the_way_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     import importlib.util
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name, *more: None)
-    result = plot("--poster", "A2", "-o", str(tmp_path / "x.svg"))
+    result = run("plot", CONFIGS["waterworks"], "--poster", "A2", "-o", str(tmp_path / "x.svg"))
     assert result.exit_code == 2
     assert "a poster needs typst, which is not installed: pip install 'kurbel[plot]'" in result.stderr

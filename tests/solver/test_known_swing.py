@@ -1,16 +1,13 @@
 """Efforts of which the swing of energy alone is known, loads by harmonics, and cycles of several turns."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kurbel
-from kurbel.cli import kurbel as command
+from command import run
 from kurbel.solver.case import Case
 
 CYLINDERS = """
@@ -71,7 +68,7 @@ def test_swings_in_a_sweep_are_those_of_single_machines() -> None:
 
 def test_check_lists_what_a_swing_leaves_out() -> None:
     text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    told = CliRunner().invoke(command, ["check", "-"], input=text).output
+    told = run("check", "-", text=text).output
     assert "computed  ΔE, δ\n" in told
     assert "power: no mean torque given" in told
 
@@ -85,7 +82,7 @@ def test_every_command_knows_a_swing() -> None:
         (["harmonics"], 2),
         (["accuracy"], 0),
     ):
-        result = CliRunner().invoke(command, [*arguments, "-"], input=text)
+        result = run(*arguments, "-", text=text)
         assert (result.exit_code, "Traceback" in result.output) == (status, False), result.output
 
 

@@ -1,5 +1,7 @@
 """The commands that draw, write a whole page, check, or compare methods: plot, report, check, accuracy."""
 
+import sys
+
 import click
 
 from kurbel.cli.group import Progress
@@ -51,6 +53,8 @@ def report(
         raise click.UsageError("a report is of one machine, or of two side by side.")
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    if file_name is None and sys.stdout and sys.stdout.isatty():  # a page of HTML is nothing to read there
+        raise click.UsageError("a report is a page for the browser; give --output NAME.html, or - for this terminal.")
     refuse_overwriting(file_name, files)
     look = Look("html", comma=decimal == "comma", digits=digits)
     write_page(files, case_name, overrides, file_name, step, title, units or "metric", look)
@@ -87,7 +91,7 @@ def plot(
 ) -> None:
     """Draw pictures of the machine in FILE: those that are named, 'all', or the most informative picture.
 
-    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
+    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need typst. FILE may be - for standard input.
     """

@@ -109,7 +109,7 @@ def table(
 def friction(incline: float, coefficient: float, direction: float, output: Output) -> None:
     """Print the forces P, relative to the weight Q, that move a body up an inclined plane and that hold it there.
 
-    After Redtenbacher 1862: in the direction that is asked for, and horizontally, where P = Q tan(alpha +- rho) with
+    After Redtenbacher 1862: in the requested direction, and horizontally, where P = Q tan(alpha +- rho) with
     tan rho = f. A negative holding force is one that must push the body down: it rests by its friction alone.
     """
     from kurbel.report.friction import inclined_plane

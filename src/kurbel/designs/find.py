@@ -334,7 +334,7 @@ def _varied(span: _Span, kind: str) -> Varied:
     ends = [_parsed(f"--vary {key}", text, kind) for text in (low, high)]
     if not ends[0] < ends[1]:
         raise UsageError(f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first")
-    return Varied(key, ends[0], ends[1], unit, kind)
+    return Varied(key, ends[0], ends[1], "" if unit == "%" else unit, kind)  # a share is printed as a sweep prints it
 
 
 def _parsed(where: str, text: str, kind: str) -> float:

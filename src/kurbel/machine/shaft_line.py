@@ -130,7 +130,7 @@ class ShaftSection(NamedTuple):
 class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
-    cylinders: names of those whose cranks stand here; flywheel: how many times J of that of the machine counts here;
+    cylinders: names of those whose cranks are here; flywheel: how many times J of the machine's flywheel counts here;
     ratio: speed of this mass over that of the cranks.
     """
 
@@ -170,7 +170,7 @@ class ShaftLine:
 
 
 def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
-    """Return what is wrong with a list; of one with parts that could not be read what can be told of the others."""
+    """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
     found = _of_cylinders(parts, cylinders)
     if REFUSED in parts:
         return [fault for fault in found if fault.path]
@@ -267,7 +267,7 @@ def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     ground = {(True, True): "both", (True, False): "before", (False, True): "after"}.get(
         (parts[0] == GROUND, parts[-1] == GROUND), ""
     )
-    # what drives or is driven stands at an end, and is no crank
+    # the driving or driven machine is at an end, and is no crank
     usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
     return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])
 

@@ -1,4 +1,4 @@
-"""Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
+"""Slider-crank, straight or offset (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -24,12 +24,12 @@ def crank_field() -> Any:
 
 
 def stroke_instead(gives: Callable[[Values], dict[str, Any]]) -> Any:
-    """Return the entry of the stroke that stands for the crank; gives: the crank, from all values by key."""
+    """Return the field of the stroke, given instead of the crank; gives: the crank, from all values by key."""
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
 
 def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Number], Number], omega: int = 0) -> Offer:
-    """Return what the books have in place of a column, by their formula for R = 1; they have none with an offset."""
+    """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
     def factor(one: Any, angle: CrankAngle) -> Number | None:
         return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
@@ -62,8 +62,8 @@ class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
     crank: R in m; rod: L in m, `math.inf` for the infinite rod; offset: e in m of the stroke line from the shaft axis,
-    positive toward the side where the crank pin runs on the outstroke. sin ψ = (R sin φ − e)/L; it turns fully for
-    L > R + |e|. Raises RuleError otherwise.
+    positive toward the side of the crank pin on the outstroke. sin ψ = (R sin φ − e)/L. The crank turns fully for
+    L > R + |e|; otherwise RuleError is raised.
     """
 
     crank: float = crank_field()
@@ -120,7 +120,7 @@ class SliderCrank(Mechanism):
         yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
         if not np.any(apart):
             return
-        # three lengths that add up as people write them miss each other as floats by this; two by nothing
+        # rounding: decimal lengths with L = R + |e| exactly may differ by this as floats; without an offset they do not
         rounding = where(self.offset == 0, 0.0, ulp(rod) + ulp(offset) / 2)
         short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= rounding)
         numbers = {"reach": offset}
@@ -143,7 +143,7 @@ class SliderCrank(Mechanism):
 
     @cached_property
     def _gaps(self) -> tuple[float, ...]:
-        """(L − R + e)/L and (L − R − e)/L, how far sin ψ stays from 1 and from −1; (L + R + e)/L and (L + R − e)/L."""
+        """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
         sums = ((crank, offset) for crank in (-self.crank, self.crank) for offset in (self.offset, -self.offset))
@@ -183,14 +183,14 @@ class SliderCrank(Mechanism):
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
 
     def coupler_at(self, angle: CrankAngle) -> Turning:
-        """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
+        """Return the rotation of the rod, whose direction from crank pin to crosshead is −ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         curvature = formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam)
         return Turning(bearing(-sin_psi, cos_psi), -slope, -curvature)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
-        """Return crank, rod and crosshead, whose line runs e from the shaft; for an infinite rod a Scotch yoke."""
+        """Return crank, rod and crosshead, whose line is e from the shaft; for an infinite rod a Scotch yoke."""
         if math.isinf(self.rod):
             return yoke_sketch(self.crank, angle)
         far = self.rod * self._reaches[0]
@@ -225,7 +225,7 @@ class SliderCrank(Mechanism):
         start = self._start
         sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
-        # sine and cosine of half of θ, both perhaps with the other sign, which their products do not see
+        # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
         sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
         large = sqrt((1 + magnitude(cos)) / 2)
         small = sin / (2 * large)
@@ -236,14 +236,14 @@ class SliderCrank(Mechanism):
         return self.crank * (2 * half_sin * bracket)
 
     def remaining(self, angle: CrankAngle) -> Number:
-        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), without cancellation."""
         if not self.straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
         return self.crank * (angle.vercosine * (1 - lead))
 
     def _lead(self, angle: CrankAngle, cos_psi: Number) -> Number:
-        """Return cos ψ + λ cos φ without offset; for cos φ < 0 as ρ/(cos ψ − λ cos φ), where ρ = 1 − λ²."""
+        """Return cos ψ + λ cos φ without cancellation, for e = 0; for cos φ < 0 as (1 − λ²)/(cos ψ − λ cos φ)."""
         sum_of_both = cos_psi + self.lam * magnitude(angle.cos)
         return where(angle.cos >= 0, sum_of_both, self._gaps[0] * self._gaps[2] / sum_of_both)
 
@@ -257,7 +257,8 @@ class SliderCrank(Mechanism):
     def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m: exact, where R 291 is its first-order form.
 
-        Without offset as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ ρ sin²φ/cos³ψ], whose terms have one sign for cos φ < 0.
+        For e = 0 as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ (1 − λ²) sin²φ/cos³ψ], whose terms have one sign for
+        cos φ < 0.
         """
         sin_psi, cos_psi = self.rod_angle(angle)
         cube = cos_psi * cos_psi * cos_psi
@@ -275,8 +276,8 @@ class SliderCrank(Mechanism):
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
-        From the triangle shaft, pin, crosshead by half angles, so that no digit is lost near the dead centres.
-        Cards over the stroke need it for every point, of every design of a sweep: a search takes fifty times as long.
+        From the triangle shaft, pin, crosshead by half angles, accurate near the dead centres. In closed form, since
+        every point of a card over the stroke needs it, and a search takes fifty times as long.
         """
         lam, passed, whole = self.lam, displacement / self.crank, self.stroke / self.crank
         eps, (outer, inner) = self.offset / self.rod, self._reaches

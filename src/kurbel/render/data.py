@@ -157,8 +157,8 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
     """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
 
     An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
-    the case of a limit has no values, so that a CI service compares runs by it, and none occurs twice. Elements and
-    attributes are those of the schema of Jenkins.
+    the case of a limit has no values, so that a CI service compares runs by it, that of an error of the file is the
+    sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
     """
 
     def quoted(text: str) -> str:
@@ -175,7 +175,11 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
         names = Counter[str]()
         for one in found:
             message, key = one["message"], one["key"] or ""
-            own = message.partition(": ")[0] if key.startswith(("limits", "expect")) else message
+            if key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2]):
+                own = message.partition(": ")[0]
+            else:
+                plain = one["severity"] != "error" or message.startswith(key)
+                own = message = message if plain else f"{key}: {message}"
             names[own] += 1
             own += f" ({names[own]})" if names[own] > 1 else ""
             yield f'<testcase classname="{name}" name="{quoted(own)}">'

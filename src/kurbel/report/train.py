@@ -224,13 +224,16 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
     gas = next((one for one in train.results.drive.gas if one.piston is barrel.piston), None)
     if gas is None:
         return
-    state, piston = train.results.at(train.cycle), train.output + barrel.shift
-    ends = [(end, np.broadcast_to(state.pressure(end), train.cycle.shape)) for end in (gas.crank, gas.head) if end]
+    piston, moments = train.output + barrel.shift, len(train.cycle)
+    # a picture at one angle has the tints of the moving one
+    angles = train.cycle if moments > 1 else np.append(train.cycle, np.arange(0.0, train.results.drive.cycle, 5.0))
+    state = train.results.at(angles)
+    ends = [(end, np.broadcast_to(state.pressure(end), angles.shape)) for end in (gas.crank, gas.head) if end]
     every = np.concatenate([pressure for _, pressure in ends])
     # a pump has one pressure on each stroke
     pumped = bool(gas.work < 0) and all(len(np.unique(np.round(one))) <= 2 for _, one in ends)
     shape = _strip("liquid" if pumped else "gas", 0.0, 1.0, barrel.bore / 2)
-    for end, pressure in ends:
+    for end, pressure in ((end, pressure[:moments]) for end, pressure in ends):
         face, turn = (barrel.low, 0.0) if end is gas.crank else (barrel.high, 180.0)
         tint = 0.08 + 0.72 * ((pressure - every.min()) / (np.ptp(every) or 1.0)) ** 0.7
         length = abs(piston.real - face) - barrel.height / 2

@@ -294,7 +294,7 @@ class MainBearing(Bearing):
         """Return the force in N on the common pieces; rubbed: with the friction of the pins."""
         pieces, pins = self._common, {}
         for number, own in self._members.items():
-            state = own.forces.samples if rubbed else own.forces.samples.unrubbed
+            state = own.forces.samples if rubbed else own.forces.samples.without_pin_friction
             pins[number] = Vector(*own.carried(pieces, *_pin_load(state)))
         line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
         return self._force(line, pins, pieces.degrees)

@@ -68,7 +68,7 @@ class SampledCylinder:
         drive, pieces = self.drive, self.drive.pieces
         state = State.on(drive, pieces)
         if drive.has_force and some(drive.ring_surface != 0):
-            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.across_piston,))
+            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.pressure_difference,))
             pieces, state = _split(drive, pieces, state, pieces.zeros(across))
         by_load = drive.rubs or drive.yoke_rubs or drive.pin_friction
         return _cut_at_sides(drive, pieces, state) if drive.has_force and by_load else (pieces, state)
@@ -157,7 +157,7 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
     """Return the pieces cut where the guide force changes sides, with and without friction in pins, and the state."""
 
     def before(some: State) -> tuple[Any, ...]:
-        free = some.unrubbed
+        free = some.without_pin_friction
         return _sense(free), free.curvature, free.P_gas, free.P
 
     pieces, state, (sense, *_) = _smoothed(drive, pieces, state, before)
@@ -167,7 +167,7 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
         return pieces, state
     _refuse_locking(state, pieces)
     # where the load of a pin passes through zero, its magnitude has a kink
-    free = state.unrubbed
+    free = state.without_pin_friction
     loads = [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
     passed = [pieces.zeros(np.asarray(load)) for load in loads]
     pieces, state = _split(drive, pieces, state, Angles(*(np.concatenate(columns) for columns in zip(*passed))))
@@ -184,7 +184,7 @@ def _refuse_locking(state: State, pieces: Pieces) -> None:
     """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
     drive = state.drive
     if drive.count is None and drive.has_force and may_lock(drive.cylinder):
-        below = state.unrubbed.below
+        below = state.without_pin_friction.guide_denominator
         if (below <= 0).any():
             at = pieces.zeros(below).degrees
             first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])

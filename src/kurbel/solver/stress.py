@@ -360,7 +360,7 @@ class CrankshaftStrength(Results):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values of the stresses by id, of the parts that are examined; the safety where k_b is given."""
-        shaft, pull, allowable = self.shaft, self.forces.drive.rod_pull, self.shaft.allowable_bending
+        shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
         found: dict[str, Any] = {
             "C_rod": pull if some(pull != 0) else None,
             "p_pin_dc": abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length,  # G: P_max/(d_z l_z)

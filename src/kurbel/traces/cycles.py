@@ -70,8 +70,8 @@ def samples_of_file(
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
             raise
-        asked = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
-        raise RuleError(fault._replace(message=asked)) from None
+        message = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
+        raise RuleError(fault._replace(message=message)) from None
     return found._replace(headed=table.headed)
 
 
