@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.numerics.arithmetic import where
+from kurbel.arrays import Array, Number
+from kurbel.numerics.arithmetic import magnitude, where
 from kurbel.numerics.pieces import Pieces
 
 
@@ -18,10 +18,10 @@ class CrankAngle(NamedTuple):
     that is evaluated at these angles, if known: most of its formulas need them.
     """
 
-    degrees: Any
-    sin: Any
-    cos: Any
-    rod: tuple[Any, Any] | None = None
+    degrees: Number
+    sin: Number
+    cos: Number
+    rod: tuple[Number, Number] | None = None
 
     @classmethod
     def of(cls, degrees: float | Array) -> "CrankAngle":
@@ -50,19 +50,19 @@ class CrankAngle(NamedTuple):
         return cls(pieces.degrees, *_sin_cos(pieces.right_angle, pieces.offsets))
 
     @property
-    def versine(self) -> Any:
+    def versine(self) -> Number:
         """1 − cos φ, without cancellation near φ = 0."""
-        beyond = 1 + abs(self.cos)
-        return where(self.cos >= 0, self.sin * self.sin / beyond, beyond)
+        size = magnitude(self.cos)
+        return where(self.cos >= 0, self.sin * self.sin / (1 + size), 1 + size)
 
     @property
-    def vercosine(self) -> Any:
+    def vercosine(self) -> Number:
         """1 + cos φ, without cancellation near φ = 180°."""
-        beyond = 1 + abs(self.cos)
-        return where(self.cos >= 0, beyond, self.sin * self.sin / beyond)
+        size = magnitude(self.cos)
+        return where(self.cos >= 0, 1 + size, self.sin * self.sin / (1 + size))
 
 
-def unit_vector(degrees: Any) -> Any:
+def unit_vector(degrees: Number) -> Any:
     """Return e^{iφ}, complex, of an angle in degrees or an array of them, reduced exactly.
 
     >>> unit_vector(180.0)

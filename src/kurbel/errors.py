@@ -28,6 +28,11 @@ class KurbelError(Exception):
 
     exit_status = 2
 
+    @property
+    def reason(self) -> str:
+        """What is wrong, without what would help if that takes long to compute: for one of many machines."""
+        return str(self)
+
 
 class Fault(NamedTuple):
     """One thing that is wrong: where, and what to write instead.
@@ -124,9 +129,24 @@ class UsageError(KurbelError):
 
 
 class NoSolutionError(KurbelError):
-    """The machine as described does not run: it jams or stalls."""
+    """The machine as described does not run: it jams or stalls.
+
+    remedy: returns the end of the message, what would help; it is computed only where the message is shown.
+    """
 
     exit_status = 3
+
+    def __init__(self, reason: str, remedy: Callable[[], str] = str) -> None:
+        super().__init__(reason)
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return self.reason + self.remedy()
+
+    @property
+    def reason(self) -> str:
+        """What is wrong, without the remedy."""
+        return super().__str__()
 
 
 class Nowhere(NoSolutionError):

@@ -1,5 +1,7 @@
 """The known word that a misspelt word probably means."""
 
+from difflib import get_close_matches
+
 _OTHER_FIRST_LETTER = 0.85
 """Least similarity of a word with another first letter, which is rarely misspelt: 'direction' is not 'friction'."""
 _LONGEST = 40  # characters of a word worth comparing
@@ -7,8 +9,6 @@ _LONGEST = 40  # characters of a word worth comparing
 
 def near(word: str, known: tuple[str, ...]) -> str:
     """Return the known word that is most similar, or ''."""
-    from difflib import get_close_matches
-
     if len(word) > _LONGEST:
         return ""
     lower = word.lower().replace("-", "_").replace(" ", "_")

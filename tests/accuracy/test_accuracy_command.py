@@ -43,7 +43,7 @@ def once(run: Callable[[], object], quick: bool) -> tuple[float, float]:
 @pytest.fixture(scope="module")
 def measured() -> Report:
     """What is measured of the engine: seconds of work, once."""
-    return accuracy.accuracy_report(loads(ENGINE), True, loads)
+    return accuracy.accuracy_report(loads(ENGINE), True, loads, {})
 
 
 @pytest.fixture

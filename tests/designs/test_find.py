@@ -13,6 +13,7 @@ from kurbel.designs.find import Solutions, find
 from kurbel.machine_file.source import decode, read
 from kurbel.numerics.search import lowest
 from kurbel.render.findings import picture
+from kurbel.solver.flywheel import MachineTurning
 from representative import CONFIGS
 
 
@@ -26,6 +27,19 @@ def test_the_flywheel_of_a_fluctuation_is_the_one_that_kurbel_gives() -> None:
     told = json.loads(run("flywheel", str(CONFIGS["waterworks-two-cranks"]), "-f", "json").stdout)
     by_id = {one["id"]: one["value"] for one in told["machine_key_values"]}
     assert [one.values[0] for one in found] == pytest.approx([by_id["J_exact"]], rel=1e-9)
+
+
+def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    """That search takes 40 times as long as the design; only the message of a single machine shows its result."""
+    machine, key = str(CONFIGS["punch"]), "flywheel.inertia"
+    alone = run("flywheel", machine, "--set", f"{key}=3 kg m2")
+    reason, _, remedy = alone.stderr.removeprefix("Error: ").partition(";")
+    assert alone.exit_code == 3
+    assert remedy.startswith(" it turns with a flywheel from J = ")
+    monkeypatch.delattr(MachineTurning, "_enough")
+    swept = run("sweep", machine, "--vary", f"{key}=3 kg m2, 200 kg m2", "--columns", "delta", "-f", "json")
+    assert [json.loads(row)["failure"] for row in swept.stdout.splitlines()] == [reason, None]
+    assert found_in("punch", f"{key}=0:1000 kg m2", "delta = 0.05").found
 
 
 def test_the_offset_of_least_guide_force() -> None:

@@ -46,7 +46,7 @@ def test_the_errors_of_the_data_are_those_of_the_file_too() -> None:
         {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, indicator: {head_end: 9 bar, crank_end: 2 bar},
          uncertainty: {bore: 0.9 mm, speed: 1 %}}
         """)
-    found = {one.quantity: one.error for one in data_uncertainty(machine)}
+    found = data_uncertainty(machine)
     assert found == pytest.approx({"c_max": 0.01, "b_max": 0.02, "T_max": 0.004, "ΔE": 0.004}, rel=1e-6)
 
 

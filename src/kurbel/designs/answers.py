@@ -222,6 +222,6 @@ def _alone(machine: Machine, requested: Sequence[Answer]) -> Values:
     try:
         return answered_alone(machine, requested)
     except KurbelError as error:
-        return str(error)
+        return error.reason
     except ArithmeticError as error:
         return f"numeric overflow ({error})"

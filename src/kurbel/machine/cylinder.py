@@ -164,9 +164,9 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
 
 def may_lock(cylinder: Cylinder) -> bool:
     """Return whether the friction of the crosshead is great enough to lock it where it is driven: f tan ψ ≥ 1."""
-    coefficient = cylinder.friction.crosshead if cylinder.friction else None
+    coefficient = (cylinder.friction.crosshead if cylinder.friction else None) or 0.0
     widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
-    return bool(coefficient) and any(coefficient * abs(sin_psi) >= cos_psi for sin_psi, cos_psi in widest)
+    return coefficient > 0 and any(coefficient * abs(float(sin)) >= cos for sin, cos in widest)
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Fault]:

@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, Values, alternative, field, record
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
-from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
+from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
 _INFINITE = (("infinite", math.inf),)
 
@@ -28,10 +28,10 @@ def stroke_instead(gives: Callable[[Values], dict[str, Any]]) -> Any:
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
 
-def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
+def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Number], Number], omega: int = 0) -> Offer:
     """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
-    def factor(one: Any, angle: CrankAngle) -> Any:
+    def factor(one: Any, angle: CrankAngle) -> Number | None:
         return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
 
     return Offer(on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id), factor, omega)
@@ -142,7 +142,7 @@ class SliderCrank(Mechanism):
         return every(self.offset == 0) or every(self.rod == math.inf)
 
     @cached_property
-    def _gaps(self) -> tuple[Any, ...]:
+    def _gaps(self) -> tuple[float, ...]:
         """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
@@ -150,7 +150,7 @@ class SliderCrank(Mechanism):
         return tuple(total(self.rod, *both) / self.rod for both in sums)
 
     @cached_property
-    def _reaches(self) -> tuple[Any, Any]:
+    def _reaches(self) -> tuple[float, float]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
         beyond, within, above, below = self._gaps
         return sqrt(above * below), sqrt(beyond * within)
@@ -167,14 +167,14 @@ class SliderCrank(Mechanism):
         outer, inner = self._reaches
         return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
 
-    def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
+    def rod_angle(self, angle: CrankAngle) -> tuple[Number, Number]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
         if angle.rod is not None:
             return angle.rod
         lam, gaps = self.lam, self._gaps
         if self.straight:  # 1 − λ² sin²φ without its cancellation
             return lam * angle.sin, sqrt(angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin))
-        near = 1 + abs(angle.sin)
+        near = 1 + magnitude(angle.sin)
         far = angle.cos * angle.cos / near
         up = angle.sin >= 0
         # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
@@ -214,7 +214,7 @@ class SliderCrank(Mechanism):
         start = CrankAngle.of(self.dead_centres()[0])
         return start._replace(rod=self.rod_angle(start))
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0.
 
         With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
@@ -227,7 +227,7 @@ class SliderCrank(Mechanism):
         sin_psi, cos_psi = self.rod_angle(angle)
         # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
         sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
-        large = sqrt((1 + abs(cos)) / 2)
+        large = sqrt((1 + magnitude(cos)) / 2)
         small = sin / (2 * large)
         half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
         middle_sin = start.sin * half_cos + start.cos * half_sin
@@ -235,26 +235,26 @@ class SliderCrank(Mechanism):
         bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
         return self.crank * (2 * half_sin * bracket)
 
-    def remaining(self, angle: CrankAngle) -> Any:
+    def remaining(self, angle: CrankAngle) -> Number:
         """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), without cancellation."""
         if not self.straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
         return self.crank * (angle.vercosine * (1 - lead))
 
-    def _lead(self, angle: CrankAngle, cos_psi: Any) -> Any:
+    def _lead(self, angle: CrankAngle, cos_psi: Number) -> Number:
         """Return cos ψ + λ cos φ without cancellation, for e = 0; for cos φ < 0 as (1 − λ²)/(cos ψ − λ cos φ)."""
-        sum_of_both = cos_psi + self.lam * abs(angle.cos)
+        sum_of_both = cos_psi + self.lam * magnitude(angle.cos)
         return where(angle.cos >= 0, sum_of_both, self._gaps[0] * self._gaps[2] / sum_of_both)
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288; without offset R sin φ (cos ψ + λ cos φ)/cos ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
         if self.straight:
             return self.crank * (angle.sin * self._lead(angle, cos_psi) / cos_psi)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m: exact, where R 291 is its first-order form.
 
         For e = 0 as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ (1 − λ²) sin²φ/cos³ψ], whose terms have one sign for
@@ -268,7 +268,7 @@ class SliderCrank(Mechanism):
         bend = self.lam * (angle.cos * angle.cos) / cube
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
 
-    def radial(self, angle: CrankAngle) -> Any:
+    def radial(self, angle: CrankAngle) -> Number:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""
         sin_psi, cos_psi = self.rod_angle(angle)
         return angle.cos - angle.sin * (sin_psi / cos_psi)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from kurbel.arrays import Truth
 from kurbel.numerics.arithmetic import where
 
 
@@ -42,7 +45,7 @@ def smallest(first: Extreme, *others: Extreme) -> Extreme:
     return first
 
 
-def chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
+def chosen(condition: Truth, extreme: Extreme, otherwise: Extreme) -> Extreme:
     """Return the extreme where the condition holds, else the other one."""
     return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))
 
@@ -62,4 +65,4 @@ class Extremes(NamedTuple):
         """The largest magnitude, of either sign; of two that differ only by rounding the first."""
         high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
         alike = abs(low.value - high.value) <= _ALIKE * abs(high.value)
-        return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
+        return chosen(np.where(alike, low.degrees < high.degrees, low.value > high.value), low, high)

@@ -450,7 +450,7 @@ def bearing_warnings(case: Case) -> Iterator[str]:
     if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
         return
     throws, apart = case.bearings.line.throws if case.bearings.line else (), shaft.a + shaft.b
-    given = [following.place - one.place for one, following in pairwise(throws)]
+    given = [float(following.place - one.place) for one, following in pairwise(throws)]
     wrong = [one for one in given if abs(one - apart) > _ROUNDED * apart]
     if wrong:
         yield (

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
@@ -66,7 +66,11 @@ _REAL = 1e-12
 # forces and moments, order by order
 
 
-def orders_of(throw: CylinderThrow, curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
+Curvature = Callable[[Mechanism, CrankAngle], Any]
+"""Takes a mechanism and returns d²x/dφ² in m."""
+
+
+def orders_of(throw: CylinderThrow, curvature: Curvature, count: int) -> ComplexArray:
     """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
 
     Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. Raises
@@ -89,15 +93,13 @@ def orders_of(throw: CylinderThrow, curvature: Callable[[Mechanism, CrankAngle],
     )
 
 
-def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Number | None:
     """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
     offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
     return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
 
 
-def waves_of(
-    throws: Sequence[CylinderThrow], curvature: Callable[[Mechanism, CrankAngle], Any], count: int
-) -> ComplexArray:
+def waves_of(throws: Sequence[CylinderThrow], curvature: Curvature, count: int) -> ComplexArray:
     """Return m x″(φ − β) e^{iγ} of each throw in kg m as Fourier coefficients from −k to k, (throws, 2k + 1, count).
 
     Cylinders with the same mechanism share one analysis.
@@ -136,7 +138,7 @@ class Unbalanced(NamedTuple):
 
 
 def unbalanced_of(
-    throws: Sequence[CylinderThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: Any
+    throws: Sequence[CylinderThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: float | None
 ) -> Unbalanced:
     """Return the unbalanced force and moment of all throws and weights.
 
@@ -149,13 +151,13 @@ def unbalanced_of(
         pulls[row, one.order + waves.shape[1] // 2] = one.product * one.order**2
     waves = np.concatenate((waves, pulls))
 
-    def summed(levers: Sequence[Any]) -> ClosedCurve:
+    def summed(levers: Sequence[Number]) -> ClosedCurve:
         terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
         return ClosedCurve(np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0))))
 
     places = [*(one.place for one in throws), *(one.place for one in turning)]
-    known = z_0 is not None and all(place is not None for place in places)
-    moment = summed([place - z_0 for place in places]) if known else None
+    levers = [place - z_0 for place in places if place is not None and z_0 is not None]
+    moment = summed(levers) if len(levers) == len(places) else None
     sizes, k = np.abs(waves[:, :, 0]).max(axis=0), waves.shape[1] // 2
     both = sizes[k + 1 :] + sizes[:k][::-1]
     orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
@@ -329,7 +331,7 @@ class MachineBalance(Results):
         for throw in self.throws:
             if throw.mechanism.quick_return:
                 raise UsageError(f"{throw.name}: the masses of a quick-return mechanism are not known")
-        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))
 
@@ -511,7 +513,7 @@ class MachineBalance(Results):
 
         u_a + u_b = −F/n² and (z_a − z_0) u_a + (z_b − z_0) u_b = −M/n², with the rotating vectors F and M of the order.
         """
-        if not self.planes or self.bare.moment is None:
+        if not self.planes or self.bare.moment is None or self.z_0 is None:
             return ()
         force, moment = self._of_one(self.bare.force.of(order)), self._of_one(self.bare.moment.of(order))
         first, second = self.planes
@@ -540,7 +542,7 @@ class MachineBalance(Results):
             if couple and not at_a_place and self.planes:
                 found += self._in_planes(order)
             elif circle:
-                place = self.z_0 + arm.real if at_a_place else None
+                place = self.z_0 + arm.real if at_a_place and self.z_0 is not None else None
                 found.append(Weight(-circle / order**2, order, place))
         return tuple(found)
 
@@ -568,7 +570,7 @@ class MachineBalance(Results):
         given, omega = self.machine.locomotive, self.omega
         if given is None:
             return {}
-        found = {
+        found: dict[str, Any] = {
             "traction_variation": self.farthest["force along"],
             "swaying_couple": self.farthest.get("moment along"),
         }

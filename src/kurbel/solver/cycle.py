@@ -169,7 +169,7 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
     # where the load of a pin passes through zero, its magnitude has a kink
     free = state.without_pin_friction
     loads = [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
-    passed = [pieces.zeros(load) for load in loads]
+    passed = [pieces.zeros(np.asarray(load)) for load in loads]
     pieces, state = _split(drive, pieces, state, Angles(*(np.concatenate(columns) for columns in zip(*passed))))
     pieces, state, (sense, *_) = _smoothed(drive, pieces, state, lambda one: (_sense(one), *(one.rubbing or ())))
     return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)

@@ -84,7 +84,7 @@ class Drive:
         self.name, self.mechanism = cylinder.name, cylinder.mechanism
         self.revolutions = CYCLES[machine.cycle_of(cylinder)]
         self.cycle = 360.0 * self.revolutions
-        self.omega: Number | None = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
 
         masses, mechanism = cylinder.masses, self.mechanism
         length, rod = mechanism.rod_length, masses.connecting_rod if masses else None

@@ -12,7 +12,7 @@ The textbook formula takes the moment of inertia as constant and the load as ind
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -333,7 +333,7 @@ class MachineTurning(Results):
         try:
             return self._line(1.0 if self._needs_no_inertia else self.J)
         except Unsettled as stop:
-            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
+            raise self._stalled(self.J, stop) from None
 
     @key_value("δ_0", "ratio", after="delta")
     def delta_book(self) -> Any:
@@ -388,20 +388,22 @@ class MachineTurning(Results):
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
-    def _why_it_stalls(self, flywheel: float, stop: Unsettled) -> str:
+    def _stalled(self, flywheel: float, stop: Unsettled) -> NoSolutionError:
         """Return a message: at which angle the machine stalls, and the smallest flywheel found with which it runs."""
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
         message = f"{with_this} no periodic motion is found under this load"
         if stop.degrees is not None:
             message = f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy is used up"
-        enough = self._enough(flywheel, stop.enough)
-        if enough is None:
-            return f"{message}; no flywheel is found with which it runs: check effort, load and speed"
-        return (
-            f"{message}; it runs with a flywheel from J = {show(enough, 'inertia')} "
-            f"(GD2 = {show(4 * enough, 'gd2')}) upward"
-        )
+
+        def remedy() -> str:
+            enough = self._enough(flywheel, stop.enough)
+            if enough is None:
+                return "; no flywheel is found with which it runs: check effort, load and speed"
+            inertia, gd2 = show(enough, "inertia"), show(4 * enough, "gd2")
+            return f"; it runs with a flywheel from J = {inertia} (GD2 = {gd2}) upward"
+
+        return NoSolutionError(message, cache(remedy))
 
     def _enough(self, flywheel: float, more: float | None) -> float | None:
         """Return the smallest flywheel in kg m² with which the machine runs, to 2 %, in three digits; None without any.

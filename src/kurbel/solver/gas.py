@@ -22,7 +22,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import within_cycle
 from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
@@ -77,7 +77,7 @@ class Process:
         return math.fsum((float(straight), *curved))
 
 
-def growth(z: Any, distance: Any, clearance: Any) -> Any:
+def growth(z: Number, distance: Number, clearance: Number) -> Number:
     """Return ln(V′/V) between stroke fractions z and z + distance.
 
     As ±ln(1 + |V′ − V|/min(V, V′)), which is accurate both for steep lines and for small clearances.
@@ -92,7 +92,9 @@ Line = tuple[int, float, float, float, float, float]
 """One of the lines of a `Process`."""
 
 
-def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0) -> Process:
+def process_in(
+    chamber: Card | Rectangle | IdealCard, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0
+) -> Process:
     """Return the process of a card.
 
     lift: to be added to its pressures for absolute, base: to be subtracted for gauge pressures, in Pa; cycle: degrees.
@@ -183,7 +185,7 @@ class CardPressure:
     cycle, closed; starts: where lines begin.
     """
 
-    def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
+    def __init__(self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None) -> None:
         self.setting, self._count = setting, count
         which, each = np.zeros(count or 1, int), [chamber]
         if varies(chamber):
@@ -212,11 +214,11 @@ class CardPressure:
         )
 
     @cached_property
-    def area(self) -> Any:
+    def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         return self._of_machines([one.area for one in self._processes])
 
-    def _of_machines(self, values: list[float]) -> Any:
+    def _of_machines(self, values: list[float]) -> Number:
         """Return numbers of the processes as those of the machines: one if there is one process."""
         return values[0] if len(values) == 1 else np.array(values)[self._which]
 
@@ -337,11 +339,11 @@ class PistonGas:
         self.head = _pressure_in(indicator.head_end, at_head, count)
         self.crank = _pressure_in(indicator.crank_end, at_crank, count)
 
-        self.areas: tuple[Any, Any] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
+        self.areas: tuple[Number, Number] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
         both = zip((self.head, self.crank), self.areas)
         self.ends = [(end, area) for end, area in both if end is not None]
         self._traces = [(end, area) for end, area in self.ends if isinstance(end, TracePressure)]
-        self.swept_volume: Any = sum(area for _, area in self.ends) * self.stroke
+        self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         turns = cycle * np.arange(repeats)
         self.starts = [Angles(one.starts.machine, one.starts.degrees + turn) for turn in turns for one, _ in self.ends]
         chambers = zip((indicator.head_end, indicator.crank_end), self.areas)
@@ -349,12 +351,12 @@ class PistonGas:
         self.clearance_volumes = [0.0 if one is None else one * area * self.stroke for one, area in clearances]
 
     @cached_property
-    def works(self) -> tuple[Any, ...]:
+    def works(self) -> tuple[Number, ...]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
         return tuple(area * self.stroke * self.repeats * end.area for end, area in self.ends)
 
     @cached_property
-    def work(self) -> Any:
+    def work(self) -> Number:
         """Indicated work in J per cycle."""
         return total(*self.works)
 

@@ -80,13 +80,14 @@ def _places(state: State) -> _Places:
     drive, angle = state.drive, state.angle
     R, L = drive.mechanism.crank, drive.mechanism.rod_length
     square = float(drive.omega**2) if drive.has_inertia and drive.omega else 0.0
-    pin_speed, pin = R * (-angle.sin + 1j * angle.cos), -R * (angle.cos + 1j * angle.sin)
+    sin, cos = np.asarray(angle.sin), np.asarray(angle.cos)
+    pin_speed, pin = R * (-sin + 1j * cos), -R * (cos + 1j * sin)
     if not math.isfinite(L):
-        still = np.zeros_like(angle.sin)
-        return _Places(pin_speed.real + 0j, pin_speed, still, pin.real + 0j, pin, still, square)
+        still = np.zeros_like(sin)
+        return _Places(pin_speed.real.astype(complex), pin_speed, still, pin.real.astype(complex), pin, still, square)
     sin_psi, cos_psi = state.rod_angle
-    turn = R * angle.cos / (L * cos_psi)
-    bend = (turn * turn * sin_psi - R / L * angle.sin) / cos_psi
+    turn = R * cos / (L * cos_psi)
+    bend = (turn * turn * sin_psi - R / L * sin) / cos_psi
     crosshead = pin.real - L * (cos_psi * turn * turn + sin_psi * bend)
     return _Places(pin_speed.real - L * sin_psi * turn + 0j, pin_speed, turn, crosshead + 0j, pin, bend, square)
 

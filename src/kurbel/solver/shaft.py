@@ -31,13 +31,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number, Truth
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.numerics.arithmetic import some, where
+from kurbel.numerics.arithmetic import magnitude, some, where
 from kurbel.solver.weights import counterweights_of, throws_with_masses
 
 _ALIKE = 1e-9
@@ -47,8 +47,8 @@ _ALIKE = 1e-9
 class Vector(NamedTuple):
     """A force in N along D and along T, or the moments in N m of forces along them."""
 
-    D: Any
-    T: Any
+    D: Number
+    T: Number
 
 
 # one throw
@@ -98,7 +98,7 @@ class FreeBody:
     D in the web of an overhung crank.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: Any, pin: Vector, weight: Vector) -> None:
+    def __init__(self, shaft: Crankshaft, crank: Number, pin: Vector, weight: Vector) -> None:
         self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
         b, f, span, both = shaft.b, shaft.flywheel_position, shaft.span, list(zip(pin, weight))
         self.A = Vector(*((F * b - G * f) / span for F, G in both))
@@ -106,7 +106,7 @@ class FreeBody:
         self.before_pin = Vector(self.A.D * 0.0, self.A.T * 0.0) if shaft.overhung else self.A
         self.along_web, self.torque = pin.D - self.before_pin.D, pin.T * crank
 
-    def moments_at(self, u: Any) -> Vector:
+    def moments_at(self, u: Number) -> Vector:
         """Return the bending moments in N m at the section u, of the forces before it.
 
         A (u − u_A) from bearing A on, less F u from the pin on; valid up to B, or to a flywheel before B. The opposite
@@ -150,13 +150,17 @@ class Throw(NamedTuple):
     """
 
     cylinders: tuple[int, ...]
-    angle: Any
-    place: Any
+    angle: Number
+    place: Number
     A: int = 0
     B: int = 1
     flywheel: bool = False
     at_A: Any = 0.0
     at_B: Any = 0.0
+
+
+Turned = tuple[Any, Number]
+"""Mass times radius in kg m of what turns with the shaft, complex, and its place u in m from a pin."""
 
 
 def _of_first(condition: Any) -> Any:
@@ -173,7 +177,7 @@ class SupportedShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.crankshaft is not None
         self.machine, self.shaft = machine, machine.crankshaft
-        like_first: Any = True
+        like_first: Truth = True
 
         def decided(condition: Any) -> Any:
             """Return what holds for the first machine; others for which something else does have other throws."""
@@ -186,14 +190,14 @@ class SupportedShaft:
         for one, following in pairwise(found):
             decided(one.place <= following.place)
 
-        between: list[list[tuple[Any, Any]]] = [[] for _ in found]
+        between: list[list[Turned]] = [[] for _ in found]
         for number, product, u in self._turning(found, decided):
             between[number].append((product * unit_vector(-found[number].angle), u))
         known = where(like_first, 0.0, math.nan)
         self.throws = tuple(self._supported(found, number, own, known) for number, own in enumerate(between))
         self.bearings = 2 if self.shaft.overhung else len(found) + 1
 
-    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[tuple[Any, Any]], known: Any) -> Throw:
+    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[Turned], known: Number) -> Throw:
         """Return a throw with its bearings and the weights that turn between them.
 
         own: mass times radius in kg m, complex, and u in m from the pin, of each weight.
@@ -277,9 +281,9 @@ def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of
         place = 0.0 if place is None else place
         for index, throw in enumerate(found):
             lines = [cylinders[other].bank_angle - one.bank_angle for other in throw.cylinders]
-            same = (abs(_remainder(throw.angle - angle)) <= _ALIKE) & (abs(throw.place - place) <= _ALIKE)
+            same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (magnitude(throw.place - place) <= _ALIKE)
             for line in lines:
-                same = same & (abs(_remainder(line)) > _ALIKE)
+                same = same & (magnitude(_remainder(line)) > _ALIKE)
             if decided(same):
                 found[index] = throw._replace(cylinders=(*throw.cylinders, number))
                 break
@@ -288,6 +292,6 @@ def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of
     return found
 
 
-def _remainder(degrees: Any) -> Any:
+def _remainder(degrees: Number) -> Number:
     """Return an angle in degrees without whole turns, from −180 to 180."""
     return degrees - 360.0 * np.rint(degrees / 360.0)

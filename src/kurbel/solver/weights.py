@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
@@ -19,9 +19,9 @@ class Weight(NamedTuple):
     if unknown; owner: index of the cylinder to whose throw it belongs, 0 for a weight of the whole machine.
     """
 
-    product: Any
+    product: complex
     order: int
-    place: Any
+    place: float | None
     owner: int = 0
 
 
@@ -37,20 +37,20 @@ class CylinderThrow(NamedTuple):
     name: str
     mechanism: Mechanism
     counterweights: SharedCounterweights | tuple[Counterweight, ...]
-    bank: Any
-    lag: Any
-    place: Any
-    arm: Any
-    rotating: Any
-    unbalanced: Any
-    mass: Any
+    bank: float
+    lag: float
+    place: float | None
+    arm: complex
+    rotating: float
+    unbalanced: float
+    mass: float
 
-    def weight(self, mass: Any) -> Weight:
+    def weight(self, mass: float) -> Weight:
         """Return a mass at the crank pin."""
         return Weight(mass * self.arm, 1, self.place, self.number)
 
 
-def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[CylinderThrow]:
+def throws_with_masses(machine: Machine, first: float = 0.0) -> list[CylinderThrow]:
     """Return the throws of all cylinders of a machine; first: stroke line from which their directions count."""
     found = []
     for number, one in enumerate(machine.cylinders):
@@ -67,7 +67,7 @@ def throws_with_masses(machine: Machine, first: Any = 0.0) -> list[CylinderThrow
     return found
 
 
-def middle_of(machine: Machine) -> Any:
+def middle_of(machine: Machine) -> float | None:
     """Return the reference plane of moments in m: the one given, or midway between the outer cylinders."""
     places = [one.axial_position for one in machine.cylinders if one.axial_position is not None]
     if machine.moment_reference is not None or not places:
@@ -77,12 +77,12 @@ def middle_of(machine: Machine) -> Any:
     return (lowest + highest) / 2
 
 
-def wheels_of(machine: Machine) -> tuple[Any, ...]:
+def wheels_of(machine: Machine) -> tuple[float, ...]:
     """Return the places in m of the counterweights in the wheels of a locomotive; () of another machine."""
     if machine.locomotive is None:
         return ()
-    middle, half = middle_of(machine), machine.locomotive.wheel_distance / 2
-    middle = 0.0 if middle is None else middle
+    given, half = middle_of(machine), machine.locomotive.wheel_distance / 2
+    middle = 0.0 if given is None else given
     return middle - half, middle + half
 
 
@@ -107,7 +107,7 @@ def counterweights_of(machine: Machine, throws: Sequence[CylinderThrow]) -> Iter
             yield from split_by_lever(weight, planes, throw.name) if planes else (weight,)
 
 
-def split_by_lever(weight: Weight, planes: tuple[Any, ...], owner: str) -> tuple[Weight, Weight]:
+def split_by_lever(weight: Weight, planes: tuple[float, ...], owner: str) -> tuple[Weight, Weight]:
     """Return two weights in these planes with the force and the moment of one.
 
     Raises UsageError, naming its owner, where its axial position is not known.
