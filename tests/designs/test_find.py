@@ -35,7 +35,7 @@ def test_of_many_designs_none_that_stalls_searches_the_flywheel_that_would_do(mo
     alone = run("flywheel", machine, "--set", f"{key}=3 kg m2")
     reason, _, remedy = alone.stderr.removeprefix("Error: ").partition(";")
     assert alone.exit_code == 3
-    assert remedy.startswith(" it turns with a flywheel from J = ")
+    assert remedy.startswith(" it runs with a flywheel from J = ")
     monkeypatch.delattr(MachineTurning, "_enough")
     swept = run("sweep", machine, "--vary", f"{key}=3 kg m2, 200 kg m2", "--columns", "delta", "-f", "json")
     assert [json.loads(row)["failure"] for row in swept.stdout.splitlines()] == [reason, None]
