@@ -23,11 +23,15 @@ from kurbel.solver import case as solved
 from kurbel.solver.figures import Results, Shown
 
 
-class Case(solved.Case):
+class ShownCase(solved.Case):
     """A machine with its results; machine: given itself, or as the path or the text of a machine file."""
 
-    def __init__(self, machine: Machine | str | os.PathLike[str]) -> None:
-        super().__init__(machine_of(machine))
+    def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
+        super().__init__(machine_of(machine), count)
+
+
+Case = ShownCase
+"""Its name in Python: `kurbel.Case`."""
 
 
 class Drawing(NamedTuple):
@@ -43,7 +47,7 @@ class Drawing(NamedTuple):
         draw_file(self.pictures, Look(), file_name)
 
 
-def draw(case: Case, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
+def draw(case: ShownCase, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
     """Return pictures of a machine, by the words of `kurbel plot --list`; without names the most informative picture.
 
     angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that does not exist.

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from drawn import curve_of, drawn, off_line, on_its_side
+from drawn import curve_of, drawn, ids_of, off_line, on_its_side
 from scipy.integrate import trapezoid
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.picture import PanelFrame
+from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain
 from kurbel.report.picture import Panel, Picture
@@ -241,3 +241,26 @@ def test_rounding_of_a_constant_is_not_refined() -> None:
     alone = sampled(np.array([0.0, 180.0, 360.0]), lambda degrees, within: values(degrees, within)[:1])
     both = sampled(np.array([0.0, 180.0, 360.0]), values)
     assert len(both.degrees) == len(alone.degrees)
+
+
+def test_a_card_is_a_closed_line() -> None:
+    """The crank end is opened at the outer dead centre, where the cycle begins: there, too, the pressure falls upright."""
+    for id in ("card", "card-volume"):
+        crank_end = curve_of(drawn("coupled-blower", id)[0].panels[0], "p_C")
+        x, y = crank_end.jumps()[-1]
+        before, after = crank_end.pieces()[-2], crank_end.pieces()[0]
+        assert (x[0], y[0], x[1], y[1]) == (before[0][-1], before[1][-1], after[0][0], after[1][0])
+        assert x[0] == pytest.approx(x[1], abs=1e-6 * np.nanmax(crank_end.x)) and y[0] - y[1] > 0.5
+
+
+def test_a_diagram_that_would_be_a_line_or_empty_is_left_out() -> None:
+    """A load along the rod is a line to the rod; a torque that never changes has no orders."""
+    (picture,) = [one for one in drawn("locomotive", "bearing-loads") if one.of == "crosshead pin"]
+    assert [one.title for one in picture.panels] == ["engine: stroke line →"]
+    assert "orders" not in ids_of("punch")
+    assert "orders" in ids_of("shaper")
+
+
+def test_a_degree_stands_next_to_its_number() -> None:
+    text = picture_text(drawn("shaper", "motion")[0], Look())
+    assert "θ_max 22.02°, 112.02°" in text

@@ -158,3 +158,10 @@ def test_labels_are_clear_of_each_other_and_of_curves(names: list[str]) -> None:
             on_curves += sum(covered(frame, label) for label in found)
     assert labels > 100
     assert on_curves <= 0.01 * labels
+
+
+def test_no_label_is_on_the_upright_axis() -> None:
+    for id in ("forces", "effort", "bearing-loads"):
+        text = svg_file(drawn("diesel-trace", id), Look())
+        places = [float(one) for one in re.findall(r'<text class="halo" x="([^"]+)"', text)]
+        assert places and min(places) >= 4

@@ -58,7 +58,7 @@ def columns(text: str) -> tuple[str, ...]:
         found = called(name, known)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
-        ids.append(found[0] if found else name)  # the report knows what this machine has
+        ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
 
 

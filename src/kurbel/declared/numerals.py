@@ -41,7 +41,7 @@ def plain(text: str) -> str:
 
 
 def parse_number(text: str) -> float:
-    """Return the finite number that `text` is. Raises UnitError that says what to write instead."""
+    """Return the finite number that `text` is; raises UnitError with a fix."""
     number = NUMBER.fullmatch(text) or NUMBER.fullmatch(plain(text))
     if not number:
         raise UnitError(f"expected a number, got '{text}'{_hint(plain(text))}")

@@ -81,14 +81,10 @@ def requested_answers(
             (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
         )
         for one, value in found:
-            angle = (one._replace(angle=True),) if with_angles and _has_angle(value) else ()
+            # other designs may have a value with an angle where this one has an error
+            angle = (one._replace(angle=True),) if with_angles and isinstance(value, (Extreme, KurbelError)) else ()
             once.setdefault(one._replace(alone=False), (one, *angle))
     return tuple(part for parts in once.values() for part in parts)
-
-
-def _has_angle(value: object) -> bool:
-    """Return whether a value has a crank angle, or may have one in other designs."""
-    return isinstance(value, (Extreme, KurbelError))
 
 
 def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:

@@ -1,4 +1,4 @@
-"""The values of one or two keys that give wanted key values, or make a key value least or greatest."""
+"""The values of one or two keys that give required key values, or that make a key value least or greatest."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from kurbel.numerics.search import common_roots, lowest, roots
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
 _ASIDE = 1e-6
-"""Of the range: step from an extreme to a design that shows which bound limits it."""
+"""Share of the range: step from an extreme to a design that shows which bound limits it."""
 
 
 class Varied(NamedTuple):

@@ -38,7 +38,7 @@ class _Weight(Record):
 
 @record
 class Counterweight(_Weight):
-    """A weight that turns with the crank; without a place it stands at its cylinder, one of the machine nowhere."""
+    """A weight that turns with the crank; without a place it is at its cylinder, one of the machine has no place."""
 
     angle: float = field(
         "angle",

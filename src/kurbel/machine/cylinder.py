@@ -149,7 +149,7 @@ class Cylinder(Record):
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
     """Yield the rule that no two cylinders are at the same place along the shaft and on the same stroke line."""
-    message = "stands where '{other}' does, {place:length} along the shaft, on the same stroke line; give another"
+    message = "is at the place of '{other}', {place:length} along the shaft, on the same stroke line; give another"
     for index, one in enumerate(cylinders):
         rules = []
         for other in cylinders[:index]:

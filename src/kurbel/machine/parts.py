@@ -1,4 +1,4 @@
-"""What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
+"""The parts of a cylinder: moving masses, friction, resistance, a point of the rod, the piston."""
 
 import math
 from collections.abc import Iterator
@@ -300,7 +300,7 @@ class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
     origin: `crank_pin`, or the other pin as the mechanism calls it; across: positive to the side to which the crank
-    pin stands at φ = 90°.
+    pin is at φ = 90°.
     """
 
     origin: str = field(

@@ -152,7 +152,8 @@ def _degrees(cylinders: Sequence[Cylinder], cycle: str) -> float:
 def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:
     """Return the cylinders with the crank positions, from cylinder 1, of a firing order over a cycle in degrees.
 
-    Raises RuleError, `where` the order stands, if it does not name each cylinder, and for positions given besides.
+    where: the place of the order, for errors. Raises RuleError if it does not name each cylinder once, and if crank
+    positions are given, too.
     """
     if len(order) != len(cylinders):
         refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)

@@ -105,7 +105,7 @@ Part = Union[ShaftPart, str]
 
 
 def kind_of(part: Part) -> str:
-    """Return what an item of the list is: `mass`, `piece`, `gear` or `ground`."""
+    """Return the kind of an item of the list: `mass`, `piece`, `gear` or `ground`."""
     if isinstance(part, str):
         return GROUND if part == GROUND else "mass"
     for kind, keys in (("mass", _OF_MASS), ("piece", _OF_PIECE)):
@@ -197,7 +197,7 @@ def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> list[Fault
 
 
 def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield what is wrong with the order of the items."""
+    """Yield the faults in the order of the items."""
     kinds = [kind_of(part) for part in parts]
     for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
         if kind == "piece" and not (before and after):
@@ -218,7 +218,7 @@ def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
 
 
 def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield what there is too much or too little of."""
+    """Yield faults of the whole list: items that are missing, or given too often."""
     kinds = [kind_of(part) for part in parts]
     gears = [index for index, kind in enumerate(kinds) if kind == "gear"]
     grounds = [index for index, kind in enumerate(kinds) if kind == GROUND]
@@ -282,7 +282,7 @@ def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
 
 
 def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
-    """Return two masses that a pair of gears joins as one."""
+    """Return one mass for the two that a pair of gears joins."""
     return replace(
         mass,
         name=f"{mass.name} + {other.name}",

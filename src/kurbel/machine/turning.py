@@ -213,7 +213,7 @@ class Effort:
 
     @property
     def key(self) -> str:
-        """The key that the torques stand under."""
+        """The key of the torques in the machine file."""
         return "file" if self.files else "points"
 
 
@@ -364,7 +364,7 @@ class Load(Record):
 
     @property
     def key(self) -> str:
-        """The key that the torques stand under."""
+        """The key of the torques in the machine file."""
         return self.diagram.key if self.diagram else "points"
 
     def cycle_fault(self, cycle: str, turns: int) -> str:

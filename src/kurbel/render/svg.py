@@ -138,7 +138,7 @@ def _machine_css(mode: int) -> str:
     for look, dashes in _LINES.items():
         strokes += f".{look}{{fill:none;stroke-width:.7{f';stroke-dasharray:{dashes}' if dashes else ''}}}"
     texts = ".note{font-size:12.5px}.strong,.force{font-size:13px}.strong{font-weight:600}"
-    return f"{strokes}{texts}@media(max-width:520px){{.mark{{font-size:17px}}}}{filled}{colours}"
+    return f"{strokes}{texts}@media(max-width:520px){{.mark,.force{{font-size:19px}}}}{filled}{colours}"
 
 
 def svg_file(pictures: Iterable[Picture], look: Look, paper: bool = False) -> str:

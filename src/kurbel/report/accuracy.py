@@ -20,8 +20,9 @@ from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 
 Loads = Callable[[str], Machine]
+"""Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
 Progress = Callable[[str, float], None]
-"""Reads the text of a machine file: only the command line knows how."""
+"""Called with what is computed, and the completed share."""
 NUMERICAL = "numerical_error"
 """Id of the table that the picture is drawn from."""
 

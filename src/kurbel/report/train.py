@@ -20,7 +20,7 @@ from kurbel.report.picture import MOMENTS_PER_TURN, Body, Shape
 from kurbel.solver.forces import CylinderForces
 
 BORE = 0.9
-"""Of the stroke, where no bore is given."""
+"""Bore relative to the stroke, if none is given."""
 _CLEARANCE = 0.05  # of the stroke, between piston and cover in the dead centre
 _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # heights of pistons over the bore
 WALL, COVER, _GLAND, _ROD = 0.06, 0.1, 0.16, 0.08  # of the bore; the last is the radius of a piston rod
@@ -89,7 +89,7 @@ class Train:
 
     @property
     def is_engine(self) -> bool:
-        """Whether a piston goes to and fro on the stroke line."""
+        """Whether a piston reciprocates on the stroke line."""
         return bool(self.mechanism.slides) and not self.mechanism.quick_return
 
     @property
@@ -109,13 +109,13 @@ class Train:
 
     @property
     def forked(self) -> bool:
-        """Whether the end of a lever slides in a fork of what it drives."""
+        """Whether the end of a lever slides in a fork of the part that it drives."""
         ends = self.joints.get("end")
         return bool(self.sketch.output) and ends is not None and np.allclose((self.output - ends).imag, 0.0)
 
     @property
     def outer_end(self) -> float:
-        """How far the outermost cylinder reaches along the stroke line, in m."""
+        """Outer end of the outermost cylinder on the stroke line, in m."""
         return max(self.mechanism.crank, *(barrel.ends(COVER)[1] for barrel in self.barrels))
 
     @property
@@ -205,7 +205,7 @@ def _directions(vectors: ComplexArray) -> Array:
 
 
 def cylinders(train: Train) -> Iterator[Body]:
-    """Yield cylinders, guides, and what goes to and fro on the stroke line."""
+    """Yield cylinders, guides, and the reciprocating parts on the stroke line."""
     if not train.is_engine:
         return
     R, level = train.mechanism.crank, 1j * train.mechanism.offset

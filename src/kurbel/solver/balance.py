@@ -84,7 +84,9 @@ def orders_of(throw: CylinderThrow, curvature: Callable[[Mechanism, CrankAngle],
         if last <= samples // 4:
             return np.asarray(waves[:last])
         samples *= 4
-    raise UsageError(f"{throw.name}: the rod is so little longer than the crank that its forces have no end of orders")
+    raise UsageError(
+        f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
+    )
 
 
 def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:

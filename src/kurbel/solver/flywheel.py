@@ -392,17 +392,15 @@ class MachineTurning(Results):
         """Return a message: at which angle the machine stalls, and the smallest flywheel found with which it runs."""
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
-        message = f"{with_this} no speed line is found that repeats under this load"
+        message = f"{with_this} no periodic motion is found under this load"
         if stop.degrees is not None:
-            message = (
-                f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
-            )
+            message = f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy is used up"
         enough = self._enough(flywheel, stop.enough)
         if enough is None:
-            return f"{message}, nor is one with any other flywheel: look at its effort, load and speed"
+            return f"{message}; no flywheel is found with which it runs: check effort, load and speed"
         return (
-            f"{message}; it turns with a flywheel from J = {show(enough, 'inertia')} "
-            f"(GD2 = {show(4 * enough, 'gd2')}) on"
+            f"{message}; it runs with a flywheel from J = {show(enough, 'inertia')} "
+            f"(GD2 = {show(4 * enough, 'gd2')}) upward"
         )
 
     def _enough(self, flywheel: float, more: float | None) -> float | None:

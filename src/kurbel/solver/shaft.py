@@ -194,7 +194,9 @@ class SupportedShaft:
         self.bearings = 2 if self.shaft.overhung else len(found) + 1
 
     def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[tuple[Any, Any]], known: Any) -> Throw:
-        """Return a throw with its bearings and the weights `own` between them: mass times radius, u from its pin.
+        """Return a throw with its bearings and the weights that turn between them.
+
+        own: mass times radius in kg m, complex, and u in m from the pin, of each weight.
 
         known: nan for machines with other throws. The second throw of an overhung shaft is at its other end.
         """
@@ -209,7 +211,7 @@ class SupportedShaft:
         )
 
     def _turning(self, throws: Sequence[Throw], decided: Callable[[Any], Any]) -> Iterator[tuple[int, Any, Any]]:
-        """Yield each rotating weight: index of the throw that carries it, mass times radius, u in m from its pin.
+        """Yield of each rotating weight the index of the throw whose bearings carry it, mass times radius, and u in m.
 
         The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
         throw that is nearest to it; where its place is not known, of the throw that it belongs to. The rotating part of

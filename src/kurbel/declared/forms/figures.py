@@ -168,7 +168,7 @@ class ByKey(Form):
         self.spreads = spreads
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Read uncertainties; values that stand instead of others are read with their load case."""
+        """Read uncertainties; the values of a load case are read when they replace those of the file."""
         if not isinstance(value, dict) or not value:
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         if not self.spreads:

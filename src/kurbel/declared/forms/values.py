@@ -286,7 +286,7 @@ def _firing_order(text: str, folder: str) -> tuple[int, ...]:
     order = tuple(map(int, re.findall("[0-9]+", text)))
     twice = next((number for number in order if order.count(number) > 1), None)
     if twice:
-        refused(f"cylinder {twice} stands twice in {text}")
+        refused(f"cylinder {twice} is listed twice in {text}")
     missing = next((number for number in range(1, max(order) + 1) if number not in order), None)
     if missing or len(order) > MOST_ITEMS:
         refused(f"cylinder {missing} is missing in {text}" if missing else f"more than {MOST_ITEMS} cylinders")
