@@ -154,6 +154,7 @@ def test_equal_cylinders_and_bearings_are_there_once() -> None:
 def test_load_cases_and_limits_are_on_the_first_page() -> None:
     """Of each limit and cylinder what is nearest to its bound in any case; half the capacity with one end unloaded."""
     page = page_of("compressor-two-stage", cases=True)
+    assert all("one end unloaded" in section(page, id) for id in ("forces", "delivery"))
     summary = text_in(section(page, "summary"))
     rows = re.findall(r"([\d.]+)\s?(?:°|%)\s*≥ (15°|3 %)\s*PASS", summary)
     assert len(rows) == 4
