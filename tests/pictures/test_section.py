@@ -155,6 +155,11 @@ def test_chambers_are_tinted_by_their_pressure() -> None:
     assert (steam_out[0], {look for look, _ in pump}) == ("gas", {"liquid"})
     assert steam_in[1] > 0.7 > 0.2 > steam_out[1]
     assert len(chambers(panel_of(case_of("diesel-four-stroke"), 40.0))) == 1
+    # the air that is expelled at 7 bar is gas at any angle, and as dark as it is when the machine moves
+    crank_out, head_in = chambers(panel_of(case_of("compressor"), 150.0))
+    assert {shape.look for _, shape in (crank_out, head_in)} == {"gas"}
+    assert crank_out[0].tint[0] == pytest.approx(0.8)
+    assert head_in[0].tint[0] == pytest.approx(0.08)
 
 
 # what can be seen of it

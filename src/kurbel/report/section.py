@@ -230,7 +230,7 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
     acting = dict[str, tuple[ComplexArray, ComplexArray, ComplexArray | None, float]]()
     if sketch.toward:
         toward = np.full(len(degrees), complex(*sketch.toward))
-        acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.25 * R
+        acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.6 * R  # beside N
     if sketch.across:
         acting["N"] = place, np.full(len(degrees), complex(*sketch.across)), None, clear
     # on that side of the pin, or of the shaft, from which the rod does not come; T and D are 0 where that changes

@@ -224,15 +224,19 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
     gas = next((one for one in train.results.drive.gas if one.piston is barrel.piston), None)
     if gas is None:
         return
-    state, piston = train.results.at(train.cycle), train.output + barrel.shift
-    ends = [(end, np.broadcast_to(state.pressure(end), train.cycle.shape)) for end in (gas.crank, gas.head) if end]
+    # also of a single moment by what is high and low over the cycle
+    turning = np.arange(MOMENTS_PER_TURN * train.results.drive.revolutions) * (360.0 / MOMENTS_PER_TURN)
+    degrees = np.append(train.cycle, turning)
+    state, piston = train.results.at(degrees), train.output + barrel.shift
+    ends = [(end, np.broadcast_to(state.pressure(end), degrees.shape)) for end in (gas.crank, gas.head) if end]
     every = np.concatenate([pressure for _, pressure in ends])
     # a pump has one pressure on each stroke
     pumped = bool(gas.work < 0) and all(len(np.unique(np.round(one))) <= 2 for _, one in ends)
     shape = _strip("liquid" if pumped else "gas", 0.0, 1.0, barrel.bore / 2)
     for end, pressure in ends:
         face, turn = (barrel.low, 0.0) if end is gas.crank else (barrel.high, 180.0)
-        tint = 0.08 + 0.72 * ((pressure - every.min()) / (np.ptp(every) or 1.0)) ** 0.7
+        shown = pressure[: len(train.cycle)]
+        tint = 0.08 + 0.72 * ((shown - every.min()) / (np.ptp(every) or 1.0)) ** 0.7
         length = abs(piston.real - face) - barrel.height / 2
         yield Body.of([shape], face + 1j * train.mechanism.offset, turn, length, tint)
 
