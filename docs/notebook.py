@@ -14,14 +14,13 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).parent.parent
 _NOTEBOOK = Path(__file__).parent / "notebook.ipynb"
 
 
 def page() -> str:
     """Return the page. Raises what a cell raises."""
     before = Path.cwd()
-    os.chdir(ROOT)  # the cells read configs/
+    os.chdir(_NOTEBOOK.parent)  # as Jupyter does; the cells read ../configs/
     try:
         return "\n\n".join(_blocks()) + "\n"
     finally:

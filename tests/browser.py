@@ -1,7 +1,5 @@
 """A page as a headless Chromium has it."""
 
-from __future__ import annotations
-
 import functools
 import http.server
 import re

@@ -1,7 +1,5 @@
 """No test is held to a time; and one switch rewrites every text that the tests keep of the program's output."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

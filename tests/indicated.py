@@ -1,7 +1,5 @@
 """Physical traces made by hand: polytropic compression and expansion, heat by Wiebe's law, gas exchange, and noise."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any, NamedTuple

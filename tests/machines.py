@@ -1,8 +1,5 @@
 """Machines that several tests build in a line."""
 
-from __future__ import annotations
-
-import math
 from typing import Any
 
 from kurbel.machine import Cylinder, Machine
@@ -10,7 +7,6 @@ from kurbel.machine.indicator import Card, Constant, Indicator
 from kurbel.machine.parts import Masses, Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.extreme import Extreme
 from kurbel.solver.forces import CylinderForces
 
 AT = 98066.5
@@ -45,9 +41,3 @@ def single_acting(
         inclination=90.0 if vertical else None,
         **more,
     )
-
-
-def largest_velocity(mechanism: Mechanism) -> Extreme:
-    """The largest velocity over ω in m, and its crank angle."""
-    found = one_cylinder(mechanism, rpm=60 / math.tau).motion.c_max
-    return found

@@ -1,7 +1,5 @@
 """Cylinders drawn at random, with everything that makes a force bend, jump or change its sign."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Parameters of which a few stand for all by default, and all run with the slow tests."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Crankshafts that the tests of strength build in a line; lengths in m."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`kurbel sweep` run in the process, the rows that it tells as json, and the numbers in machine files that may vary."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess
@@ -14,9 +12,9 @@ import command
 from kurbel.errors import KurbelError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import dotted, leaves, tree_of
+from representative import CONFIGS
 
-CONFIGS = Path(__file__).parent.parent / "configs"
-WATERWORKS = str(CONFIGS / "waterworks.yaml")
+WATERWORKS = str(CONFIGS["waterworks"])
 EXAMPLES = sorted(path for path in Path(__file__).parent.glob("examples/*.yaml") if path.stem != "answers")
 NUMBER = re.compile(r"([0-9.]+(?:e[+-]?[0-9]+)?)(?: (.*))?")
 NO_NUMBERS = {"uncertainty", "limits", "expect", "trace", "points", "name", "count"}

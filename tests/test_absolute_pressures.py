@@ -1,15 +1,11 @@
 """Pressures that a file gives as absolute are shown, asked for and limited as absolute; what hangs on them is not."""
 
-from __future__ import annotations
-
 import csv
-import json
 import math
 
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
+from command import answer, printed, run
 from kurbel.errors import MachineFileError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
@@ -30,16 +26,12 @@ ABSOLUTE = MACHINE.format(counted="absolute", low="1 bar", high="7 bar")
 GAUGE = MACHINE.format(counted="gauge", low="-0.01325 bar", high="5.98675 bar")
 
 
-def run(*words: str, text: str = ABSOLUTE) -> str:
-    result = CliRunner().invoke(kurbel, [*words, "-"], input=text)
-    assert (result.exit_code, result.stderr) == (0, "")
-    return result.stdout
-
-
 def test_programs_are_told_too() -> None:
-    (head, *_) = csv.reader(run("forces", "--columns", "p_head", "--angles", "90", "-f", "csv").splitlines())
+    (head, *_) = csv.reader(
+        printed("forces", "-", "--columns", "p_head", "--angles", "90", "-f", "csv", text=ABSOLUTE).splitlines()
+    )
     assert head == ["phi_deg", "p_head_Pa_abs"]
-    parsed = json.loads(run("forces", "--columns", "p_head", "--angles", "90", "-f", "json"))["cylinders"][0]
+    parsed = answer("forces", "-", "--columns", "p_head", "--angles", "90", text=ABSOLUTE)["cylinders"][0]
     assert parsed["columns"][1]["unit"] == "Pa abs"
     assert parsed["columns"][1]["values"] == pytest.approx([1e5], rel=1e-15)
     (p_max,) = (one for one in parsed["key_values"] if one["id"] == "p_max")
@@ -58,8 +50,8 @@ def test_forces_and_differences_hang_on_no_zero() -> None:
 
 def test_limits_and_places_count_as_the_file_does() -> None:
     limited = f"{ABSOLUTE}limits: {{p_max: 6.5 bar}}\n"
-    assert "7 bar > 6.5 bar  FAIL" in CliRunner().invoke(kurbel, ["check", "-"], input=limited).stdout
-    found = run("forces", "--where", "p_head = 7 bar", "--columns", "p_head", "-f", "csv")
+    assert "7 bar > 6.5 bar  FAIL" in run("check", "-", text=limited).stdout
+    found = printed("forces", "-", "--where", "p_head = 7 bar", "--columns", "p_head", "-f", "csv", text=ABSOLUTE)
     assert float(found.splitlines()[1].split(",")[1]) == pytest.approx(7e5, rel=1e-15)
 
 

@@ -1,18 +1,13 @@
 """`kurbel balance` as it is called: its columns, tables, switches, and what it says where it cannot answer."""
 
-from __future__ import annotations
-
-import json
-from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import answer, printed, run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
 V90 = """
 speed: 600 rpm
 cylinders:
@@ -21,15 +16,8 @@ cylinders:
 """
 
 
-def run(text: str, *more: str) -> Result:
-    return CliRunner().invoke(kurbel, ["balance", "-", *more], input=text)
-
-
 def parsed(name: str, *more: str) -> dict[str, Any]:
-    result = CliRunner().invoke(kurbel, ["balance", str(CONFIGS / f"{name}.yaml"), "-f", "json", *more])
-    assert (result.exit_code, result.stderr) == (0, "")
-    found: dict[str, Any] = json.loads(result.stdout)
-    return found
+    return answer("balance", CONFIGS[name], *more)
 
 
 def ids(entries: list[dict[str, Any]]) -> list[str]:
@@ -49,37 +37,23 @@ def test_columns_and_tables_have_the_names_that_are_relied_on() -> None:
     assert next(one["values"][-1] for one in found["machine_columns"] if one["id"] == "phi") == 360
 
 
-@pytest.mark.parametrize(
-    ("text", "left"),
-    [
-        (V90, "unbalanced moments no axial_position given of A, B"),
-        (V90.replace("{like: A,", "{crank: 50 mm, rod_ratio: 4,"), "inertia of B no masses given"),
-        (V90.replace("speed: 600 rpm", ""), "unbalanced forces and moments no speed given"),
-        (V90.replace("like: A,", "like: A, offset: 5 mm,"), "figures of first order the book has no such formula"),
-    ],
-)
-def test_what_is_left_out_is_said(text: str, left: str) -> None:
-    result = run(text, "--compare", "--width", "200")
-    assert (result.exit_code, result.stderr) == (0, "")
-    assert left in " ".join(result.stdout.split())
-
-
 def test_pins_that_are_not_shared_are_told() -> None:
     apart = V90.replace("bank_angle: 90 deg, crank_position: 90", "bank_angle: 60 deg, crank_position: 90").replace(
         "name: A,", "name: A, axial_position: 0 mm,"
     )
-    for result in (run(apart, "--width", "300"), CliRunner().invoke(kurbel, ["check", "-"], input=apart)):
+    for result in (run("balance", "-", "--width", "300", text=apart), run("check", "-", text=apart)):
         assert "A and B are at one place along the shaft, but their throws are 30 deg apart" in " ".join(
             result.stdout.split()
         )
     shared = V90.replace("name: A,", "name: A, axial_position: 0 mm,")
-    assert "crank pin" not in run(shared).stdout
+    assert "crank pin" not in run("balance", "-", text=shared).stdout
 
 
 def test_the_counterweights_say_what_they_hold() -> None:
     """Of one crank of 50 mm with 2 kg to and fro and 3 kg on the pin the first holds (3 + 2/2) · 0.05 kg m."""
     one = "speed: 600 rpm\ncrank: 50 mm\nrod_ratio: 4\nmasses: {reciprocating: 2 kg, rotating: 3 kg}\n"
-    told = run(one + "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n").stdout
+    one += "counterweights: [{product: 1 kg m, angle: 0 deg}, {product: 1 kg m, angle: 180 deg}]\n"
+    told = printed("balance", "-", text=one)
     best = next(line for line in told.splitlines() if line.startswith("  u_1 "))
     assert best.split()[1:3] == ["0.2000", "kg"]
     assert "Counterweight balancing all rotating and half of the reciprocating mass" in best

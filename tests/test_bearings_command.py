@@ -1,17 +1,14 @@
 """`kurbel bearings` as a user calls it."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import pytest
 
 from command import run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parents[1] / "configs"
-ENGINE = (CONFIGS / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 THREE = """
 speed: 600 rpm
 cylinders:

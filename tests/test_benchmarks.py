@@ -1,7 +1,5 @@
 """The studies of benchmarks/ still run: each once, as briefly as it can be told to."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The command line as a process: pipes, terminals, encodings, full disks, start-up."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -11,8 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from command import limited, run
 from kurbel.cli import COMMANDS, group, kurbel
-from representative import few, law_of_each
+from representative import CONFIGS, few, law_of_each
 
 ESCAPE = b"\x1b"
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell or terminal")
@@ -50,7 +49,8 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
         env={key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR", "LINES")}
         | {"PYTHONIOENCODING": "utf-8"}
         | settings,
-    ):
+    ) as process:
+        limited(process)
         os.close(follower)
         written = b""
         while True:
@@ -65,9 +65,21 @@ def on_terminal(*arguments: str, columns: int = 120, rows: int = 50, **environme
     return written
 
 
+@POSIX_ONLY
+def test_a_terminal_gets_no_page_of_a_report_and_a_word_on_many_columns() -> None:
+    assert b"give --output NAME.html" in on_terminal("report", WATERWORKS)
+    assert b"'--columns ID,ID' prints fewer" in on_terminal("sweep", WATERWORKS, "--vary", "rod_ratio=4,5")
+
+
+def test_a_file_named_without_its_ending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mill.yaml").write_text("crank: 1 m\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert "did you mean 'mill.yaml'?" in run("check", "mill").stderr
+
+
 @law_of_each(COMMANDS)
 def test_every_command_has_help_that_any_encoding_can_show(command: str) -> None:
-    result = CliRunner().invoke(kurbel, [command, "--help"])
+    result = run(command, "--help")
     assert result.exit_code == 0
     assert result.stdout.startswith(f"Usage: kurbel {command}")
     assert result.stdout.isascii()
@@ -77,7 +89,7 @@ def test_a_fault_in_kurbel_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> N
     from kurbel.report import zusammenstellung
 
     monkeypatch.setattr(zusammenstellung, "zusammenstellung", lambda *_: 1 / 0)
-    result = CliRunner().invoke(kurbel, ["table"])
+    result = run("table")
     assert result.exit_code == 70
     assert "ZeroDivisionError" in result.stderr
     assert "Traceback" not in result.stderr
@@ -91,7 +103,7 @@ def test_interrupt_is_130(monkeypatch: pytest.MonkeyPatch) -> None:
     from kurbel.report import zusammenstellung
 
     monkeypatch.setattr(zusammenstellung, "zusammenstellung", interrupted)
-    result = CliRunner().invoke(kurbel, ["table"])
+    result = run("table")
     assert (result.exit_code, result.output.strip()) == (130, "")
 
 
@@ -116,16 +128,16 @@ def test_quick_commands_import_nothing_heavy() -> None:
 
 def test_a_width_is_filled_where_it_is_asked_for(solved_once: None) -> None:
     """COLUMNS in a pipe, --width everywhere; no line is longer, and no word is broken."""
-    machine = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+    machine = str(CONFIGS["waterworks"])
     for arguments in (["table"], ["forces", machine, "--layout", "rows"], ["check", machine]):
-        plain = CliRunner().invoke(kurbel, arguments).stdout
+        plain = run(*arguments).stdout
         for columns in (80, 40):
             narrow = CliRunner(env={"COLUMNS": str(columns)}).invoke(kurbel, arguments).stdout
             assert max(map(len, narrow.splitlines())) <= columns, arguments
             words = {word for word in narrow.split() if word.strip("─")}
             assert words <= set(plain.split()), arguments
             if arguments[0] != "check":
-                assert CliRunner().invoke(kurbel, [*arguments, "--width", str(columns)]).stdout == narrow
+                assert run(*arguments, "--width", columns).stdout == narrow
 
 
 @pytest.mark.parametrize("encoding", few(["ascii", "cp1252", "cp850"], ["ascii", "cp1252"]))
@@ -179,7 +191,7 @@ def test_a_terminal_without_colours(environment: dict[str, str]) -> None:
     assert "sin(φ+ψ)/cos ψ".encode() in written
 
 
-WATERWORKS = str(Path(__file__).parent.parent / "configs" / "waterworks.yaml")
+WATERWORKS = str(CONFIGS["waterworks"])
 SELECTED = b"First selection. All columns, angles and key values: kurbel forces FILE --all"
 
 
@@ -242,13 +254,12 @@ def test_a_terminal_shows_what_is_left_after_two_seconds(
 
 
 def test_example_lists_every_machine_with_its_first_line() -> None:
-    folder = Path(__file__).parent.parent / "configs"
-    lines = CliRunner().invoke(kurbel, ["example"]).stdout.splitlines()
-    assert [line.split()[0] for line in lines] == sorted(path.stem for path in folder.glob("*.yaml"))
+    lines = run("example").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == sorted(CONFIGS)
     assert all(len(line.split()) > 3 for line in lines)
 
 
 def test_example_prints_the_file_unchanged_in_any_encoding() -> None:
-    shipped = (Path(__file__).parent.parent / "configs" / "waterworks.yaml").read_bytes()
-    assert CliRunner().invoke(kurbel, ["example", "waterworks"]).stdout_bytes == shipped
+    shipped = CONFIGS["waterworks"].read_bytes()
+    assert run("example", "waterworks").stdout_bytes == shipped
     assert process("example", "waterworks.yaml", PYTHONIOENCODING="ascii", PYTHONUTF8="0").stdout == shipped

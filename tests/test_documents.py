@@ -4,8 +4,6 @@ A block of another language with a title is a file of that name for the commands
 ```yaml title="engine.yaml"
 """
 
-from __future__ import annotations
-
 import doctest
 import os
 import re
@@ -19,14 +17,13 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 import from_declarations  # docs/from_declarations.py
 import notebook  # docs/notebook.py
 import python_reference  # docs/python_reference.py
 import shipped  # docs/shipped.py
 import validation  # docs/validation.py
-from kurbel.cli import kurbel
+from command import run
 from representative import law_of_each
 from worked_examples import TABLE
 
@@ -91,7 +88,7 @@ def output_of(command: str, folder: Path) -> str:
     if words[:1] == ["kurbel"]:
         with pytest.MonkeyPatch.context() as place:
             place.chdir(folder)
-            ran = CliRunner().invoke(kurbel, words[1:])
+            ran = run(*words[1:])
         if not rest:
             return ran.output
         line, given, heard = rest, ran.stdout_bytes, ran.stderr

@@ -1,18 +1,12 @@
 """Equal cylinders are told once to people and each to programs; where the cranks of a firing order stand."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
-from representative import few
+from command import printed
+from representative import CONFIGS, few
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parent.parent / "configs"
-FOUR = str(CONFIGS / "four-cylinder-generator.yaml")
+FOUR = str(CONFIGS["four-cylinder-generator"])
 EQUAL = """
 speed: 600 rpm
 cycle: four-stroke
@@ -29,30 +23,24 @@ cylinders:
 """
 
 
-def run(*words: str, text: str = "") -> str:
-    result = CliRunner().invoke(kurbel, list(words), input=text)
-    assert (result.exit_code, result.stderr) == (0, "")
-    return result.stdout
-
-
 FORMS = [[], ["--key-values"], ["-f", "markdown"], ["--layout", "rows"]]
 
 
 @pytest.mark.parametrize("form", few(FORMS, FORMS[1:3]))
 def test_four_equal_cylinders_stand_once_on_a_page(form: list[str]) -> None:
-    page = run("forces", "-", *form, text=EQUAL).replace("\\", "")
-    one = run("forces", "-", *form, "--cylinder", "cylinder 3", text=EQUAL).replace("\\", "")
+    page = printed("forces", "-", *form, text=EQUAL).replace("\\", "")
+    one = printed("forces", "-", *form, "--cylinder", "cylinder 3", text=EQUAL).replace("\\", "")
     assert page.replace("cylinders 1–4", "cylinder 3") == one
     assert page.splitlines()[0].endswith("Forces in the crank train: cylinders 1–4")
 
 
 def test_check_tells_equal_ones_once_and_each_of_their_cranks() -> None:
-    page = run("check", FOUR)
+    page = printed("check", FOUR)
     assert page.count("left out   weight: no inclination given") == 1
     assert "\ncylinders 1–4\n" in page
     lines = page.split("\nCranks\n")[1].split("\n\n")[0].splitlines()
     assert lines == [f"  cylinder {n}  {at} deg after the first" for n, at in ((1, 0), (2, 540), (3, 180), (4, 360))]
-    assert "Cranks" not in run("check", str(CONFIGS / "waterworks.yaml"))
+    assert "Cranks" not in printed("check", str(CONFIGS["waterworks"]))
 
 
 def test_one_that_differs_stands_alone() -> None:
@@ -60,15 +48,15 @@ def test_one_that_differs_stands_alone() -> None:
     each = "{crank: 50 mm, rod: 200 mm, masses: {piston: 1 kg}}"
     text = f"speed: 600 rpm\ncylinders: [{each}, {each}, {each.replace('1 kg', '2 kg')}, {each}]\n"
     text += "limits: {b_max: 1 km/s2}\n"
-    page = run("forces", "-", "--key-values", text=text)
+    page = printed("forces", "-", "--key-values", text=text)
     heads = [line for line in page.splitlines() if line.startswith("Key values")]
     assert heads == ["Key values: cylinders 1, 2, 4", "Key values: cylinder 3"]
-    (limit,) = (line for line in run("check", "-", text=text).splitlines() if "PASS" in line)
+    (limit,) = (line for line in printed("check", "-", text=text).splitlines() if "PASS" in line)
     assert limit.endswith("(cylinders 1–4)")
 
 
 def pins(bank: int) -> dict[str, int]:
-    page = run("check", "-", text=V8.format(bank=bank)).split("\nCranks\n")[1].split("\n\n")[0]
+    page = printed("check", "-", text=V8.format(bank=bank)).split("\nCranks\n")[1].split("\n\n")[0]
     return {line[2:12]: int(line.rpartition(": crank pin ")[2].split()[0]) for line in page.splitlines()}
 
 

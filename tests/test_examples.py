@@ -1,14 +1,12 @@
 """The machines that come with kurbel: each runs through every command that fits it, and keeps the figures it claims."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import COMMANDS, kurbel
+from command import run
+from kurbel.cli import COMMANDS
 from kurbel.machine import Machine
 from kurbel.machine_file import load
 from representative import SHIPPED, few
@@ -46,7 +44,7 @@ FEW = [
 def test_it_runs(command: str, path: Path) -> None:
     if not FITS[command](load(path)):
         pytest.skip(f"kurbel {command} is not for this machine")
-    result = CliRunner().invoke(kurbel, [command, str(path)])
+    result = run(command, path)
     assert (result.exit_code, result.stderr) == (0, "")
     assert "nan" not in result.stdout
     assert len(result.stdout.splitlines()) > 5

@@ -1,37 +1,28 @@
 """kurbel flywheel, and --where: crank angles at which a column of the whole machine has a value."""
 
-from __future__ import annotations
-
-import json
 import math
 import re
 from functools import cache
-from pathlib import Path
+from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
 
-from kurbel.cli import kurbel
+from command import answer, printed, run
 from kurbel.machine_file import loads
 from kurbel.report.check import checked
 from kurbel.solver.case import Case
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-CONFIGS = Path(__file__).parents[1] / "configs"
-ENGINE = (CONFIGS / "waterworks.yaml").read_text(encoding="utf-8")
-PUNCH = (CONFIGS / "punch.yaml").read_text(encoding="utf-8")
-
-
-def run(text: str, *arguments: str) -> Result:
-    return CliRunner().invoke(kurbel, ["flywheel", "-", *arguments], input=text)
+ENGINE = CONFIGS["waterworks"].read_text(encoding="utf-8")
+PUNCH = CONFIGS["punch"].read_text(encoding="utf-8")
 
 
 @cache
-def results(text: str, *arguments: str) -> dict[str, object]:
-    answer = run(text, "-f", "json", *arguments)
-    assert answer.exit_code == 0, answer.stderr
-    return json.loads(answer.stdout)
+def results(text: str, *arguments: str) -> dict[str, Any]:
+    return answer("flywheel", "-", *arguments, text=text)
 
 
 def values(text: str) -> dict[str, object]:
@@ -77,11 +68,10 @@ def test_what_is_left_out_is_said() -> None:
 
 
 def test_a_stall_is_exit_3_and_names_angle_and_flywheel() -> None:
-    answer = run(ENGINE + "flywheel: {inertia: 100 kg m2}\nload: {power_law: 2}\n")
-    assert answer.exit_code == 3
-    assert "stops near φ = " in answer.stderr
-    assert "GD2 = " in answer.stderr
-    assert answer.stdout == ""
+    result = run("flywheel", "-", text=ENGINE + "flywheel: {inertia: 100 kg m2}\nload: {power_law: 2}\n")
+    assert (result.exit_code, result.stdout) == (3, "")
+    assert "stops near φ = " in result.stderr
+    assert "GD2 = " in result.stderr
 
 
 LIGHT = """\
@@ -109,11 +99,10 @@ def advised(text: str, message: str) -> str:
 
 def test_a_speed_that_falls_to_zero_between_two_nodes_is_a_stall() -> None:
     """The kinetic energy vanishes between two dead centres; at 4 1/s it is 3e-4 of the nominal one there, and turns."""
-    answer = run(LIGHT)
-    assert answer.exit_code == 3
-    assert "stops near φ = " in answer.stderr
-    assert run(LIGHT.replace("speed: 3", "speed: 4")).exit_code == 0
-    assert run(advised(LIGHT, answer.stderr)).exit_code == 0
+    result = run("flywheel", "-", text=LIGHT)
+    assert (result.exit_code, "stops near φ = " in result.stderr) == (3, True)
+    for text in (LIGHT.replace("speed: 3", "speed: 4"), advised(LIGHT, result.stderr)):
+        printed("flywheel", "-", text=text)
 
 
 def warnings(text: str) -> str:
@@ -128,7 +117,7 @@ def test_a_resonance_is_told() -> None:
     undamped = text.replace(", damping: 100 N m s/rad", "")
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
-    assert run(tuned).exit_code == 3
+    assert run("flywheel", "-", text=tuned).exit_code == 3
 
 
 def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
@@ -144,7 +133,7 @@ def test_a_resistance_of_another_mean(load: int, says: str) -> None:
     effort = "effort: {unit: N m, points: [[0, 0], [180, 200], [360, 0]]}"
     load_ = f"load: {{unit: N m, points: [[0, {load}], [360, {load}]]}}"
     text = f"{{speed: 60 rpm, flywheel: {{inertia: 10 kg m2}}, {effort}, {load_}}}"
-    assert says in run(text, "--key-values").stdout
+    assert says in run("flywheel", "-", "--key-values", text=text).stdout
 
 
 def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None:
@@ -167,14 +156,8 @@ flywheel: {{inertia: {J} kg m2}}
 """M = 100 + 80 sin φ, hence E = 80 (1 − cos φ) and α = 80 sin φ / J."""
 
 
-def asked(condition: str, text: str = HARMONIC, *more: str) -> Result:
-    return CliRunner().invoke(kurbel, ["flywheel", "--where", condition, *more, "-"], input=text)
-
-
 def angles_of(condition: str) -> list[float]:
-    result = asked(condition, HARMONIC, "-f", "json")
-    assert result.exit_code == 0, result.output
-    found: list[float] = json.loads(result.stdout)["machine_columns"][0]["values"]
+    found: list[float] = answer("flywheel", "--where", condition, "-", text=HARMONIC)["machine_columns"][0]["values"]
     return found
 
 
@@ -197,9 +180,8 @@ def test_against_the_formulas(condition: str, degrees: list[float]) -> None:
 
 def test_a_speed_against_the_kinetic_energy() -> None:
     """½ J (ω² − ω_min²) = 80 (1 − cos φ)."""
-    slowest = float(
-        json.loads(asked("omega = omega_min", HARMONIC, "-f", "json").stdout)["machine_columns"][3]["values"][0]
-    )
+    asked = answer("flywheel", "--where", "omega = omega_min", "-", text=HARMONIC)
+    slowest = float(asked["machine_columns"][3]["values"][0])
     wanted = math.sqrt(slowest**2 + 2 * 80 * (1 - math.cos(math.radians(50))) / J)
     assert angles_of(f"omega = {wanted!r} rad/s") == pytest.approx([50, 310], rel=1e-11)
 
@@ -214,7 +196,7 @@ cylinders:
 
 
 def of_stages(*words: str) -> Result:
-    return CliRunner().invoke(kurbel, ["forces", "-", *words], input=STAGES)
+    return run("forces", "-", *words, text=STAGES)
 
 
 def test_one_cylinder_may_have_what_another_has_not() -> None:

@@ -1,18 +1,14 @@
 """`kurbel forces` and `kurbel check` as a user calls them."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 from command import answer, run
 from good_machines import DEMO
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-CONFIGS = Path(__file__).parent.parent / "configs"
-WATERWORKS = str(CONFIGS / "waterworks.yaml")
+WATERWORKS = str(CONFIGS["waterworks"])
 
 
 def cylinder(parsed: dict[str, object], index: int = 0) -> dict[str, list[dict[str, object]]]:
@@ -75,7 +71,7 @@ def test_check_tells_that_the_crosshead_locks_itself() -> None:
 @pytest.mark.parametrize("command", ["motion", "forces"])
 def test_a_shaper_has_no_piston(command: str) -> None:
     """Its largest force was called that of a piston; what drives a pump by the same lever still has one."""
-    shaper = str(CONFIGS / "shaper.yaml")
+    shaper = str(CONFIGS["shaper"])
     told = run(command, shaper).stdout
     assert "piston" not in told
     assert "Mean ram speed" in told

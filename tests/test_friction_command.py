@@ -1,25 +1,18 @@
 """`kurbel friction`: the inclined plane by Redtenbacher's own cases, by statics, and by its limits."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import run
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 
-def run(*words: str) -> Result:
-    return CliRunner().invoke(kurbel, ["friction", *words])
-
-
 def answer(incline: float, coefficient: float, *words: str) -> dict[str, Any]:
-    found = run("--incline", str(incline), "--coefficient", str(coefficient), *words, "-f", "json")
+    found = run("friction", "--incline", str(incline), "--coefficient", str(coefficient), *words, "-f", "json")
     assert found.exit_code == 0, found.output
     return json.loads(found.stdout)
 

@@ -1,7 +1,5 @@
 """How the work of a command grows with what it is given: counted calls, which are the same at every run."""
 
-from __future__ import annotations
-
 import cProfile
 import pstats
 from collections.abc import Callable
@@ -9,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
+from command import printed
 from indicated import Engine, absolute, columns_file
-from kurbel.cli import kurbel
 
 CYLINDER = "stroke: 100 mm\nrod_ratio: 4\nbore: 90 mm\nmasses: {reciprocating: 1 kg}\n"
 ENGINE = f"cycle: four-stroke\nspeed: 1500 rpm\n{CYLINDER}"
@@ -24,15 +21,10 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def run(*words: str) -> None:
-    result = CliRunner().invoke(kurbel, list(words))
-    assert result.exit_code == 0, result.output
-
-
 def calls(*words: str) -> int:
     """How many functions a command calls, once all that it imports is there."""
     profile = cProfile.Profile()
-    profile.runcall(run, *words)
+    profile.runcall(printed, *words)
     return int(pstats.Stats(profile).total_calls)
 
 
@@ -47,7 +39,7 @@ def traced(samples: int, noise: float = 0.0) -> str:
 
 def per_sample(command: Callable[[str], tuple[str, ...]], machine: Callable[[int], str], few: int, many: int) -> float:
     """Calls of a command for each further sample."""
-    run(*command(machine(few)))
+    printed(*command(machine(few)))
     counted = [calls(*command(machine(samples))) for samples in (few, many)]
     return (counted[1] - counted[0]) / (many - few)
 

@@ -1,21 +1,11 @@
 """`kurbel keys`, and what TAB completes."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 from click.testing import CliRunner
 
+from command import printed
 from kurbel.cli import kurbel
-
-CONFIGS = Path(__file__).parent.parent / "configs"
-
-
-def told(*arguments: str) -> str:
-    result = CliRunner().invoke(kurbel, ["keys", *arguments])
-    assert result.exit_code == 0, result.stderr
-    return result.stdout
+from representative import CONFIGS
 
 
 def completed(words: str) -> list[str]:
@@ -30,15 +20,15 @@ def completed(words: str) -> list[str]:
 
 
 def test_one_key_in_full() -> None:
-    assert told("masses.connecting_rod.share").splitlines() == [
+    assert printed("keys", "masses.connecting_rod.share").splitlines() == [
         "meaning  Reciprocating share of the mass",
         "form     a number",
         "absent   1/2",
         "or give  center_of_gravity",
         "example  share: 0.1",
     ]
-    assert "must be given" in told("crankshaft.a")
-    rim = told("flywheel.rim.mean_diameter")
+    assert "must be given" in printed("keys", "crankshaft.a")
+    rim = printed("keys", "flywheel.rim.mean_diameter")
     assert "absent   mean_diameter or outer_diameter must be given\nor give  outer_diameter" in rim
 
 
@@ -46,24 +36,13 @@ def test_one_key_in_full() -> None:
     "path", ["cylinders.0.bore", "cylinders[0].bore", "cylinders.each.bore", "tandem.0.bore", "bore"]
 )
 def test_a_path_may_be_that_of_a_message(path: str) -> None:
-    assert "Diameter of the cylinder" in told(path)
+    assert "Diameter of the cylinder" in printed("keys", path)
 
 
 @pytest.mark.parametrize("path", ["indicator.head_end.constant", "cylinders.0.indicator.head_end.constant"])
 def test_a_key_with_keys_below_it_alone_lists_these(path: str) -> None:
-    names = [line.split()[0] for line in told(path).splitlines()]
+    names = [line.split()[0] for line in printed("keys", path).splitlines()]
     assert names == ["indicator.head_end.constant.expansion", "indicator.head_end.constant.compression"]
-
-
-def test_a_key_that_is_not_there() -> None:
-    result = CliRunner().invoke(kurbel, ["keys", "share"])
-    assert (result.exit_code, "it is at masses.connecting_rod.share" in result.stderr) == (2, True)
-    result = CliRunner().invoke(kurbel, ["keys", "trace"])
-    assert (result.exit_code, "it is at indicator.head_end.trace, indicator.crank_end.trace" in result.stderr) == (
-        2,
-        True,
-    )
-    assert "did you mean 'bore'" in CliRunner().invoke(kurbel, ["keys", "boore"]).stderr
 
 
 @pytest.mark.parametrize(
@@ -91,6 +70,6 @@ def test_what_a_shell_completes(words: str, some: list[str]) -> None:
 
 
 def test_cylinders_are_completed_from_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(CONFIGS)
+    monkeypatch.chdir(CONFIGS["waterworks"].parent)
     found = completed("kurbel forces four-cylinder-generator.yaml --cylinder ")
     assert found == [f"cylinder {i}" for i in (1, 2, 3, 4)]

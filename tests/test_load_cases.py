@@ -1,7 +1,5 @@
 """Load cases: what they set, where their faults are shown, and that the limits are checked in all of them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -9,9 +7,6 @@ import pytest
 
 import kurbel as api
 from command import run
-from kurbel.errors import KurbelError
-from kurbel.machine_file.reader import read_machine
-from kurbel.machine_file.source import decode
 
 PUMP = """\
 speed: 50 rpm
@@ -84,19 +79,3 @@ def test_a_sweep_has_a_row_for_each_case(pump: Path) -> None:
     assert rows[2][-1].startswith("rod: 300 mm is shorter than the crank (400 mm)")
     for row in (1, 3):
         assert float(rows[row][3]) == pytest.approx(1.6 * float(rows[row + 3][3]), rel=1e-14)
-
-
-def test_cases_that_are_no_list_are_not_called_missing(tmp_path: Path) -> None:
-    file = tmp_path / "mapping.yaml"
-    text = Path("configs/waterworks.yaml").read_text(encoding="utf-8")
-    file.write_text(f"{text}\ncases:\n  slow: {{speed: 20 rpm}}\n", encoding="utf-8")
-    for options in (("sweep", str(file), "--cases"), ("forces", str(file), "--case", "slow")):
-        assert "is no list of cases" in run(*options).stderr
-
-
-def test_a_case_may_set_a_list() -> None:
-    """What is wrong with it is found when the case is computed."""
-    text = "{stroke: 1 m, rod_ratio: 5, speed: 60 rpm, cases: [{name: odd, set: {speed: [1, 2]}}]}"
-    assert api.loads(text).cases
-    with pytest.raises(KurbelError, match="speed: expected"):
-        read_machine(decode("<text>", text.encode())._replace(case="odd"))

@@ -1,7 +1,5 @@
 """`kurbel motion` as a user calls it: every mechanism, every format, and a mechanism from outside."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

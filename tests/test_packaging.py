@@ -1,7 +1,5 @@
 """What is built and installed: every file once, and the shipped machines found from wherever kurbel was installed."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

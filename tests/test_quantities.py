@@ -1,12 +1,9 @@
 """Declared quantities: each has one definition, and what mechanisms offer joins the lists of their commands."""
 
-from __future__ import annotations
-
 import pytest
-from click.testing import CliRunner
 
+from command import run
 from kurbel import loads
-from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, UsageError
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import RESULTS
@@ -42,12 +39,10 @@ def test_where_key_values_are_in_groups_every_one_is_in_a_group() -> None:
 def test_columns_take_printed_symbols() -> None:
     for names in ("phi,psi,p_head,P_inertia", "φ,ψ,p_H,P_b", "phi,psi,p_H,P_b"):
         arguments = ["forces", "-", "-f", "csv", "--angles", "30", "--columns", names]
-        printed = CliRunner().invoke(kurbel, arguments, input=ENGINE % (PRESSURE, "masses: {piston: 5 kg}"))
+        printed = run(*arguments, text=ENGINE % (PRESSURE, "masses: {piston: 5 kg}"))
         assert printed.stdout.splitlines()[0] == "phi_deg,psi_deg,p_head_Pa,P_inertia_N"
-    assert (
-        CliRunner()
-        .invoke(kurbel, ["table", "--rows", "ψ,x/R,S/P,c", "-f", "csv"])
-        .stdout.startswith("rod_ratio,phi_deg,psi_deg,displacement_factor,rod_force_factor,velocity_factor")
+    assert run("table", "--rows", "ψ,x/R,S/P,c", "-f", "csv").stdout.startswith(
+        "rod_ratio,phi_deg,psi_deg,displacement_factor,rod_force_factor,velocity_factor"
     )
 
 

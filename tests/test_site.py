@@ -1,7 +1,5 @@
 """The site as its readers have it: built strictly, complete, asking for nothing elsewhere, readable on a telephone."""
 
-from __future__ import annotations
-
 import html
 import json
 import re

@@ -1,18 +1,16 @@
 """`kurbel stress` and what `kurbel check` says of a crankshaft, as a user calls them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
-from pathlib import Path
 
 import pytest
 
 from command import run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-ENGINE = (Path(__file__).parents[1] / "configs" / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 PLACES = [
     *(("pin", place) for place in ("middle", "at_web_A", "at_web_B")),
     *((web, place) for web in ("web_A", "web_B") for place in ("wide_face", "narrow_face", "corner")),
@@ -22,17 +20,6 @@ PLACES = [
 
 def without(*keys: str) -> str:
     return "".join(line for line in ENGINE.splitlines(True) if line.strip().split(":")[0] not in keys)
-
-
-def test_text_lists_every_place_in_three_tables() -> None:
-    text = run("stress", "-", "--step", "90", text=ENGINE).stdout
-    titles = ["Dead centre", "Position of the largest torque", "Whole cycle"]
-    places = [text.index(title) for title in titles]
-    assert places == sorted(places)
-    for name in ("wide face", "narrow face", "corner"):
-        assert text.count(name) == 6
-    assert text.count("journal B  at web") == 3
-    assert "Key values" in text
 
 
 def test_csv_over_the_crank_angle_and_by_place() -> None:

@@ -1,7 +1,5 @@
 """Notes on measured traces: what is seen, what it changes, and a way out that leads to no further note."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from pathlib import Path
@@ -249,39 +247,6 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     assert "far below what the driven shaft takes, 500 kW" in note
 
 
-STIRLING = Path(__file__).resolve().parents[2] / "shared" / "data" / "stirling_mpxv7002_gauge_kPa_cm3.csv"
-
-
-@pytest.mark.skipif(not STIRLING.is_file(), reason="the measured Stirling engine is not here")
-def test_a_measured_stirling_engine(tmp_path: Path) -> None:
-    """clnbtlr/StirlingEngine (MIT): gauge kPa over time, with the volume; the speed falls from 151 to 143 rpm.
-
-    Of eight turns at an even speed p_i is the loop of p over the measured V; of all the note tells that they wander.
-    """
-    rows = STIRLING.read_text().splitlines()
-    t, p, v = np.loadtxt(rows[1:302], delimiter=",").T
-    up = np.flatnonzero((v[:-1] < 0) & (v[1:] >= 0))
-    upward = t[up] - v[up] * (t[up + 1] - t[up]) / (v[up + 1] - v[up])
-    period = float(upward[-1] - upward[0]) / (len(upward) - 1)
-    stroke = float(np.ptp(v))
-    whole = slice(up[0], up[-1] + 1)
-    loop = float(np.sum(((p[1:] + p[:-1]) / 2 * np.diff(v))[whole])) / (len(up) - 1) / stroke
-    (tmp_path / "s.csv").write_text("\n".join(rows[:302]))
-    wave = np.exp(-2j * np.pi * t[whole] / period) @ v[whole]
-    zero = float((180 - np.degrees(np.angle(wave))) % 360)  # where the first harmonic of V is smallest
-    text = (
-        f"speed: {60 / period!r} rpm\nstroke: 10 mm\nrod_ratio: inf\nbore: 14.3 mm\nindicator: {{head_end: {{trace: "
-        "{file: '%s', unit: kPa, skip_rows: 1, angle_unit: s, recorded_speed: %r rpm, angle_zero: %r deg}}}\n"
-    )
-    text = text.replace("rod_ratio: inf", "rod: 1 m")
-    machine = loads(text % (tmp_path / "s.csv", 60 / period, zero))
-    found = Case(machine).cylinders[0]
-    assert found["mean_pressure"].value / 1e3 == pytest.approx(loop, rel=0.05)
-    assert [note.text for note in machine_notes(Case(machine)) if "left out" not in note.text] == []
-    notes = [note.text for note in machine_notes(Case(loads(text % (STIRLING, 60 / period, zero))))]
-    assert any("the cycles wander" in note for note in notes)
-
-
 def drawn_trace(random: np.random.Generator) -> tuple[Trace, Setting]:
     """Any trace in any chamber: few samples or many, even or not, of noise, pulses, nothing or an engine."""
     cycle, count = float(random.choice([360, 720])), int(random.choice([3, 4, 8, 37, 400]))
@@ -329,22 +294,3 @@ def test_a_dead_centre_two_degrees_off_is_seen_by_both_exponents(
     keys, _, _ = obeyed(notes[0], "", "absolute", "four-stroke")
     assert "angle_zero" in keys
     assert float(re.findall(r"-?[0-9.]+", keys)[0]) == pytest.approx(degrees, abs=1.0)
-
-
-OPENTORSION = STIRLING.with_name("opentorsion_pressure_data.csv")
-
-
-@pytest.mark.skipif(not OPENTORSION.is_file(), reason="the digitised diesel pressures are not here")
-@pytest.mark.parametrize("keys", ["", ", compression_ratio: 17"])
-@pytest.mark.parametrize("pressures", ["gauge", "absolute"])
-def test_a_published_diesel_engine(keys: str, pressures: str) -> None:
-    """openTorsion (MIT): 71 uneven samples of a cycle in MPa, which fires at 360 deg; called kPa, MPa is named."""
-    text = (
-        "cycle: four-stroke\nspeed: 1500 rpm\nstroke: 137 mm\nrod: 207 mm\nbore: 105 mm\nindicator: {pressures: %s, "
-        "head_end: {trace: {file: '%s', delimiter: semicolon, unit: %s, angle_zero: 360 deg%s}}}\n"
-    )
-    assert notes_of(text % (pressures, OPENTORSION, "MPa", keys)) == []
-    (note,) = notes_of(text % (pressures, OPENTORSION, "kPa", keys))
-    assert "1000 times too small? mend 'unit' (unit: MPa fits), or write 'scale: 1000'" in note
-    (note,) = notes_of((text % (pressures, OPENTORSION, "MPa", keys)).replace(", angle_zero: 360 deg", ""))
-    assert "in the gas exchange: write 'angle_zero: 360 deg'" in note

@@ -1,14 +1,11 @@
 """Cards as people have them: one pressure, millimetres on paper, a planimeter, a mean pressure."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
-from click.testing import CliRunner
 
+from command import run
 from kurbel import loads, solve
-from kurbel.cli import kurbel
 from kurbel.solver.forces import CylinderForces
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -23,7 +20,7 @@ def forces_of(text: str) -> CylinderForces:
 
 
 def check(text: str) -> str:
-    return CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + text).stdout
+    return run("check", "-", text=ENGINE + text).stdout
 
 
 @pytest.mark.parametrize("cycle", ["two-stroke", "four-stroke"])

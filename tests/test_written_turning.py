@@ -1,17 +1,13 @@
 """Masses, friction and what turns with the shaft, as people know them: a sum, a force, a rim, harmonics, a file."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
+from command import run
 from kurbel import load, loads, solve
-from kurbel.cli import kurbel
-from kurbel.errors import MachineFileError
 from kurbel.solver.forces import CylinderForces
 
 ENGINE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -24,23 +20,11 @@ def forces_of(text: str) -> CylinderForces:
     return forces
 
 
-def refused(text: str) -> str:
-    with pytest.raises(MachineFileError) as caught:
-        loads(text)
-    return str(caught.value)
-
-
 def test_the_sum_of_the_reciprocating_masses() -> None:
     forces = forces_of("masses: {reciprocating: 250 kg}\n")
     b = 0.4 * OMEGA**2 * (1 + 0.2)  # at the inner dead centre, R 291
     assert forces.m == 250
     assert forces.at([0]).P_inertia[0] == pytest.approx(-250 * b, rel=1e-13)
-    assert "'reciprocating' and 'piston' mean the same" in refused(
-        ENGINE + "masses: {reciprocating: 250 kg, piston: 20 kg}\n"
-    )
-    assert "'reciprocating' and 'connecting_rod'" in refused(
-        ENGINE + "masses: {reciprocating: 250 kg, connecting_rod: 20 kg}\n"
-    )
 
 
 @pytest.mark.parametrize("crosshead", ["", ", crosshead: 0.1"])
@@ -55,19 +39,14 @@ def test_a_constant_friction_takes_its_force_times_the_way(crosshead: str) -> No
         assert forces.friction_works["constant"] == 3200
         assert forces.friction_work == pytest.approx(3200 + forces.friction_works.get("crosshead", 0), rel=1e-15)
     assert abs(forces.energy_residual or 0) < 1e-13
-    assert "no friction is given" in refused(ENGINE + "friction: {}\n")
-    assert "constant: -2 kN is too small" in refused(ENGINE + "friction: {constant: -2 kN}\n")
 
 
 def test_brake_torque() -> None:
     """At 60 rpm 10 kN m are 62.8 kW; 4 bar on the piston indicate 50.9 kW."""
     machine = loads(ENGINE + GAS + "brake_torque: 10 kN m\n")
     assert machine.brake_power == pytest.approx(2 * math.pi * 1e4, rel=1e-15)
-    told = CliRunner().invoke(kurbel, ["check", "-"], input=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
+    told = run("check", "-", text=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
     assert "is below the brake power" in " ".join(told.split())
-    both = refused(ENGINE + GAS + "brake_torque: 10 kN m\nbrake_power: 3 kW\n")
-    assert "'brake_power' and 'brake_torque' mean the same" in both
-    assert "'brake_torque' needs 'speed' beside it" in refused("crank: 1 m\nrod: 4 m\nbrake_torque: 10 kN m\n")
 
 
 # flywheel
@@ -78,12 +57,6 @@ DIAGRAM = "effort: {unit: N m, points: [[0, 0], [90, 4000], [180, 0], [270, 4000
 def test_a_flywheel_by_mass_and_radius_of_gyration() -> None:
     machine = loads(DIAGRAM + "flywheel: {mass: 2 t, radius_of_gyration: 1.2 m}\n")
     assert machine.flywheel.inertia == pytest.approx(2000 * 1.44, rel=1e-15)
-    for others, says in (
-        ("mass: 2 t", "'mass' needs 'radius_of_gyration' beside it"),
-        ("mass: 2 t, radius_of_gyration: 1 m, inertia: 5 kg m2", "'inertia' and 'mass' mean the same"),
-        ("mass: 2 t, radius_of_gyration: 1 m, gd2: 5 kg m2", "'gd2' and 'radius_of_gyration' mean the same"),
-    ):
-        assert says in refused(DIAGRAM + f"flywheel: {{{others}}}\n")
 
 
 RIM = "rim: {mean_diameter: 3 m, density: 7200 kg/m3, allowable_tension: %s}"
@@ -99,9 +72,9 @@ def test_the_rim_of_the_wanted_flywheel() -> None:
     assert turning.rim_section == pytest.approx(inertia / (3 / 2) ** 2 / (7200 * math.pi * 3), rel=1e-12)
     assert turning.rim_speed == pytest.approx(omega * 1.5, rel=1e-15)
     assert turning.rim_stress == pytest.approx(7200 * (omega * 1.5) ** 2, rel=1e-14)
-    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    printed = run("flywheel", "-", text=text).stdout
     assert "hoop stress" not in printed.partition("Warnings")[2]
-    weak = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text.replace("6 MPa", "2 MPa")).stdout
+    weak = run("flywheel", "-", text=text.replace("6 MPa", "2 MPa")).stdout
     assert "the hoop stress of the rim, 2.55" in " ".join(weak.partition("Warnings")[2].split())
 
 
@@ -129,7 +102,7 @@ def test_a_rim_of_which_the_sizes_are_known(sizes: str, inertia: float) -> None:
     assert turning.delta_book == pytest.approx(turning.dE / (inertia * (4 * math.pi) ** 2), rel=1e-14)
     if "width" in sizes:
         assert turning.rim_section == pytest.approx(0.1524 * 0.3048, rel=1e-14)
-    printed = CliRunner().invoke(kurbel, ["flywheel", "-"], input=text).stdout
+    printed = run("flywheel", "-", text=text).stdout
     assert "arms and hub of the flywheel  J is that of the rim" in printed
 
 
@@ -179,13 +152,3 @@ def test_an_effort_from_a_file(tmp_path: Path, first: int) -> None:
     assert read == pytest.approx(written, rel=1e-13, abs=1e-9)
     assert solve(machine).flywheel.dE == pytest.approx(solve(plain).flywheel.dE, rel=1e-13)
     assert machine.trace_files == (str(tmp_path / "effort.csv"),)
-
-
-def test_a_file_that_does_not_cover_the_cycle(tmp_path: Path) -> None:
-    (tmp_path / "effort.csv").write_text("0,1\n90,2\n180,1\n200,nan\n")
-    (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: effort.csv}}\n{WHEEL}")
-    with pytest.raises(MachineFileError, match="the torque is nan"):
-        load(tmp_path / "m.yaml")
-    (tmp_path / "effort.csv").write_text("0,1\n90,2\n180,1\n")
-    with pytest.raises(MachineFileError, match="no samples from 180 to 360 deg"):
-        load(tmp_path / "m.yaml")

@@ -1,7 +1,5 @@
 """Machines with a given turning effort, for tests of flywheel and speed line."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

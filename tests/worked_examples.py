@@ -4,9 +4,6 @@
 both read it here.
 """
 
-from __future__ import annotations
-
-import json
 import math
 import re
 from functools import cache
@@ -14,9 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
+from command import answer as answer_of
 
 FOLDER = Path(__file__).parent / "examples"
 TABLE: dict[str, list[dict[str, Any]]] = yaml.load(
@@ -52,19 +48,12 @@ def answer(file: str, command: str, where: str | None) -> dict[str, Any]:
     asked = [one for one in asked if (one["command"], one["where"]) == (command, where)]
     angles = sorted({one["angle"] for one in asked if one["angle"]}, key=int) or ["0"]
     columns = {str(one["id"]): "" for one in asked if one["angle"] or where}
-    arguments = [command, str(FOLDER / f"{file}.yaml"), "-f", "json"]
+    arguments = [command, str(FOLDER / f"{file}.yaml")]
     if any(one["rows"] for one in asked):
-        return answered(arguments)
+        return answer_of(*arguments)
     arguments += ["--where", where] if where else ["--angles", ",".join(angles)]
     arguments += ["--columns", ",".join(("phi", *columns))] if columns else []
-    return answered(arguments)
-
-
-def answered(arguments: list[str]) -> dict[str, Any]:
-    result = CliRunner().invoke(kurbel, arguments)
-    assert result.exit_code == 0, result.output
-    parsed: dict[str, Any] = json.loads(result.stdout)
-    return parsed
+    return answer_of(*arguments)
 
 
 def of_table(parsed: dict[str, Any], asked: dict[str, str | None]) -> list[float]:

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.numerics.arithmetic import where
+from kurbel.arrays import Array, Number
+from kurbel.numerics.arithmetic import magnitude, where
 from kurbel.numerics.pieces import Pieces
 
 
@@ -14,14 +14,14 @@ class CrankAngle(NamedTuple):
     """A crank angle, or an array of them, with its sine and cosine.
 
     degrees: angle in degrees, any size; sin, cos: of the same shape. The formulas of the mechanisms need only
-    `sin` and `cos`, which may be floats, arrays or numbers of higher precision alike. rod: (sin ψ, cos ψ) at
-    these angles of the one mechanism that they are used with, where known: most of its formulas need them.
+    `sin` and `cos`, which may be floats, arrays or numbers of higher precision. rod: (sin ψ, cos ψ) of the mechanism
+    that is evaluated at these angles, if known: most of its formulas need them.
     """
 
-    degrees: Any
-    sin: Any
-    cos: Any
-    rod: tuple[Any, Any] | None = None
+    degrees: Number
+    sin: Number
+    cos: Number
+    rod: tuple[Number, Number] | None = None
 
     @classmethod
     def of(cls, degrees: float | Array) -> "CrankAngle":
@@ -37,7 +37,7 @@ class CrankAngle(NamedTuple):
             quarter = round(whole / 90.0)
             rest = math.radians(whole - 90.0 * quarter)
             turn = complex(math.cos(rest), math.sin(rest)) * (1, 1j, -1, -1j)[quarter % 4]
-            return cls(degrees, turn.imag + 0.0, turn.real + 0.0)  # adding 0.0 turns −0.0 into 0.0
+            return cls(degrees, turn.imag + 0.0, turn.real + 0.0)  # adding 0.0 makes 0.0 of −0.0
         if not np.isfinite(degrees).all():
             raise ValueError("a crank angle must be finite")
         within_turn = np.fmod(degrees, 360.0)
@@ -50,19 +50,19 @@ class CrankAngle(NamedTuple):
         return cls(pieces.degrees, *_sin_cos(pieces.right_angle, pieces.offsets))
 
     @property
-    def versine(self) -> Any:
+    def versine(self) -> Number:
         """1 − cos φ, without cancellation near φ = 0."""
-        beyond = 1 + abs(self.cos)
-        return where(self.cos >= 0, self.sin * self.sin / beyond, beyond)
+        size = magnitude(self.cos)
+        return where(self.cos >= 0, self.sin * self.sin / (1 + size), 1 + size)
 
     @property
-    def vercosine(self) -> Any:
+    def vercosine(self) -> Number:
         """1 + cos φ, without cancellation near φ = 180°."""
-        beyond = 1 + abs(self.cos)
-        return where(self.cos >= 0, beyond, self.sin * self.sin / beyond)
+        size = magnitude(self.cos)
+        return where(self.cos >= 0, 1 + size, self.sin * self.sin / (1 + size))
 
 
-def unit_vector(degrees: Any) -> Any:
+def unit_vector(degrees: Number) -> Any:
     """Return e^{iφ}, complex, of an angle in degrees or an array of them, reduced exactly.
 
     >>> unit_vector(180.0)
@@ -73,7 +73,7 @@ def unit_vector(degrees: Any) -> Any:
 
 
 def within_cycle(degrees: Array, cycle: float) -> Array:
-    """Return angles (n,) in degrees as those of a cycle, from 0 on and less than its end."""
+    """Return angles (n,) in degrees modulo the cycle, from 0 to less than its end."""
     if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # numpy.mod is slow
         return np.where(degrees == cycle, 0.0, degrees)
     return np.asarray(np.mod(degrees, cycle))

@@ -5,7 +5,7 @@ from typing import NamedTuple, NoReturn, Union
 
 Step = Union[str, int]
 Path = tuple[Step, ...]
-"""Where something stands in a machine file: keys and list indices from the top, `("cylinders", 0, "rod")`."""
+"""Place in a machine file: keys and list indices from the top, `("cylinders", 0, "rod")`."""
 
 
 def path_text(path: Path) -> str:
@@ -28,13 +28,18 @@ class KurbelError(Exception):
 
     exit_status = 2
 
+    @property
+    def reason(self) -> str:
+        """What is wrong, without what would help if that takes long to compute: for one of many machines."""
+        return str(self)
+
 
 class Fault(NamedTuple):
     """One thing that is wrong: where, and what to write instead.
 
     path: relative to the record that found it, until the reader has made it whole; at_key: the key itself is meant.
     Line and column count from 1, in characters; they and the source line are filled in when the text is searched.
-    override: what it is of, as it was given, `--set KEY=VALUE`, if that does not stand in the file.
+    override: the option it comes from, as it was given, `--set KEY=VALUE`, if it is not in the file.
     """
 
     path: Path
@@ -85,7 +90,7 @@ class UnreadableFileError(KurbelError):
 
 
 class MachineFileError(KurbelError):
-    """All faults of a machine file, in the order in which they stand in it."""
+    """All faults of a machine file, in the order of the file."""
 
     def __init__(self, file_name: str, faults: list[Fault]) -> None:
         self.file_name = file_name
@@ -93,7 +98,7 @@ class MachineFileError(KurbelError):
         super().__init__("\n".join(self.line(fault) for fault in faults))
 
     def line(self, fault: Fault) -> str:
-        """Return `file:line:column: path: message`, or what it is of instead of file and place."""
+        """Return `file:line:column: path: message`; of an override the option instead of file and place."""
         where = f"{path_text(fault.path)}: " if fault.path else ""
         place = fault.override or f"{self.file_name}:{fault.line}:{fault.column}"
         return f"{place}: {where}{fault.message}"
@@ -108,7 +113,7 @@ class MachineFileError(KurbelError):
             shown.append(spelt(self.line(fault)))
             if not fault.source_line.strip():
                 continue
-            place, room = fault.column - 1, max(cells - 6, 1)  # beside the margin and a sign of the cut on either side
+            place, room = fault.column - 1, max(cells - 6, 1)  # less the margin and an ellipsis on either side
             start = 0 if len(fault.source_line) <= room else max(place - room * 3 // 4, 0)
             text = fault.source_line[start : start + room]
             clean = [spelt(c if c.isprintable() else " ") for c in text]
@@ -120,14 +125,29 @@ class MachineFileError(KurbelError):
 
 
 class UsageError(KurbelError):
-    """A question that the machine or the command cannot answer as it was put."""
+    """A request that does not fit the machine or the command."""
 
 
 class NoSolutionError(KurbelError):
-    """The machine as described does not run: it locks itself or stalls."""
+    """The machine as described does not run: it jams or stalls.
+
+    remedy: returns the end of the message, what would help; it is computed only where the message is shown.
+    """
 
     exit_status = 3
 
+    def __init__(self, reason: str, remedy: Callable[[], str] = str) -> None:
+        super().__init__(reason)
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return self.reason + self.remedy()
+
+    @property
+    def reason(self) -> str:
+        """What is wrong, without the remedy."""
+        return super().__str__()
+
 
 class Nowhere(NoSolutionError):
-    """A column of one cylinder does not reach the value at which rows are sought; another cylinder's may."""
+    """A column of one cylinder does not reach the value of `--where`; that of another cylinder may."""

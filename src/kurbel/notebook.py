@@ -1,4 +1,4 @@
-"""What a notebook shows of results: the tables of the reports, and pictures."""
+"""Results in a notebook: the tables of the reports, and pictures."""
 
 import os
 from html import escape
@@ -24,7 +24,7 @@ from kurbel.solver.figures import Results, Shown
 
 
 class ShownCase(solved.Case):
-    """A machine with its results; machine: one, or the path or the text of a machine file."""
+    """A machine with its results; machine: given itself, or as the path or the text of a machine file."""
 
     def __init__(self, machine: Machine | str | os.PathLike[str], count: int | None = None) -> None:
         super().__init__(machine_of(machine), count)
@@ -50,7 +50,7 @@ class Drawing(NamedTuple):
 def draw(case: ShownCase, *names: str, units: str = "metric", angles: tuple[float, ...] | None = None) -> Drawing:
     """Return pictures of a machine, by the words of `kurbel plot --list`; without names the most informative picture.
 
-    angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that there is not.
+    angles: crank angles in degrees at which a mechanism is drawn. Raises UsageError for a picture that does not exist.
     """
     return Drawing(tuple(pictures(case, names, PictureOptions(units, None, angles))))
 
@@ -59,7 +59,6 @@ def as_html(shown: solved.Case | Results) -> str:
     """Return the key values of results, or of every part of a machine, as HTML."""
     if isinstance(shown, Results):
         return _key_values(shown, "Key values")
-
     machine = shown.machine
     parts: list[tuple[str, Results]] = [(one.drive.name, one) for one in shown.cylinders]
     if len(parts) != 1 or machine.flywheel:
@@ -69,7 +68,6 @@ def as_html(shown: solved.Case | Results) -> str:
 
 def _key_values(results: Results, caption: str) -> str:
     """Return a table, or the reason why there is none."""
-
     with np.errstate(all="ignore"):
         try:
             every = results.key_values().values()

@@ -26,12 +26,12 @@ RESULTS: tuple[type[Results], ...] = (
     Delivery,
     CompressorStage,
 )
-"""The classes of results, in the order in which their quantities are listed; those of a part come with it."""
+"""The classes of results, in the order in which their quantities are listed; each includes those of its parts."""
 
 
 @cache
 def every_quantity() -> Lists:
-    """Return what machines may have, whatever their mechanism; what several commands print is there for each."""
+    """Return all quantities that any machine may have; one that several classes declare is listed for each."""
     offers = dict.fromkeys(offer for one in KINDS for offer in one.OFFERS)
     key_offers = dict.fromkeys(offer for one in KINDS for offer in one.KEY_OFFERS)
     every = [rows_of(CylinderForces, (*offers,), (*key_offers,)).lists, *(rows_of(one).lists for one in RESULTS[1:])]

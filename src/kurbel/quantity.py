@@ -1,4 +1,4 @@
-"""A quantity: one printed figure or column, said once, as an attribute of the class that computes it.
+"""A quantity: one printed figure or column, declared once, as an attribute of the class that computes it.
 
     @key_value("A_H", "area")
     def A_head(self) -> Values | None:
@@ -19,15 +19,13 @@ from typing import Any, Generic, NamedTuple, TypeVar, overload
 V = TypeVar("V")
 
 NOISE_POWER = -14
-"""A residual below this power of ten is rounding, another on every processor."""
-
-
+"""A residual below this power of ten is rounding error, which differs between processors."""
 GREEK = {
     "φ": "phi", "ψ": "psi", "θ": "theta", "Θ": "Theta", "ω": "omega", "δ": "delta", "Δ": "d", "λ": "lambda", "μ": "mu",
     "ν": "nu", "η": "eta", "π": "pi", "ρ": "rho", "ε": "eps", "γ": "gamma", "α": "alpha", "β": "beta", "κ": "kappa",
     "σ": "sigma", "τ": "tau", "Σ": "sum ", "½": "1/2", "−": "-", "\u0307": "_dot", "\u0308": "_ddot",
 }  # fmt: skip
-"""Sign of a symbol -> what stands for it where the output has no Greek letters."""
+"""Character of a symbol -> its replacement if the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
 _FIRST_WORDS = re.compile(r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)")
 _ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
@@ -41,16 +39,16 @@ _ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
 class Quantity(NamedTuple):
     """One printed quantity; the order in which quantities are declared is that in which they are printed.
 
-    `id` stands in JSON and CSV, `symbol` over the printed table (`plain` where the output has no Greek letters, if it
-    is more than what stands for each of them), `kind` decides the unit (see `units`), and `text` says in one sentence
-    what it is. `commands` print it, if the machine has it.
+    `id` is its name in JSON and CSV, `symbol` that in the printed table (`plain` if the output has no Greek letters and
+    `GREEK` does not suffice), `kind` decides the unit (see `units`), and `text` describes it in one sentence.
+    `commands`: those that print it, if the machine has it.
     `extremes`: of a column, the commands that print its largest and smallest value as key values `<id>_max` and
     `<id>_min`; `called` names it in their sentences.
     `after`: the id after which it is printed, if not where it is declared. A `residual` would be zero without rounding:
     tables do not show rounding. A quantity that is `listed`, a list of values, cannot have a bound.
     `group`: quantities of one kind and one group are shown in one unit; '' for that of its column.
     `peak`: a column with extremes that has, besides, its largest magnitude as key value `<id>_peak`.
-    `on_request`: the commands that print it only where it is requested by name.
+    `on_request`: the commands that print it only if it is requested by name.
     `wanted_large`: a bound on it is one from below, as on every smallest value.
     `heading`: of the key values among which it is listed for people; see `Heading`.
     `gauge`: a pressure that is absolute where the machine file gives it so; its unit then has this `mark`.
@@ -140,7 +138,7 @@ class Quantity(NamedTuple):
 
 
 def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities in order; several with one place to stand `after` keep theirs among them.
+    """Return the quantities in the order of printing; several `after` the same one keep their order.
 
     One without a heading has that of the one before it.
     """
@@ -173,17 +171,18 @@ def called(name: str, quantities: Iterable[Quantity]) -> tuple[str, ...]:
 
 
 def ambiguity(name: str, found: tuple[str, ...]) -> str:
-    """Return what is to be said of a symbol that several quantities have; '' where it is one."""
+    """Return the message for a symbol that several quantities have; '' if only one has it."""
     return f"'{name}' is the symbol of {' and of '.join(found)}; write which" if len(found) > 1 else ""
 
 
 def in_sentences(word: str, quantities: Iterable[Quantity]) -> str:
-    """Return which of these quantities have a word in their sentences, to be said of a word that is no id; or ''.
+    """Return a hint which of these quantities have a word in their sentences, for a word that is no id; or ''.
 
-    >>> in_sentences("piston", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
+    >>> in_sentences("piston_area", [Quantity("A_head", "A_H", "area", "Piston area at the head end")])
     '; it is in the sentences of A_head'
     """
-    ids = dict.fromkeys(one.id for one in quantities if len(word) > 2 and word.lower() in one.text.lower())
+    words = word.lower().replace("_", " ")
+    ids = dict.fromkeys(one.id for one in quantities if len(words) > 2 and words in one.text.lower())
     return f"; it is in the sentences of {', '.join(ids)}" if ids else ""
 
 
@@ -242,7 +241,7 @@ class Row(NamedTuple):
     """A quantity with what computes it.
 
     of: takes the results of a command, or for a column the state at crank angles, and returns the value in SI, None
-    where there is none. unless: takes the results, and is true where the quantity says nothing new.
+    where there is none. unless: takes the results, and is true where the quantity adds nothing.
     """
 
     quantity: Quantity

@@ -1,22 +1,18 @@
 """`kurbel accuracy` as a user sees it."""
 
-from __future__ import annotations
-
-import json
 import math
 import re
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from typing import Any
 
 import pytest
-from click.testing import CliRunner, Result
 
+from command import answer, printed, run
 from kurbel import loads
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
 from kurbel.accuracy.trials import data_errors, model_errors
-from kurbel.cli import kurbel
 from kurbel.report import accuracy
 from kurbel.report.accuracy import accuracy_picture
 from kurbel.report.tables import Column, Part, PlaceTable, Report
@@ -28,10 +24,6 @@ ENGINE = """
  indicator: {head_end: {unit: bar, expansion: [[0, 9], [0.3, 9], [1, 2]], compression: [[1, 1], [0.2, 1], [0, 9]]}},
  friction: {crosshead: 0.05}}
 """
-
-
-def run(*arguments: str, machine: str = MOTION) -> Result:
-    return CliRunner().invoke(kurbel, ["accuracy", *arguments], input=machine)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -50,35 +42,22 @@ def once(run: Callable[[], object], quick: bool) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def measured() -> Report:
-    """What is measured of the engine: seconds of work, once for all formats."""
-    return accuracy.accuracy_report(loads(ENGINE), True, loads)
+    """What is measured of the engine: seconds of work, once."""
+    return accuracy.accuracy_report(loads(ENGINE), True, loads, {})
 
 
 @pytest.fixture
-def formatted(measured: Report, monkeypatch: pytest.MonkeyPatch) -> Callable[..., bytes]:
-    """The command as it runs in a format, with what was measured before."""
-
-    def output(*arguments: str, charset: str = "utf-8") -> bytes:
-        monkeypatch.setattr(accuracy, "accuracy_report", lambda *_: measured)
-        result = CliRunner(charset=charset).invoke(kurbel, ["accuracy", "-", "--quick", *arguments], input=ENGINE)
-        assert result.exit_code == 0, result.output
-        return result.stdout_bytes
-
-    return output
+def engine(measured: Report, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    monkeypatch.setattr(accuracy, "accuracy_report", lambda *_: measured)
+    return answer("accuracy", "-", "--quick", text=ENGINE)
 
 
-@pytest.fixture
-def engine(formatted: Callable[..., bytes]) -> dict[str, object]:
-    content: dict[str, object] = json.loads(formatted("-f", "json"))
-    return content
-
-
-def tables(content: dict[str, object]) -> dict[str, dict[str, object]]:
-    return {table["id"]: table for table in content["scenes"][0]["place_tables"]}  # type: ignore[index]
+def tables(content: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    return {table["id"]: table for table in content["scenes"][0]["place_tables"]}
 
 
 def test_text_names_versions_methods_and_states() -> None:
-    text = run("-", "--quick").stdout
+    text = printed("accuracy", "-", "--quick", text=MOTION)
     assert text.startswith("plain. Accuracy and run time\nkurbel ")
     assert re.search(r"Python 3\.\d+\.\d+, numpy \d", text)
     assert "quantity  method             points  state" in text
@@ -88,7 +67,7 @@ def test_text_names_versions_methods_and_states() -> None:
     assert "leaving out saves" not in text  # nothing to leave out
 
 
-def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
+def test_json_has_the_four_sections(engine: dict[str, Any]) -> None:
     assert engine["command"] == "accuracy"
     assert engine["machine"] == "engine"
     assert list(tables(engine)) == ["numerical_error", "model_error", "data_error", "leaving_out"]
@@ -97,7 +76,7 @@ def test_json_has_the_four_sections(engine: dict[str, object]) -> None:
     assert {row["state"] for row in rows} == {"ok"}
 
 
-def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engine: dict[str, object]) -> None:
+def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engine: dict[str, Any]) -> None:
     found = tables(engine)
     numerical = found["numerical_error"]
     errors = next(column for column in numerical["columns"] if column["id"] == "error")["values"]
@@ -112,9 +91,7 @@ def test_own_methods_are_exact_and_data_worse_than_model_worse_than_numbers(engi
 
 def test_a_mechanism_without_a_reference_says_so() -> None:
     machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
-    result = run("-", "--quick", machine=machine)
-    assert result.exit_code == 0
-    assert "no independent calculation of the four-bar" in result.stdout
+    assert "no independent calculation of the four-bar" in printed("accuracy", "-", "--quick", text=machine)
 
 
 def scene(name: str, *rows: tuple[str, str, str, float | None, float | None]) -> Part:
@@ -154,24 +131,18 @@ def test_a_panel_holds_all_scenes_of_a_quantity() -> None:
     assert [curve.name.symbol for curve in c.curves if curve.kind == "dots"] == ["kurbel"]
 
 
-def test_a_picture_that_cannot_be_written(tmp_path: Path) -> None:
-    result = run("-", "--quick", "--plot", str(tmp_path / "no folder" / "picture.svg"))
-    assert result.exit_code == 2
-    assert "cannot write" in result.stderr
-
-
 def test_a_failed_extreme_case_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
     cases = [
         Probe("right", MOTION, "motion c@180", "0", "8"),
         Probe("wrong", MOTION, "motion c@30", "status 2: never"),
     ]
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases)
-    result = run("--extremes")
+    result = run("accuracy", "--extremes")
     assert result.exit_code == 1
     assert "1 of 2 cases passed" in result.stdout
     assert "FAILED" in result.stdout
     monkeypatch.setattr(accuracy, "all_cases", lambda: cases[:1])
-    assert run("--extremes").exit_code == 0
+    assert run("accuracy", "--extremes").exit_code == 0
 
 
 IDLE = "speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\nbore: 450 mm\n"
@@ -194,10 +165,7 @@ def test_no_error_is_relative_to_zero(text: str) -> None:
         assert all(one.error < 2 for one in found)
 
 
-def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told(tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(IDLE + WORKLESS["zero"], encoding="utf-8")
-    result = CliRunner().invoke(kurbel, ["accuracy", str(tmp_path / "m.yaml"), "--quick", "-f", "json"])
-    assert result.exit_code == 0, result.stderr
-    (scene,) = json.loads(result.stdout)["scenes"]
+def test_a_quantity_that_is_zero_is_not_examined_and_that_is_told() -> None:
+    (scene,) = answer("accuracy", "-", "--quick", text=IDLE + WORKLESS["zero"])["scenes"]
     assert [one["what"] for one in scene["left_out"]] == ["A_i", "T_max, T_min", "ΔE"]
     assert {one["why"] for one in scene["left_out"]} == {"it is zero, and no error is relative to that"}

@@ -1,7 +1,5 @@
 """Stiff and extreme cases: the whole table passes, and a wrong answer would not."""
 
-from __future__ import annotations
-
 import mpmath
 import pytest
 

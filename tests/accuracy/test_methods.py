@@ -1,7 +1,5 @@
 """The methods that kurbel is compared with converge as their textbooks say; rows, errors and savings."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -9,15 +7,18 @@ import numpy as np
 import pytest
 
 from kurbel.accuracy import trials
+from kurbel.accuracy.textbook import TextbookMachine
 from kurbel.accuracy.trials import Trial, better, errors, examined, savings
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
+from turning_machines import moving_inertia
 
 SMOOTH = """
 {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, masses: {piston: 500 kg},
  indicator: {head_end: {constant: {expansion: 5 bar, compression: 0 bar}}, crank_end: mirrored},
  flywheel: {inertia: 900 kg m2}, load: {slip: 0.2}}
 """
+RINGS = "rings: {count: 3, height: 8 mm, pressure: 0.2 bar, coefficient: 0.1}"
 BARE = "{name: bare, speed: 60 rpm, crank: 400 mm, rod: 2000 mm}"
 
 
@@ -26,7 +27,7 @@ def rows() -> list[Trial]:
     """All rows of a machine without corners but at the dead centres, and with friction."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
-        machine = loads(SMOOTH.replace("flywheel", "friction: {crosshead: 0.05}, flywheel"))
+        machine = loads(SMOOTH.replace("flywheel", f"friction: {{crosshead: 0.05, {RINGS}}}, flywheel"))
         return examined(machine, np.arange(0.0, 361.0, 10.0), True)[0]
 
 
@@ -132,3 +133,13 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert found[0].ratio == 1.0
     bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
     assert bare == ["everything", "no speed either: positions alone"]
+
+
+def test_the_textbook_has_the_inertia_of_the_solver() -> None:
+    """m x′² and what of the rod turns with the pin: 60 % of 200 kg on a crank of 0.4 m."""
+    rod = "connecting_rod: {mass: 200 kg, share: 0.4}"
+    machine = loads(SMOOTH.replace("{piston: 500 kg}", f"{{piston: 500 kg, {rod}}}"))
+    ((one, _),) = TextbookMachine(machine).cylinders
+    slopes = [one.motion.at(mpmath.radians(degrees)).slope for degrees in (0, 60, 200)]
+    found = [float(one.mass * slope**2 + one.turning_inertia) for slope in slopes]
+    assert found == pytest.approx(moving_inertia(Case(machine).flywheel, np.array([0.0, 60.0, 200.0])), rel=1e-13)

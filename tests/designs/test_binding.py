@@ -1,7 +1,5 @@
 """Keys on which others hang vary with them: each row of a sweep is the machine that is read with its values."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

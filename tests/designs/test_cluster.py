@@ -1,7 +1,5 @@
 """A sweep on a cluster of Dask, of which parts are killed or missing. Left out where dask is not installed."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -12,11 +10,13 @@ from typing import Any
 
 import pytest
 
+from command import limited
+from representative import CONFIGS
 from swept_rows import until_written
 
 distributed = pytest.importorskip("distributed")
 
-WATERWORKS = str(Path(__file__).parent.parent.parent / "configs" / "waterworks.yaml")
+WATERWORKS = str(CONFIGS["waterworks"])
 
 
 class Cluster:
@@ -97,6 +97,7 @@ def test_a_killed_scheduler_is_named_and_resume_goes_on(cluster: Cluster, tmp_pa
 def test_a_cluster_without_workers_is_waited_for(cluster: Cluster) -> None:
     asked = [*SWEEP, "rod_ratio=4,5", "-f", "csv", "--dask", cluster.address]
     process = subprocess.Popen(asked, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    limited(process, 300)
     assert process.stderr
     assert process.stderr.readline() == f"--dask {cluster.address}: the cluster has no workers; waiting for one\n"
     cluster.add_workers(1)

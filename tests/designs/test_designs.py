@@ -1,7 +1,5 @@
 """What varies, and in which order."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

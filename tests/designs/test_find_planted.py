@@ -1,7 +1,5 @@
 """Values planted in machines drawn at random are found again, and no solution is missed that a dense scan separates."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

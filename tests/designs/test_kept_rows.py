@@ -5,31 +5,26 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel as command
+from command import run
 from kurbel.designs.sweep import Design, Sweep
 from kurbel.errors import KurbelError
+from representative import CONFIGS
 
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 ASKED = ("--vary", "rod_ratio=3:6:0.3", "--columns", "c_max,T_max")
 
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Path:
     file = tmp_path / "engine.yaml"
-    file.write_text((CONFIGS / "waterworks.yaml").read_text())
+    file.write_text(CONFIGS["waterworks"].read_text())
     return file
-
-
-def run(machine: Path, *args: str) -> Result:
-    return CliRunner().invoke(command, ["sweep", str(machine), *args])
 
 
 @cache
 def swept(text: str, args: tuple[str, ...]) -> list[str]:
     """Return the lines of a sweep of the machine in a text: they do not hang on the file that they are written to."""
-    result = CliRunner().invoke(command, ["sweep", "-", *args], input=text)
+    result = run("sweep", "-", *args, text=text)
     assert result.exit_code == 0
     return result.stdout.splitlines(keepends=True)
 
@@ -62,7 +57,7 @@ def test_another_sweep_does_not_go_on(machine: Path, written: str, others: tuple
     before = file.read_bytes()
     asked = others if others[0] == "--vary" else ASKED[:2] + others
     asked += () if "--columns" in others else ASKED[2:]
-    result = run(machine, *asked, "-f", written, "-o", str(file), "--resume")
+    result = run("sweep", machine, *asked, "-f", written, "-o", str(file), "--resume")
     assert result.exit_code == 2
     assert f"--resume: {file} is not of this sweep: " in result.output
     assert message in result.output
@@ -73,10 +68,10 @@ def test_chosen_rows_go_on_where_they_end(machine: Path) -> None:
     asked = (*ASKED, "--where", "T_max < 88.5 kN")
     whole = interrupted(machine, *asked, rows=99).read_bytes()
     file = interrupted(machine, *asked, rows=2)
-    assert run(machine, *asked, "-o", str(file), "--resume").exit_code == 0
+    assert run("sweep", machine, *asked, "-o", str(file), "--resume").exit_code == 0
     assert file.read_bytes() == whole
     file = interrupted(machine, *asked, rows=2)
-    assert "is missing in it" in run(machine, *ASKED, "-o", str(file), "--resume").output
+    assert "is missing in it" in run("sweep", machine, *ASKED, "-o", str(file), "--resume").output
 
 
 # what was there before
@@ -109,16 +104,16 @@ def test_an_early_end_leaves_the_old_file_and_a_part(machine: Path, monkeypatch:
     file.write_text("old")
     file.chmod(0o640)
     link.symlink_to(file)
-    result = run(machine, *MANY, "-o", str(link))
+    result = run("sweep", machine, *MANY, "-o", str(link))
     assert (result.exit_code, result.stderr) == (
         2,
         f"{file}.part holds 20 rows; run again with --resume to continue\n"
         "Error: a worker process was killed (SIGKILL)\n",
     )
     assert files(machine.parent) == {"rows.csv": "old", "link.csv": "old", "rows.csv.part": whole}
-    assert "holds 20 rows" in run(machine, *MANY, "-o", str(link), "--resume").stderr
+    assert "holds 20 rows" in run("sweep", machine, *MANY, "-o", str(link), "--resume").stderr
     monkeypatch.undo()
-    assert run(machine, *MANY, "-o", str(link), "--resume").exit_code == 0
+    assert run("sweep", machine, *MANY, "-o", str(link), "--resume").exit_code == 0
     whole = "".join(swept(machine.read_text(), (*MANY, "-f", "csv")))
     assert files(machine.parent) == {"rows.csv": whole, "link.csv": whole}
     assert (link.is_symlink(), file.stat().st_mode & 0o777) == (True, 0o640)

@@ -1,7 +1,5 @@
 """`kurbel sweep` from the command line: rows, order, choice, parts, and what goes wrong."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -54,7 +52,7 @@ def test_without_a_cylinder_rows_are_what_flywheel_tells(tmp_path: Path) -> None
 
 def test_cylinders_that_work_alike_have_one_column_in_a_table(tmp_path: Path) -> None:
     """Equal ones once for people, each in csv; where a key of one of them varies they are no longer alike."""
-    generator = str(CONFIGS / "four-cylinder-generator.yaml")
+    generator = str(CONFIGS["four-cylinder-generator"])
     sweep = ("--vary", "speed=200,300 rpm", "--columns", "T_max,dE")
     assert run(*sweep, file=generator).stdout.split()[:4] == ["row", "speed", "cylinders", "1–4.T_max"]
     heads = run(*sweep, "-f", "csv", file=generator).stdout.splitlines()[0].split(",")
@@ -75,7 +73,7 @@ def test_a_row_that_fails_stays_with_its_reason() -> None:
 
 
 def test_key_values_of_other_commands_and_limits() -> None:
-    file = str(CONFIGS / "waterworks-two-cranks.yaml")
+    file = str(CONFIGS["waterworks-two-cranks"])
     found = rows("--vary", "flywheel.fluctuation=1/80,1/100", "--columns", "dE,J,c_max", file=file)
     for one, fluctuation in zip(found, ("1/80", "1/100")):
         turning = kurbel.solve(kurbel.load(file, [f"flywheel.fluctuation={fluctuation}"])).flywheel
@@ -101,15 +99,13 @@ def test_where_sort_top_and_pareto() -> None:
 
 
 def test_a_key_value_is_asked_of_one_cylinder_as_it_is_called_in_the_head() -> None:
-    compressor = str(CONFIGS / "compressor-two-stage.yaml")
+    compressor = str(CONFIGS["compressor-two-stage"])
     column, vary = "low pressure.rod_tension_max", ("--vary", "speed=300,500 rpm")
     both = rows(*vary, "--columns", "rod_tension_max", file=compressor)
     alone = rows(*vary, "--columns", column, "--sort", column, "--where", f"{column} > 1 N", file=compressor)
     told = [[row.get(f"{column}_N") for row in found] for found in (alone, both)]
     assert told[0] == sorted(told[1])
     assert not any("high pressure" in head for row in alone for head in row)
-    wrong = run(*vary, "--columns", "no pressure.rod_tension_max", file=compressor)
-    assert (wrong.exit_code, "no key value 'no pressure.rod_tension_max'" in wrong.stderr) == (2, True)
 
 
 def test_a_summary_tells_quantiles_and_ranks() -> None:
@@ -230,19 +226,6 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
     assert (strokes.count(None), strokes[-1]) == (16001, pytest.approx(0.8))
     assert run(*asked, "--where", "rod_ratio > 9").exit_code == 0
     assert parquet.read_table(file).num_rows == 0
-
-
-def test_python_gets_arrays() -> None:
-    machine = kurbel.load(WATERWORKS)
-    ratios = np.array([0.9, 4.0, 5.0])
-    found = kurbel.sweep(machine, {"rod_ratio": ratios, "speed": [0.5, 0.6, 0.7]}, ["T_max", "dE", "phi_reversal"])
-    assert np.isnan(found["T_max"][0])
-    assert found["failure"].tolist()[1:] == ["", ""]
-    for place in (1, 2):
-        case = kurbel.solve(kurbel.load(WATERWORKS, [f"rod_ratio={ratios[place]}", f"speed={0.5 + place / 10!r} 1/s"]))
-        assert found["T_max"][place] == pytest.approx(case.cylinders[0]["T_max"].value, rel=1e-13)
-        assert found["dE"][place] == case.flywheel.dE
-        assert found["phi_reversal"][place] == pytest.approx(case.cylinders[0].phi_reversal, rel=1e-13)
 
 
 @pytest.mark.parametrize(

@@ -3,15 +3,12 @@
 `answers.yaml` beside this file says how each is asked, or why it cannot be.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
+from command import run
 from representative import few
 from worked_examples import ASKED, FILES, FOLDER, TABLE, expected, told
 
@@ -59,5 +56,5 @@ def test_none_of_the_79_examples_is_missing() -> None:
 @pytest.mark.parametrize("file", few(FILES, FILES[::6]))
 def test_every_machine_file_is_valid_and_of_an_example(file: str) -> None:
     assert file in TABLE or file in {row["file"] for row in ASKED}
-    result = CliRunner().invoke(kurbel, ["check", str(FOLDER / f"{file}.yaml")])
+    result = run("check", FOLDER / f"{file}.yaml")
     assert (result.exit_code, result.stderr) == (0, "")

@@ -1,7 +1,5 @@
 """Pages for the tests of this folder."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from kurbel.cli.request import cases_of

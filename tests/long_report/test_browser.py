@@ -1,7 +1,5 @@
 """The page in a real browser: silent, within every window, within the sheet in print; and what a validator says."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,14 +1,11 @@
 """Every bad machine file with its full expected message; what a file may hold has bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import load, loads
 
@@ -56,18 +53,14 @@ STEAM = (
 TRACE = "bore: 1 m\nindicator: {{head_end: {{trace: {{file: {file}, unit: bar, angle_zero: {zero}{more}}}}}}}\n"
 
 
-def run(command: str, text: str) -> Result:
-    return CliRunner().invoke(kurbel, [command, "-"], input=text)
-
-
 def test_nothing_that_was_built_gets_one() -> None:
     """The Cruquius engine: 144 inches; a large two-stroke diesel: 20 t; a model engine: 30,000 rpm."""
     built = "speed: 30000 rpm\ncrank: 1 m\nrod_ratio: 5\nbore: 3658 mm\nmasses: {piston: 20 t}\n"
-    assert "beyond anything built" not in run("check", built).output
+    assert "beyond anything built" not in run("check", "-", text=built).output
     engine = ENGINE + "bore: 450 mm\nflywheel: {fluctuation: 1/5}\n" + STEAM
-    assert "is it right?" not in run("check", engine).output
+    assert "is it right?" not in run("check", "-", text=engine).output
     pump = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 1600 bar}}}\n"
-    assert "is its unit right?" not in run("check", ENGINE + "bore: 20 mm\n" + pump).output
+    assert "is its unit right?" not in run("check", "-", text=ENGINE + "bore: 20 mm\n" + pump).output
 
 
 LONG = 100_000

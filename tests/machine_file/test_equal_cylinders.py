@@ -1,33 +1,15 @@
 """Equal cylinders: one `like` another, or several at once, and what a firing order makes of their cranks."""
 
-from __future__ import annotations
-
 import itertools
 import random
 
-import jsonschema
 import pytest
-import yaml
 
 from kurbel.machine import Cylinder
+from kurbel.machine.several import intervals
 from kurbel.machine_file import loads
-from schemas import whole_schema
 
 EACH = "each: {stroke: 80 mm, rod_ratio: 4}"
-FOUR = """\
-name: Four in line
-speed: 300 rpm
-cycle: four-stroke
-cylinders:
-  count: 4
-  firing_order: 1-3-4-2
-  spacing: 96 mm
-  each:
-    stroke: 380 mm
-    rod_ratio: 4.6
-    bore: 280 mm
-    indicator: {head_end: {otto: {intake: -0.05 bar, exhaust: 0.1 bar, peak: 25 at, compression_ratio: 6}}}
-"""
 
 
 def equal(keys: str, cycle: str = "four-stroke") -> tuple[Cylinder, ...]:
@@ -37,16 +19,6 @@ def equal(keys: str, cycle: str = "four-stroke") -> tuple[Cylinder, ...]:
 def throws(cylinders: tuple[Cylinder, ...]) -> list[float]:
     """Where the throws stand in space when crank 1 is at its inner dead centre: γ − β (formulas of the free forces)."""
     return [(one.bank_angle - one.crank_position) % 360 for one in cylinders]
-
-
-def test_a_four_cylinder_engine_takes_twelve_lines() -> None:
-    machine = loads(FOUR)
-    assert len(FOUR.splitlines()) == 12
-    assert [one.name for one in machine.cylinders] == [f"cylinder {i}" for i in (1, 2, 3, 4)]
-    # as configs/four-cylinder-generator.yaml has them one by one
-    assert [one.crank_position for one in machine.cylinders] == [0, 540, 180, 360]
-    assert [one.axial_position for one in machine.cylinders] == pytest.approx([0, 0.096, 0.192, 0.288])
-    assert len({id(one.pistons[0]) for one in machine.cylinders}) == 1
 
 
 def test_the_cross_plane_v8_has_two_rods_on_each_pin() -> None:
@@ -149,6 +121,10 @@ def _reads(angles: list[int]) -> tuple[int, list[int], list[int]]:
     return sum((after - one) ** 2 for one, after in itertools.pairwise(at)), order, angles
 
 
+def test_intervals_end_where_the_first_fires_again() -> None:
+    assert intervals([450.3, 90.1, 270.2], 720) == [180.1, 180.1, 359.8]
+
+
 def test_what_is_said_of_the_turn_holds() -> None:
     """A crank position of a listed cylinder, a firing order, and positions that reach into the second turn."""
     row = "{stroke: 80 mm, rod_ratio: 4, bank_angle: 90 deg"
@@ -157,15 +133,3 @@ def test_what_is_said_of_the_turn_holds() -> None:
         assert [one.crank_position for one in listed.cylinders] == [0, expected]
     assert positions("count: 2, firing_order: 1-2, bank_angles: [0 deg, 90 deg]") == [0, 360]
     assert positions("count: 4, crank_positions: [0 deg, 540 deg, 180 deg, 360 deg]") == [0, 540, 180, 360]
-
-
-def test_the_schema_takes_them() -> None:
-    validator = jsonschema.Draft7Validator(whole_schema())
-    for text in (
-        FOUR,
-        "cylinders:\n- {mechanism: four-bar, crank: 1 m, coupler: 4 m, rocker: 4 m, frame: 4 m}\n- {like: cylinder 1}",
-        "cylinders:\n- {crank: 1 m, rod: 4 m}\n- {like: cylinder 1, bore: 5 m}\nfiring_order: 1-2",
-    ):
-        assert [error.message for error in validator.iter_errors(yaml.safe_load(text))] == []
-    assert not validator.is_valid({"cylinders": {"count": 4}})
-    assert not validator.is_valid({"cylinders": [{"like": "A", "boore": "5 m"}]})

@@ -1,7 +1,5 @@
 """Whatever stands in a file, the reader gives a machine with finite numbers or a KurbelError."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,17 +1,12 @@
 """Good machine files: what arrives in the machine, in SI; values set over the file by --set."""
 
-from __future__ import annotations
-
-import json
 import math
 import re
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 from good_machines import ALL, DEMO
-from kurbel.cli import kurbel
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.machine_file import load, loads
 
@@ -37,7 +32,7 @@ def test_several_cylinders_with_everything() -> None:
     assert (high.mechanism.crank, low.mechanism.rod, low.crank_position) == (0.4, math.inf, 90)
     assert [piston.bore for piston in high.pistons] == [0.45, 0.285]
     masses, friction = high.masses, high.friction
-    assert (masses.parts, masses.reciprocating) == (717, 717 + 110)
+    assert (masses.parts, masses.at_crosshead(math.inf)) == (717, 717 + 110)
     assert friction.rings.count == 3
     steam = high.pistons[0].indicator.head_end
     assert (steam.admission, steam.exhaust, steam.cut_off, steam.release, steam.exponent) == (8e5, 0.2e5, 0.3, 1, 1)
@@ -123,11 +118,3 @@ def test_a_fault_names_the_override(override: str, message: str) -> None:
     with pytest.raises(KurbelError, match=re.escape(message)) as caught:
         loads(DEMO, "m", [override])
     assert "Traceback" not in str(caught.value)
-
-
-def test_the_answer_is_that_of_the_changed_machine(tmp_path: Path) -> None:
-    (tmp_path / "m.yaml").write_text(DEMO)
-    asked = ["motion", str(tmp_path / "m.yaml"), "-f", "json", "--set", "crank=500 mm", "--set", "speed=60 rpm"]
-    found = json.loads(CliRunner().invoke(kurbel, asked).stdout)["cylinders"][0]["key_values"]
-    # c_m = 2 s n
-    assert next(one["value"] for one in found if one["id"] == "c_m") == pytest.approx(2 * 1.0 * 1)

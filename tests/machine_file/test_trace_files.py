@@ -1,7 +1,5 @@
 """Files of traces as loggers and people write them: read as they are meant, or refused with a way out that works."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path
@@ -331,6 +329,14 @@ def test_points_and_efforts_are_judged_in_the_same_way(tmp_path: Path) -> None:
     (tmp_path / "m.yaml").write_text("effort: {unit: N m, file: e.csv}\n")
     with pytest.raises(MachineFileError, match="holds 3 laps of 360 deg; keep one cycle"):
         load(tmp_path / "m.yaml")
+    for keys, said in (
+        ("torque_column: 1", "column 1 is that of the angles"),
+        ("angle_unit: s", "times become angles by a speed"),
+        ("angle_unit: rad, recorded_speed: 60 rpm", "a speed is for times only"),
+    ):
+        (tmp_path / "m.yaml").write_text(f"effort: {{unit: N m, file: e.csv, {keys}}}\n")
+        with pytest.raises(MachineFileError, match=said):
+            load(tmp_path / "m.yaml")
 
 
 def test_a_pipe_is_no_file_of_samples(tmp_path: Path) -> None:

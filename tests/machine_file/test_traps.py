@@ -1,7 +1,5 @@
 """Traps of YAML 1.1 and of word processors: read as a person reads them, or refused."""
 
-from __future__ import annotations
-
 import io
 import math
 import re
@@ -9,9 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.declared.numerals import parse_number
 from kurbel.declared.units import parse_quantity
 from kurbel.errors import MachineFileError, UnitError, UnreadableFileError
@@ -164,6 +161,6 @@ def test_a_file_name_turns_no_line(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.chdir(tmp_path)
     Path(f"{TURNED}.yaml").write_text("speed: 60 rpm\ncrank: 400 mm\nrod: 2 m\n")
     Path(f"bad{TURNED}.yaml").write_text("crank: 400\n")
-    result = CliRunner().invoke(kurbel, WORDS[case])
+    result = run(*WORDS[case])
     assert result.stdout + result.stderr
     assert "\u202e" not in result.stdout + result.stderr

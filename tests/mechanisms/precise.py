@@ -1,7 +1,5 @@
 """Crank angles and textbook formulas in 50 digits, against which the floats are measured."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import mpmath as mp

@@ -4,8 +4,6 @@ The shaft is at 0 and the crank pin at R e^(iφ), so that i e^(iφ) points ahead
 of the package: a force is where it acts, a rod carries along its line, a block pushes square to its slot.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

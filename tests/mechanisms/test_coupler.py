@@ -1,9 +1,6 @@
 """How rods and couplers turn, and how their points move: against mpmath, which knows the two pins alone."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +9,7 @@ from mpmath import mp
 from kurbel.machine_file import load, loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from representative import CONFIGS
 
 RPM = 90
 OMEGA = 2 * mp.pi * RPM / 60
@@ -92,7 +90,7 @@ def test_the_coupler_of_the_four_bar_and_a_point_of_it() -> None:
 
 def test_mean_speeds_of_the_strokes_after_redtenbacher() -> None:
     """c_a : c_r = β : α (R p. 615), and each is the stroke over its time."""
-    motion = Case(load(str(Path(__file__).parents[2] / "configs" / "shaper.yaml"))).cylinders[0].motion
+    motion = Case(load(CONFIGS["shaper"])).cylinders[0].motion
     assert motion.c_return_m / motion.c_work_m == pytest.approx(motion.time_ratio, rel=1e-14)
     assert motion.stroke / motion.c_work_m + motion.stroke / motion.c_return_m == pytest.approx(1 / motion.speed)
     alpha = math.radians(motion.phi_work) / 2

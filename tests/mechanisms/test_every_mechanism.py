@@ -1,7 +1,5 @@
 """Laws that hold for every mechanism; a new one joins by its line in MACHINES, and by its free body in `statics`."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

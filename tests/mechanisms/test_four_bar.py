@@ -1,7 +1,5 @@
 """Four-bar linkage: loop closure in 50 digits, limits, the slider-crank as its own limit, and Grashof's rule."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -58,3 +56,11 @@ def test_drag_link_in_a_machine_file():
     # mean of θ̇ over a turn is ω: both shafts make one turn in a second
     turn = case.cylinders[0].at(np.arange(360.0))["theta_dot"]
     assert turn.mean() == pytest.approx(math.tau, rel=1e-12)
+
+
+def test_the_transmission_angle_is_that_of_the_cosine_rule():
+    machine = FourBar(0.04, 0.15, 0.08, 0.15)
+    for degrees in (0.0, 180.0):
+        diagonal = 0.15 - 0.04 * math.cos(math.radians(degrees))
+        cosine = (0.15**2 + 0.08**2 - diagonal**2) / (2 * 0.15 * 0.08)
+        assert machine.transmission(degrees).value == pytest.approx(math.degrees(math.acos(cosine)), rel=1e-12)

@@ -1,7 +1,5 @@
 """The laws are worth something only if a wrong formula breaks one: each of these slips, once planted, breaks one."""
 
-from __future__ import annotations
-
 import dataclasses
 import importlib
 import inspect

@@ -1,7 +1,5 @@
 """What is drawn of a mechanism stands where the mechanism says it does: stiff links, sliders on their lines."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The slider-crank against its textbook formulas in 50 digits, its closed extremes, and its rules."""
 
-from __future__ import annotations
-
 import itertools
 import math
 

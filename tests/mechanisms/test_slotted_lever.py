@@ -1,33 +1,14 @@
 """Slotted lever: R 304, 305, its limits, the connecting link, and the lever that turns fully."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
 
-from kurbel.machine import Cylinder, Machine
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.crank import motion_report
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
-
-
-def test_largest_speeds_of_the_book():
-    machine = SlottedLever(0.3, 0.8, 1.3)
-    found = Case(Machine((Cylinder(machine),), speed=1 / math.tau)).cylinders[0].motion
-    assert found.c_max == (pytest.approx(1.3 * 0.3 / (0.8 + 0.3), rel=1e-13), 0.0)  # R 304, v = r ω
-    assert found.c_min == (pytest.approx(-1.3 * 0.3 / (0.8 - 0.3), rel=1e-13), 180.0)  # R 305
-    assert machine.stroke == pytest.approx(2 * 1.3 * 0.3 / 0.8, rel=1e-15)
-
-
-def test_working_and_return_angle():
-    machine = SlottedLever(0.3, 0.6, 1.0)  # cos β = 1/2
-    assert machine.phi_return == pytest.approx(120, rel=1e-15)
-    assert machine.phi_work == pytest.approx(240, rel=1e-15)
-    assert machine.time_ratio == pytest.approx(2, rel=1e-15)
-    assert machine.swing == pytest.approx(60, rel=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """Machines and their pictures, for the tests of this folder."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """The book's constructions at chosen angles, and its pictures of what each crank and each piston does."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pages show every picture as it is drawn now; `pytest --rewrite` on this file draws them anew."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

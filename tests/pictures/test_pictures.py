@@ -1,7 +1,5 @@
 """Pictures are as exact as the tables: every point is the solver's, extremes stand where the key value does."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -13,7 +11,7 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.picture import PanelFrame, axis_text, legend_text, picture_text
+from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain
 from kurbel.report.picture import Panel, Picture
@@ -225,15 +223,6 @@ def test_no_polar_diagram_is_flattened(name: str) -> None:
                 assert across / frame.wide == pytest.approx(up / frame.tall, rel=1e-9)
 
 
-def test_axes_and_legends_have_words() -> None:
-    panel = drawn("waterworks", "forces")[0].panels[0]
-    assert (axis_text(panel.x, Look()), axis_text(panel.y, Look())) == ("Crank angle φ in °", "Force in kN")
-    named = [legend_text(one.name, Look()) for one in panel.curves if one.kind == "line"]
-    assert named == ["S rod force", "N guide force", "D radial force", "T tangential force"]
-    speed = drawn("waterworks", "motion")[0].panels[1]
-    assert axis_text(speed.y, Look()) == "Velocity c in m/s"
-
-
 def test_noise_of_a_trace_has_no_scale_of_its_own() -> None:
     """All strokes of a traced engine have the scale of the largest, and the gas exchange looks as small as it is."""
     panels = drawn("diesel-trace", "piston-force-way")[0].panels
@@ -255,7 +244,7 @@ def test_rounding_of_a_constant_is_not_refined() -> None:
 
 
 def test_a_card_is_a_closed_line() -> None:
-    """The crank end is opened where the cycle begins: there, too, the pressure falls upright."""
+    """The crank end is opened at the outer dead centre, where the cycle begins: there, too, pressure falls upright."""
     for id in ("card", "card-volume"):
         crank_end = curve_of(drawn("coupled-blower", id)[0].panels[0], "p_C")
         x, y = crank_end.jumps()[-1]

@@ -1,7 +1,5 @@
 """Pictures as files: small, legible in black and white and for the colour-blind, and harmless."""
 
-from __future__ import annotations
-
 import re
 from itertools import combinations
 from xml.etree import ElementTree

@@ -1,7 +1,5 @@
 """Pictures in a terminal: as wide as it is, in Braille or in letters, kept as golden pages."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """F. Redtenbacher, Der Maschinenbau (1862): crosshead, inclined plane, piston rings. Equation numbers D are his."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -16,12 +14,6 @@ from machines import constant_pressure, one_cylinder
 
 FULL_ADMISSION = Constant.from_keys(expansion=6e5, compression=0.0)
 LOCOMOTIVE = Piston(0.42, indicator=Indicator(FULL_ADMISSION, FULL_ADMISSION))
-
-
-def test_loss_of_the_locomotive() -> None:
-    """D 7: r/l = 1/6, f = 1/10: e/(Pv) = 1/120 = 0.83 %."""
-    forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
-    assert forces.loss_crosshead_redtenbacher == pytest.approx(1 / 120, rel=1e-15)
 
 
 def test_loss_over_the_way_is_half_as_much_again() -> None:

@@ -1,7 +1,5 @@
 """A small report of two cylinders and the whole machine, with everything that a renderer must cope with."""
 
-from __future__ import annotations
-
 from typing import Any
 from unicodedata import category
 

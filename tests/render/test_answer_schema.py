@@ -1,18 +1,15 @@
 """What `-f json` prints keeps the schema that `kurbel schema --answers` hands out."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 from jsonschema import Draft7Validator
 
-from kurbel.cli import kurbel
+from command import run
+from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-CONFIGS = Path(__file__).parents[2] / "configs"
 BROKEN = """\
 name: Engine with five mistakes
 speed: 50
@@ -38,28 +35,28 @@ MACHINES = [
 ANSWERS = [
     ["table", "--compare"],
     ["friction", "--incline", "30", "--coefficient", "0.1"],
-    *([command, str(CONFIGS / f"{name}.yaml")] for command, name in MACHINES),
-    ["check", str(CONFIGS / "waterworks.yaml"), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
-    ["forces", str(CONFIGS / "waterworks.yaml"), "--uncertainty", "bore=0.1mm"],
+    *([command, str(CONFIGS[name])] for command, name in MACHINES),
+    ["check", str(CONFIGS["waterworks"]), "--set", "limits.c_max=1 m/s", "--set", "expect.b_max=2 m/s2 ± 1 %"],
+    ["forces", str(CONFIGS["waterworks"]), "--uncertainty", "bore=0.1mm"],
 ]
 
 
 @pytest.fixture(scope="module")
 def validator() -> Draft7Validator:
-    schema = json.loads(CliRunner().invoke(kurbel, ["schema", "--answers"]).stdout)
+    schema = json.loads(run("schema", "--answers").stdout)
     Draft7Validator.check_schema(schema)
     return Draft7Validator(schema)
 
 
 @pytest.mark.parametrize("asked", ANSWERS, ids=lambda asked: f"{asked[0]} {Path(asked[1]).stem}")
 def test_an_answer_keeps_the_schema(asked: list[str], validator: Draft7Validator) -> None:
-    ran = CliRunner().invoke(kurbel, [*asked, "-f", "json"])
+    ran = run(*asked, "-f", "json")
     assert ran.exit_code in (0, 1)
     validator.validate(json.loads(ran.stdout))
 
 
 def test_a_check_of_a_file_with_faults_keeps_it(validator: Draft7Validator) -> None:
-    ran = CliRunner().invoke(kurbel, ["check", "-", "-f", "json"], input=BROKEN)
+    ran = run("check", "-", "-f", "json", text=BROKEN)
     found = json.loads(ran.stdout)
     assert (ran.exit_code, found["machine"], len(found["findings"]) >= 5) == (2, None, True)
     validator.validate(found)

@@ -1,7 +1,5 @@
 """CSV and JSON for scripts: exact, readable by other readers, to the letter of the contract."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

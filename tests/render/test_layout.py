@@ -1,7 +1,5 @@
 """The printed page: golden files, widths, blocks, characters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

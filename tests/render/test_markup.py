@@ -1,16 +1,13 @@
 """Markup: every text is escaped, and LaTeX uses nothing but what article, booktabs and longtable know."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from kurbel.cli import kurbel
+from command import run
 from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
@@ -79,7 +76,7 @@ def test_no_quantity_has_a_character_that_latex_does_not_know() -> None:
 )
 def test_an_article_takes_it_in_and_nothing_is_too_wide(words: str, tmp_path: Path) -> None:
     command = [str(CONFIGS.get(word, word)) for word in words.split()]
-    done = CliRunner().invoke(kurbel, [*command, "-f", "latex", "-o", str(tmp_path / "tables.tex")])
+    done = run(*command, "-f", "latex", "-o", tmp_path / "tables.tex")
     assert done.exit_code == 0
     body = "\\usepackage{booktabs,longtable}\\begin{document}\\input{tables}\\end{document}"
     (tmp_path / "article.tex").write_text(f"\\documentclass{{article}}{body}", encoding="utf-8")

@@ -1,7 +1,5 @@
 """Laws of number formatting."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

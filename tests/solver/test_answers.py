@@ -1,16 +1,12 @@
 """Answers beside the columns of the book: magnitudes, the rod at its pins, points of the rod, places of a value."""
 
-from __future__ import annotations
-
-import json
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from mpmath import mp
 
-from kurbel.cli import kurbel
+from command import answer
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -47,9 +43,7 @@ STRAIGHT = "speed: 60 rpm\ncrank: 400 mm\nrod_ratio: 5\n"
 
 
 def json_of(*words: str, text: str = STRAIGHT) -> dict[str, Any]:
-    result = CliRunner().invoke(kurbel, [*words, "-f", "json", "-"], input=text)
-    assert result.exit_code == 0, result.output
-    (part,) = json.loads(result.stdout)["cylinders"]
+    (part,) = answer(*words, "-", text=text)["cylinders"]
     return {column["id"]: column["values"] for column in part["columns"]}
 
 

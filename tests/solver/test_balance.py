@@ -1,7 +1,5 @@
 """Free forces and moments: against 40-digit sums, against the forces inside the machine, by symmetry and by law."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

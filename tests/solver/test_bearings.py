@@ -1,11 +1,8 @@
 """Loads on pins and main bearings: against the free forces, against the statics of one throw, by closed form."""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,10 +12,9 @@ from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
-from representative import few
+from representative import CONFIGS, few
 
-CONFIGS = Path(__file__).parents[2] / "configs"
-ENGINE = (CONFIGS / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 SHAFT = """crankshaft: {a: 60 mm, b: 50 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,
              pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, journal_length: 24 mm}
 """

@@ -1,17 +1,12 @@
 """Efficiency as the book uses it (R p. 610–613, Abb. 1062, 1064, 1065): driving pistons pay for the losses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
 from kurbel import load
-from kurbel.cli import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Constant, Indicator
@@ -21,10 +16,10 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.flywheel import MachineTurning
 from machines import AT, STEAM_CARD, constant_pressure
+from representative import CONFIGS
 from turning_machines import of_points
 
-CONFIGS = Path(__file__).parents[2] / "configs"
-TWO_CRANKS = CONFIGS / "waterworks-two-cranks.yaml"
+TWO_CRANKS = CONFIGS["waterworks-two-cranks"]
 ETA = 0.9
 
 STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
@@ -55,10 +50,6 @@ def gas_torque(*pistons: Piston, behind: float = 0.0) -> np.ndarray:
     return turning(Cylinder(ENGINE.mechanism, pistons=pistons, crank_position=behind)).at(ANGLES).M
 
 
-def run(command: str, file: Path, *words: str) -> Result:
-    return CliRunner().invoke(kurbel, [command, str(file), *words])
-
-
 def works() -> Machine:
     """The waterworks engine with both its cranks, without its friction."""
     machine = load(TWO_CRANKS)
@@ -72,16 +63,6 @@ def works() -> Machine:
 def test_the_power_is_that_of_the_steam_less_its_losses_less_the_pumps(eta: float) -> None:
     power = Case(replace(works(), efficiency=eta)).flywheel.power_shaft
     assert power == pytest.approx((eta * 130.7772e3 - 113.0581e3) * 50 / 60, abs=0.1)
-
-
-@pytest.mark.parametrize("command", ["flywheel", "harmonics"])
-def test_too_little_efficiency_is_no_solution(command: str) -> None:
-    found = run(command, TWO_CRANKS, "--set", "efficiency=0.8")
-    assert found.exit_code == 3
-    assert "with the efficiency 0.8 its driving pistons give a mean torque that is" in found.stderr
-    assert "it runs from 'efficiency: 0.8685' on" in found.stderr
-    assert run(command, TWO_CRANKS, "--set", "efficiency=0.8685").exit_code == 0
-    assert run(command, TWO_CRANKS, "--set", "efficiency=0.8684").exit_code == 3
 
 
 # the rule, at every angle

@@ -1,7 +1,5 @@
 """Turning effort and excess work: laws, sums over cylinders, and ΔE against independent high precision."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The exact connecting rod by energy and by a free body written down anew, not by comparison with its own formulas."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

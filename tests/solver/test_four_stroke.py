@@ -1,7 +1,5 @@
 """Cycles of 720°: which line acts when, double-acting and standing, mixed with everything else."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

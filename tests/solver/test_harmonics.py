@@ -1,12 +1,9 @@
 """Orders of the turning effort: against integrals with 40 digits, by laws, and the same effort given by its orders."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -22,10 +19,10 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.harmonics import MachineOrders
 from machines import STEAM_CARD
+from representative import CONFIGS
 from turning_machines import of_points
 
 mp = mpmath.mp
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -73,7 +70,7 @@ def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
 )
 def test_against_torques_of_40_digits(name: str, orders: list[float]) -> None:
     """Cards with corners and jumps: 1e-12 of the largest torque."""
-    machine = Machine((steam(),), speed=50 / 60) if name == "steam" else load(CONFIGS / f"{name}.yaml")
+    machine = Machine((steam(),), speed=50 / 60) if name == "steam" else load(CONFIGS[name])
     machine = replace(
         machine, cylinders=(replace(machine.cylinders[0], friction=None, inclination=None),), efficiency=1.0
     )

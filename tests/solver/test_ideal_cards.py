@@ -1,7 +1,5 @@
 """Ideal cards: work against 50 digits and against the closed forms of the textbooks; corners, faults, consistency."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import mpmath

@@ -1,16 +1,12 @@
 """Efforts of which the swing of energy alone is known, loads by harmonics, and cycles of several turns."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kurbel
-from kurbel.cli import kurbel as command
 from kurbel.solver.case import Case
 
 CYLINDERS = """
@@ -67,26 +63,6 @@ def test_swings_in_a_sweep_are_those_of_single_machines() -> None:
     for id in ("dE", "delta", "omega_max"):
         assert np.asarray(rows[id])[:3].tolist() == pytest.approx([one[id] for one in alone], rel=1e-15)
     assert np.isnan(np.asarray(rows["delta"])[3])  # it stalls
-
-
-def test_check_lists_what_a_swing_leaves_out() -> None:
-    text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    told = CliRunner().invoke(command, ["check", "-"], input=text).output
-    assert "computed  ΔE, δ\n" in told
-    assert "power: no mean torque given" in told
-
-
-def test_every_command_knows_a_swing() -> None:
-    text = "{speed: 300 rpm, effort: {swing: 20 kJ}, flywheel: {inertia: 500 kg m2}}"
-    for arguments, status in (
-        (["check"], 0),
-        (["flywheel"], 0),
-        (["report"], 0),
-        (["harmonics"], 2),
-        (["accuracy"], 0),
-    ):
-        result = CliRunner().invoke(command, [*arguments, "-"], input=text)
-        assert (result.exit_code, "Traceback" in result.output) == (status, False), result.output
 
 
 def test_a_load_by_harmonics_is_that_by_many_points() -> None:

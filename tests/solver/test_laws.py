@@ -1,7 +1,5 @@
 """Laws that hold for every machine: energy, equilibrium, one-sided values at jumps, and complete lists of angles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

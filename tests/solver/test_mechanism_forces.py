@@ -1,7 +1,5 @@
 """Forces of every mechanism by the law of virtual work, and what each mechanism has of its own."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

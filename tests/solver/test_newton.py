@@ -1,7 +1,5 @@
 """Newton's law for every body sees a fault in any of the forces, and nothing where they are right."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -63,7 +61,7 @@ def exact(state: State) -> ExactRod:
 LOSSES = State.losses.func
 COUPLE = State.rod_couple.func
 FAULTS: dict[str, tuple[Any, str, Any]] = {
-    "side of the guide friction in N": (State, "below", property(wrong_side)),
+    "side of the guide friction in N": (State, "guide_denominator", property(wrong_side)),
     "weight of the rod's part at the pin in T": (State, "_rod_tangential", property(wrong_weight)),
     "turning of the rod on the pin": (
         State,

@@ -1,9 +1,6 @@
 """Friction in the pins of the rod and in the journals: closed forms, the free rod, and the balance of energy."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +11,9 @@ from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import on_crosshead_pin, on_pin
-from representative import few
+from representative import CONFIGS, few
 
-ENGINE = (Path(__file__).parents[2] / "configs" / "gas-engine.yaml").read_text("utf-8")
+ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
 RUBS = """friction: {crosshead: 0.05, crank_pin: 0.05, crosshead_pin: 0.06, crosshead_pin_diameter: 180 mm,
            journals: 0.04}
 """
@@ -67,15 +64,15 @@ def test_a_rod_without_mass_is_in_equilibrium_with_friction_at_both_its_ends(deg
     at_crosshead = -along - 1j * (-across)  # of the crosshead on the rod; N > 0 lies on the guide away from +i
     at_crank = -(-radial + 1j * tangential) * turned  # of the pin on the rod
     assert abs(at_crosshead + at_crank) <= 1e-12 * FORCE
-    unrubbed = state.unrubbed
+    frictionless = state.without_pin_friction
     assert state.rubbing is not None
     slope = 0.4 * math.cos(math.radians(degrees)) / math.sqrt(1 - (0.4 * math.sin(math.radians(degrees))) ** 2)
-    crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in on_pin(unrubbed)))
-    crosshead_pin = 0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(unrubbed)))
+    crank = 0.05 * 0.030 * math.hypot(*(float(one[0]) for one in on_pin(frictionless)))
+    crosshead_pin = 0.06 * 0.020 * math.hypot(*(float(one[0]) for one in on_crosshead_pin(frictionless)))
     couple = crank + math.copysign(crosshead_pin, slope)
     moment = ((crosshead - pin).conjugate() * at_crosshead).imag + couple
     assert abs(moment) <= 1e-12 * FORCE
-    journals = 0.03 * 0.035 * math.hypot(*(float(one[0]) for one in on_pin(unrubbed)))
+    journals = 0.03 * 0.035 * math.hypot(*(float(one[0]) for one in on_pin(frictionless)))
     assert state.M[0] == pytest.approx(0.1 * tangential - crank - journals, rel=1e-12)
 
 

@@ -1,15 +1,10 @@
 """Several pistons on one rod: their forces, works and mean pressures, and pistons driven by a rocker."""
 
-from __future__ import annotations
-
-import json
-
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import kurbel
-from kurbel.cli import kurbel as command_line
+from command import answer, run
 
 STEAM = """
 stroke: 800 mm
@@ -92,7 +87,7 @@ def test_sweeps_have_each_piston_and_levers_of_both_signs() -> None:
 
 def test_limits_of_one_piston() -> None:
     text = engine(more="limits: {pump.mean_pressure: -3 bar, piston.power: 1 kW}\n")
-    found = CliRunner().invoke(command_line, ["check", "-"], input=text)
+    found = run("check", "-", text=text)
     assert found.exit_code == 1
     assert "pump.mean_pressure" in found.output
     assert "piston.power" in found.output
@@ -100,11 +95,10 @@ def test_limits_of_one_piston() -> None:
 
 
 def test_json_and_table_show_every_piston() -> None:
-    run = CliRunner().invoke(command_line, ["forces", "-", "-f", "json"], input=engine())
-    steam, pump = json.loads(run.output)["cylinders"][0]["pistons"]
+    steam, pump = answer("forces", "-", text=engine())["cylinders"][0]["pistons"]
     assert (steam["name"], pump["name"]) == ("piston", "pump")
     assert {one["id"] for one in pump["key_values"]} == {"work", "power", "mean_pressure"}
-    table = CliRunner().invoke(command_line, ["forces", "-"], input=engine()).output
+    table = run("forces", "-", text=engine()).output
     assert "Each piston" in table
-    listed = CliRunner().invoke(command_line, ["forces", "-", "--key-values", "-f", "csv"], input=engine()).output
+    listed = run("forces", "-", "--key-values", "-f", "csv", text=engine()).output
     assert listed.startswith("key_value,unit")

@@ -1,7 +1,5 @@
 """The rod load of compressors (API 618, 6.6), against mpmath, by law, and as a user asks for it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

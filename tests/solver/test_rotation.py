@@ -1,7 +1,5 @@
 """Sense of rotation: which guide carries the crosshead of a lying machine (R p. 602), and what the throw feels."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,9 +1,6 @@
 """Torsional vibration of shaft lines: natural frequencies by 60 digits, Holzer's table, and forced vibration."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -17,7 +14,7 @@ from kurbel.machine_file import load
 from kurbel.solver.case import Case
 from kurbel.solver.chain import Chain, Modes, holzer_at, response
 from kurbel.solver.torsion import ShaftVibration
-from representative import few
+from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
 """Fixed ends."""
@@ -126,7 +123,6 @@ def test_holzer_at_a_frequency(ground: str) -> None:
 
 # forced torsional vibration: order by order, over the angle, by its energy, and with the coupling of the flywheel
 
-CONFIGS = Path(__file__).parent.parent.parent / "configs"
 POINTS = [(0, 100), (60, 900), (60, 500), (180, 100), (240, 700), (360, 100)]
 
 
@@ -199,7 +195,7 @@ def test_the_coupling_of_the_flywheel_where_the_effort_jumps(load: Load | None) 
 
 def test_the_damping_takes_what_the_torques_give() -> None:
     for name in ("generator-coupling", "marine-diesel", "torsional-damper", "coupled-blower"):
-        vibration = Case(load(CONFIGS / f"{name}.yaml")).torsion.vibration
+        vibration = Case(load(CONFIGS[name])).torsion.vibration
         assert vibration.loss[0] > 0
         speeds = 1j * vibration.acting.orders * vibration.omegas[0] * vibration.angles[:, 0]
         power = (vibration.driving[:, 0] * speeds.conj()).real.sum() / 2
@@ -261,7 +257,7 @@ def test_the_mean_torque_goes_to_the_load() -> None:
 
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
     """J + m_pin R² + m mean(x′²), the mean of (1 + λ²/4 + …)/2 with mpmath."""
-    found = Case(load(CONFIGS / "coupled-blower.yaml")).torsion
+    found = Case(load(CONFIGS["coupled-blower"])).torsion
     lam, crank = mpmath.mpf(1) / 5, mpmath.mpf("0.2")
 
     def slope(phi: Any) -> Any:

@@ -1,7 +1,5 @@
 """Measured traces: work, pressures, many cycles, exponents, volumes, level, the motored dead centre, and the brake."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -18,6 +16,7 @@ import pytest
 from click.testing import CliRunner
 from scipy.integrate import quad
 
+from command import run
 from indicated import RATIO, Engine, absolute, columns_file, cycles, fraction, indicated
 from kurbel.cli import kurbel
 from kurbel.errors import MachineFileError, UsageError
@@ -318,7 +317,7 @@ def test_one_cycle_and_each_cycle(tmp_path: Path) -> None:
 def test_cycles_that_are_not_there(tmp_path: Path, columns: int, options: list[str], said: str) -> None:
     angles, each = many()
     file = machine(tmp_path, np.column_stack((angles, each.T)), f", pressure_columns: 2-{columns}")
-    ran = CliRunner().invoke(kurbel, ["forces", str(file), *options])
+    ran = run("forces", file, *options)
     assert (ran.exit_code, said in " ".join(ran.output.split())) == (2, True)
 
 
@@ -337,7 +336,7 @@ def test_volume_over_pressure_is_the_work(tmp_path: Path) -> None:
     """∮ p dV of the csv with x, V and p is A_i; dV is the slope of V."""
     file = machine(tmp_path, TABLE, ", clearance: 1/14")
     step = ["--step", "0.5", "-f", "csv", "--columns", "x,V,dV,p_head,dp_head"]
-    rows = list(csv.DictReader(io.StringIO(CliRunner().invoke(kurbel, ["forces", str(file), *step]).stdout)))
+    rows = list(csv.DictReader(io.StringIO(run("forces", file, *step).stdout)))
     phi, x, V, dV, p, dp = (np.array([float(row[name]) for row in rows]) for name in rows[0])
     assert pytest.approx(AREA * (x + STROKE / 14), rel=1e-12) == V
     assert pytest.approx(AREA * STROKE * (fraction(phi) + 1 / 14), rel=1e-9) == V

@@ -78,16 +78,3 @@ def test_constant_force_has_closed_works() -> None:
     assert forces.friction_works["guides"] == pytest.approx(math.pi * 0.07 * P * R**2 / GUIDES, rel=1e-12)
     assert forces.loss_guides == pytest.approx(math.pi * 0.07 * R / (2 * GUIDES), rel=1e-12)
     assert forces.work_block == pytest.approx(2 * 0.09 * P * R * (1 - 0.07 * R / GUIDES), rel=1e-12)
-
-
-def test_a_batch_is_its_machines() -> None:
-    machine = kurbel.loads(TEXT + "friction: {guides: 0.07, block: 0.09, crank_pin: 0.05}\n")
-    names = ["work_block", "loss_guides", "work_crank_pin", "T_max", "dE"]
-    given = {"friction.guides": [0.0, 0.02, 0.07, 0.1], "friction.block": [0.0, 0.03, 0.0, 0.2]}
-    found = kurbel.sweep(machine, given, names)
-    for row, (guides, block) in enumerate(zip(*given.values())):
-        alone = case(f"guides: {guides}, block: {block}, crank_pin: 0.05")
-        for name in names[:4]:
-            value = alone[name]
-            assert found[name][row] == pytest.approx(getattr(value, "value", value), rel=1e-12, abs=1e-12)
-        assert found["dE"][row] == pytest.approx(alone.flywheel.dE, rel=1e-12)

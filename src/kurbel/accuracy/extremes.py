@@ -20,7 +20,7 @@ from kurbel.machine import Machine
 
 
 class Probe(NamedTuple):
-    """One case, as a line of the table has it."""
+    """One case: a line of the table."""
 
     case: str
     machine: str
@@ -69,9 +69,9 @@ def noisy_trace() -> str:
 def verdicts(
     cases: list[Probe], compute: Callable[[str, str], float | None], loads: Callable[[str], Machine]
 ) -> Iterator[Verdict]:
-    """Yield the verdict on each case. What is no KurbelError is a fault of the program.
+    """Yield the verdict on each case. Any exception except KurbelError is a fault of the program.
 
-    compute: runs the program: text of the machine, requested quantity -> its value, or None where it is left out.
+    compute: runs the program: (text of the machine, requested quantity) -> its value, or None if it is left out.
     """
     for case in cases:
         text, expected, missed, answer = text_of(case), case.expected, None, None
@@ -81,7 +81,7 @@ def verdicts(
             message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
             words = expected.removeprefix(status)
             passed = expected.startswith(status) and words in message
-            end = max(message.find(words) + len(words), 72)  # as much is shown as holds what was expected
+            end = max(message.find(words) + len(words), 72)  # the part with the expected words is shown
             observed = status + (message if end >= len(message) else message[end - 72 : end] + " …")
             expected = expected if words else status + "any message"
         except Exception as error:
@@ -96,7 +96,7 @@ def verdicts(
 
 
 def _missed(case: Probe, text: str, answer: float | None, loads: Callable[[str], Machine]) -> tuple[str, float | None]:
-    """Return what is expected, and by how many units of the last place an answer misses it."""
+    """Return the expected value, and the error of an answer in units of the last place."""
     with mp.workdps(2 * DIGITS if case.asked.startswith("motion") else DIGITS):
         truth = reference(loads(text), case.asked) if case.expected == "reference" else mp.mpf(case.expected)
         expected = mp.nstr(truth, 20) if truth else "0"
@@ -107,7 +107,7 @@ def _missed(case: Probe, text: str, answer: float | None, loads: Callable[[str],
 
 
 def reference(machine: Machine, asked: str) -> Number:
-    """Return a requested quantity by the textbook, in SI, to the digits that mpmath is set to."""
+    """Return a requested quantity by the textbook, in SI, with the precision set in mpmath."""
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     if command != "motion":

@@ -98,7 +98,7 @@ class TextbookCylinder:
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
         self.motion, self.turns = TextbookMotion(cylinder.mechanism), CYCLES[machine.cycle_of(cylinder)]
         self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
-        masses, friction, lean = cylinder.masses, cylinder.friction, machine.lean_of(cylinder)
+        masses, friction, lean = cylinder.masses, cylinder.friction, machine.inclination_of(cylinder)
         rod = masses.connecting_rod if masses else None
         rod_mass, share = (mpf(rod.mass), mpf(rod.share)) if rod else (mpf(0), mpf(0))
         self.mass = mpf(masses.parts if masses else 0.0) + rod_mass * share

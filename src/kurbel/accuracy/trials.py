@@ -81,7 +81,7 @@ class Saving(NamedTuple):
 
 
 def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial], list[tuple[str, str]]]:
-    """Return the rows of a machine, of its motion at crank angles, and what could not be examined and why."""
+    """Return the trials of a machine, with its motion at these crank angles, and (quantity, why) for omitted ones."""
     rows: list[Trial] = []
     lacking: list[tuple[str, str]] = []
     with mp.workdps(DIGITS):

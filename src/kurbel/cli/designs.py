@@ -89,7 +89,7 @@ def sweep(**options: Any) -> None:
     """Compute key values for many designs of the machine in FILE: one row each, inputs and results.
 
     Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
-    gives 'limits', each row says whether it keeps them, and which is the first that it breaks.
+    gives 'limits', each row shows whether it keeps them, and the first one that it breaks.
     """
     from kurbel.cli.sweeping import SweepOptions, run
 

@@ -107,7 +107,7 @@ class _Kurbel(click.Group):
 
 
 def message_of(error: KurbelError) -> str:
-    """Return what went wrong; of a machine file all faults, their source lines cut to what fits a terminal."""
+    """Return the message of an error; for a machine file all faults, with source lines cut to the terminal's width."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
     return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text)
@@ -118,7 +118,7 @@ def _stderr_look() -> Look:
 
 
 def to_stderr(message: str) -> None:
-    """Write a message to standard error, in characters that it has; nothing where it is full or closed."""
+    """Write a message to standard error in its encoding; nothing if it is full or closed."""
     try:
         click.echo("\n".join(_stderr_look().text(line) for line in message.splitlines()), err=True)
     except (OSError, ValueError):
@@ -126,9 +126,9 @@ def to_stderr(message: str) -> None:
 
 
 class Progress:
-    """A line on the terminal of standard error that tells what is done, and how long the rest will take.
+    """A progress line on standard error: what is being computed, and the remaining time.
 
-    It comes after two seconds and is gone at the end; in a pipe and on a CI service there is none.
+    It appears after two seconds and disappears at the end; in a pipe and on a CI service there is none.
     """
 
     def __init__(self, command: str) -> None:
@@ -137,7 +137,7 @@ class Progress:
         self._next = self._begun + _PATIENCE
 
     def __call__(self, doing: str, share: float = 0.0) -> None:
-        """Tell what is being done; share: what is done of all, 0 if it is not known."""
+        """Show what is being done; share: completed share of all, 0 if unknown."""
         now = monotonic()
         if not self._shown or now < self._next:
             return
@@ -147,7 +147,7 @@ class Progress:
         self._write(f"kurbel {self._command}: {doing}{f', {minutes} left' if share else ''}")
 
     def counted(self, items: Iterable[Item], what: str, count: int) -> Iterator[Item]:
-        """Yield the items, so many of what they are."""
+        """Yield the items and show how many of them are done; what: their name in the plural."""
         with self:
             for number, one in enumerate(items):
                 self(f"{number} of {count} {what}", number / max(count, 1))

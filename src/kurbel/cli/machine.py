@@ -23,7 +23,7 @@ from kurbel.cli.options import (
     units_option,
     where_option,
 )
-from kurbel.declared.unit_systems import told_in
+from kurbel.declared.unit_systems import messages_in
 
 if TYPE_CHECKING:
     from kurbel.cli.request import Request
@@ -38,7 +38,7 @@ def _with_request(command: Callable[..., None]) -> Callable[..., None]:
         from kurbel.cli.request import Request
 
         own = {name: options.pop(name) for name in Request.__annotations__ if name in options}
-        with told_in(units or "metric"):
+        with messages_in(units or "metric"):
             system = units or ("si" if output.look.format in ("csv", "json") else "metric")
             command(Request(click.get_current_context().info_name or "", units=system, output=output, **own), **options)
 
@@ -47,13 +47,11 @@ def _with_request(command: Callable[..., None]) -> Callable[..., None]:
 
 
 machine_places = stacked(machine_file, part_options, units_option, output_options, _with_request)
-"""Gives a command FILE and the options of one that has nothing over the crank angle; see `machine_table`."""
+"""Adds FILE and the options of a command without a table over the crank angle; see `machine_table`."""
 machine_table = stacked(
     machine_file, angle_options, columns_option, part_options, units_option, output_options, _with_request
 )
-"""Gives a command FILE and all options of a table, which reach it as one `Request`."""
-
-
+"""Adds FILE and all options of a table, which the command gets as one `Request`."""
 cases_option = click.option(
     "--cases", is_flag=True, help="A row of key values for every load case of FILE, those of --columns if given."
 )
@@ -65,7 +63,7 @@ cases_option = click.option(
 def motion(request: "Request") -> None:
     """Print the motion of every cylinder's mechanism in FILE over one turn of the crank, and the key values.
 
-    What slides has x, c, b; what swings has theta, theta_dot, theta_ddot. Without a speed in FILE only the
+    A sliding output has x, c, b, a swinging one theta, theta_dot, theta_ddot. Without a speed in FILE only the
     positions are printed.
     """
     from kurbel.report.crank import motion_report
@@ -87,7 +85,7 @@ def forces(request: "Request", cycle: int | None, each_cycle: bool, spreads: Spr
     """Print the forces in the crank train over the working cycle, and the key values, for every cylinder of FILE.
 
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
-    count positive. At a jump of the pressure the value just after it stands in the table.
+    count positive. At a jump of the pressure the table has the value just after it.
     """
     from kurbel.report.crank import forces_report
 
@@ -123,10 +121,9 @@ def flywheel(request: "Request", spreads: Spreads) -> None:
 def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
     """Print the forces on the bearings of a crankshaft with one throw, and the stresses in pin, webs and journals.
 
-    Stresses are listed one by one in the dead centre under the full piston force, in the position of the largest
-    torque, and where each place is strained most over the whole cycle; combined after Bach (sigma_res) and after
-    von Mises (sigma_v). FILE needs 'crankshaft', one
-    cylinder and a pressure.
+    Stresses are listed for each place: in the dead centre under the full piston force, at the largest torque, and at
+    the largest stress of the place over the whole cycle; combined after Bach (sigma_res) and after von Mises
+    (sigma_v). FILE needs 'crankshaft', one cylinder and a pressure.
     """
     from kurbel.report.crank import stress_report
 
@@ -139,9 +136,9 @@ def stress(request: "Request", places_only: bool, spreads: Spreads) -> None:
 def bearings(request: "Request") -> None:
     """Print the loads on crank pins, crosshead pins and main bearings over the cycle.
 
-    The direction of each load is told in the frames of throw, engine and rod; key values are the largest, smallest
-    and mean load, pressures, p v, and what of the surfaces is never loaded. Main bearings need 'crankshaft', whose
-    throw stands for every throw of a machine with several. --cylinder takes the name of a pin or bearing.
+    The direction of each load is given in the frames of throw, engine and rod; key values are the largest, smallest
+    and mean load, pressures, p v, and the arcs of the surfaces that are never loaded. Main bearings need 'crankshaft',
+    whose throw is used for every throw of a machine with several. --cylinder takes the name of a pin or bearing.
     """
     from kurbel.report.crank import bearings_report
 
@@ -155,10 +152,10 @@ def bearings(request: "Request") -> None:
 def balance(request: "Request", orders_only: bool) -> None:
     """Print the unbalanced forces and moments on the frame of FILE, and the counterweights against them.
 
-    F_x is the free force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90 degrees
-    on in the sense of rotation; M_x and M_y are their moments along the shaft; M_roll rolls the frame about it. The
-    orders tell them as circles that turn with the crank and against it; what cancels is exactly 0. The best weights
-    stand for those of FILE.
+    F_x is the unbalanced force along the stroke line of cylinder 1, outward from the shaft, F_y that across it, 90
+    degrees on in the sense of rotation; M_x and M_y are their moments along the shaft; M_roll rolls the frame about
+    it. Each order is a vector that turns with the crank and one that turns against it; an order that cancels is
+    exactly 0. The best counterweights replace those of FILE.
     """
     from kurbel.report.balance import balance_report
 
@@ -196,7 +193,7 @@ def harmonics(request: "Request", orders: tuple[float, ...] | None, speeds: tupl
     "--at",
     type=frequency,
     metavar="'F Hz'",
-    help="Holzer's table at this frequency, with what it leaves, not of a mode.",
+    help="Holzer's table at this frequency, with its residual torque, instead of a mode.",
 )
 def torsion(
     request: "Request",
@@ -208,9 +205,9 @@ def torsion(
 ) -> None:
     """Print natural frequencies, Holzer's table, and critical speeds of the shaft line.
 
-    Where damping and torques are given, also the steady vibration: torque and stress in every piece at the working
-    speed, all orders together, and at the critical speeds that the machine meets, with orders up to 24; --columns
-    M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'.
+    Where damping and torques are given, also the steady vibration: torque and stress in every shaft segment at the
+    working speed, all orders together, and at the critical speeds that the machine meets, with orders up to 24;
+    --columns M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'.
     """
     from kurbel.report.turning import Wanted, torsion_report
 
@@ -227,8 +224,8 @@ def torsion(
 def delivery(request: "Request") -> None:
     """Print what the pumps and compressors of FILE deliver.
 
-    Of pumps the flow over the crank angle, its mean, how much it swings, and what air vessels and pipes make of it;
-    of compressors capacity, mass flow and temperature of every end and stage, by their ideal cards.
+    Of pumps the flow over the crank angle, its mean and fluctuation, and the effect of air vessels and pipes; of
+    compressors capacity, mass flow and temperature of every end and stage, by their ideal cards.
     """
     from kurbel.report.delivery import delivery_report
 

@@ -22,7 +22,7 @@ _MOST_STEPS = 10_000
 
 
 def _read(parse: Callable[..., float], *given: str) -> float:
-    """Return what is parsed; what cannot be is a bad parameter."""
+    """Return the parsed value; raises BadParameter for a text that cannot be parsed."""
     try:
         return parse(*given)
     except UnitError as error:
@@ -31,7 +31,7 @@ def _read(parse: Callable[..., float], *given: str) -> float:
 
 def number(text: str | float) -> float:
     """Return a finite number with a decimal point, also 10/3 or 75 %."""
-    return _read(parse_ratio, text) if isinstance(text, str) else text  # what holds where it is not given
+    return _read(parse_ratio, text) if isinstance(text, str) else text  # the default is a number
 
 
 def numbers(text: str) -> tuple[float, ...]:
@@ -42,7 +42,7 @@ def numbers(text: str) -> tuple[float, ...]:
 
 
 def words(text: str) -> tuple[str, ...]:
-    """Return words separated by commas, in the order given, without those that are empty, one at least."""
+    """Return words separated by commas, in the order given, at least one; empty ones are skipped."""
     found = tuple(word.strip() for word in text.split(",") if word.strip())
     if not found:
         raise click.BadParameter(f"'{text}' names no column; leave the option out, or name one")
@@ -58,7 +58,7 @@ def columns(text: str) -> tuple[str, ...]:
         found = called(name, known)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
-        ids.append(found[0] if found else name)  # the report knows what this machine has
+        ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
 
 
@@ -116,7 +116,7 @@ def _quantities() -> Lists:
 
 
 def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable[..., list[str]]:
-    """Return what completes an option by the words that begin like its text; they are looked up when TAB is pressed."""
+    """Return the completion of an option from words, which are looked up when TAB is pressed."""
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
         try:
@@ -134,7 +134,7 @@ def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
 
 
 def _listed(ids: Callable[[str], Iterable[str]]) -> Callable[..., list[str]]:
-    """Return what completes a list of ids of a command, by its word, by those that are not named already."""
+    """Return the completion of a list of ids of a command by those that are not in the list yet."""
 
     def following(ctx: click.Context, begun: str) -> Iterable[str]:
         before, comma, _ = begun.rpartition(",")
@@ -334,22 +334,22 @@ _OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
 """Suffixes that a table may have, and those of machine files, which are refused where they are read."""
 
 
-def format_of(asked: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
-    """Return the format that is asked for, or that of the suffix of the file; UsageError where the two contradict."""
+def format_of(requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
+    """Return the requested format, or that of the suffix of the file; raises UsageError if they contradict."""
     suffix = os.path.splitext(file_name or "")[1].lower()
     of_suffix = suffixes.get(suffix)
-    if not (asked or of_suffix or suffix in _OF_NO_FORMAT):
+    if not (requested or of_suffix or suffix in _OF_NO_FORMAT):
         known = ", ".join(suffixes)
         raise click.UsageError(f"--output {file_name}: no format has this suffix; write {known}, .txt, or --format.")
-    if asked and of_suffix and asked != of_suffix:
+    if requested and of_suffix and requested != of_suffix:
         raise click.UsageError(
-            f"--format {asked} contradicts the name {file_name}, which means {of_suffix}; change one of them."
+            f"--format {requested} contradicts the name {file_name}, which means {of_suffix}; change one of them."
         )
-    return asked or of_suffix or "table"
+    return requested or of_suffix or "table"
 
 
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command the options of what it prints, which reach it as one `output: Output`."""
+    """Add the options of the output to a command, which gets them as one `output: Output`."""
 
     @wraps(command)
     def with_output(

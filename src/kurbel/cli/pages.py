@@ -1,7 +1,6 @@
 """The commands that draw, write a whole page, check, or compare methods: plot, report, check, accuracy."""
 
-import os
-import time
+import sys
 
 import click
 
@@ -21,8 +20,7 @@ from kurbel.cli.options import (
     width_option,
 )
 from kurbel.render import Look
-from kurbel.render.output import refuse_overwriting, write_out
-from kurbel.render.page import write_entries
+from kurbel.render.output import refuse_overwriting
 
 
 @click.command()
@@ -49,31 +47,17 @@ def report(
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
     """
-    from kurbel.cli.request import case_of, cases_of
-    from kurbel.machine_file.overrides import given
-    from kurbel.render.report_page import report_page
-    from kurbel.report.whole import side_by_side, whole_report
+    from kurbel.cli.showing import write_page
 
     if len(files) > 2 or files.count("-") > 1:
         raise click.UsageError("a report is of one machine, or of two side by side.")
     if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
         raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    if file_name is None and sys.stdout and sys.stdout.isatty():  # a page of HTML is nothing to read there
+        raise click.UsageError("a report is a page for the browser; give --output NAME.html, or - for this terminal.")
     refuse_overwriting(file_name, files)
-    cases = [case_of(file, case_name, overrides, file_name) for file in files]
-    keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
-    system = units or "metric"
-    with Progress("report") as progress:
-        if len(cases) == 1:
-            load_cases = cases_of(cases[0].machine) if cases[0].machine.cases and not case_name else []
-            document = whole_report(cases[0], keys[0], system, step, progress, load_cases)
-        else:
-            document = side_by_side(cases, keys, system, progress)
-    document = document._replace(title=title or document.title)
     look = Look("html", comma=decimal == "comma", digits=digits)
-    # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    today = time.strftime("%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime())
-    write_out(report_page(document, look, today), file_name, "utf-8")
+    write_page(files, case_name, overrides, file_name, step, title, units or "metric", look)
 
 
 @click.command()
@@ -107,43 +91,22 @@ def plot(
 ) -> None:
     """Draw pictures of the machine in FILE: those that are named, 'all', or the most informative picture.
 
-    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked where they stand. Without -o
+    Curves are as exact as the tables, jumps are drawn as jumps, and extremes are marked. Without -o
     they are drawn in the terminal, with -o to a file; svg needs no other package, and there the mechanism moves; png
     and pdf need typst. FILE may be - for standard input.
     """
-    from kurbel.cli.request import case_of
-    from kurbel.render.drawing import check_file, draw
+    from kurbel.cli.showing import draw_pictures
     from kurbel.report.picture_source import PictureOptions
-    from kurbel.report.pictures import PICTURES, pictures, pictures_of
 
     if listed and file_name is not None:
         raise click.UsageError("--list draws nothing; leave --output out.")
     if file is None and not listed:
         raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
-    if file_name == "-":
-        file_name = None
-    if size is not None:
-        from kurbel.render.poster import check_poster, draw_poster
-        from kurbel.report.summary import facts_of, subtitle_of, tiles
-
-        size = check_poster(size, file_name)
-        if set(names) - {"mechanism"} or listed:
-            raise click.UsageError("--poster draws the mechanism alone; leave other pictures and --list out.")
-        names = ("mechanism",)
-    elif file_name is not None:
-        check_file(file_name)
-    options = PictureOptions(units or "metric", cylinder, angles)
-    case = None if file is None else case_of(file, case_name, overrides, file_name)
-    if case is None or listed:
-        kinds = PICTURES if case is None else pictures_of(case, options)
-        write_entries([(kind.id, f"{kind.title}. {kind.text}") for kind in kinds])
-        return
     look = Look(comma=decimal == "comma", digits=digits, width=width)
-    drawn = pictures(case, names, options)
-    if size is not None and file_name is not None:
-        facts = tiles(facts_of(case).values(), options.system)
-        return draw_poster(next(drawn), subtitle_of(case.machine), facts, look, file_name, size)
-    draw(drawn, look, file_name)
+    options = PictureOptions(units or "metric", cylinder, angles)
+    draw_pictures(
+        file, case_name, overrides, names, listed, None if file_name == "-" else file_name, size, options, look
+    )
 
 
 @click.command()
@@ -220,7 +183,7 @@ def accuracy(
     if picture is not None:
         check_file(picture, "--plot")
     machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
-    uncertain = data_uncertainty(machine) if machine and machine.uncertainty else ()
+    uncertain = data_uncertainty(machine) if machine and machine.uncertainty else {}
     with Progress("accuracy") as progress:
         report = accuracy_report(machine, quick, loads, uncertain, progress)
     output.write(report)

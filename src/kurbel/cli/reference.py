@@ -19,6 +19,7 @@ from kurbel.cli.options import (
 from kurbel.declared.units import kinds, listed_units
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.render.data import answer_schema
 from kurbel.render.output import write_out
 from kurbel.render.page import write_entries
 from kurbel.report.tables import crank_angles
@@ -108,7 +109,7 @@ def table(
 def friction(incline: float, coefficient: float, direction: float, output: Output) -> None:
     """Print the forces P, relative to the weight Q, that move a body up an inclined plane and that hold it there.
 
-    After Redtenbacher 1862: in the direction that is asked for, and horizontally, where P = Q tan(alpha +- rho) with
+    After Redtenbacher 1862: in the requested direction, and horizontally, where P = Q tan(alpha +- rho) with
     tan rho = f. A negative holding force is one that must push the body down: it rests by its friction alone.
     """
     from kurbel.report.friction import inclined_plane
@@ -187,7 +188,6 @@ def schema(answers: bool, file_name: str | None) -> None:
       # yaml-language-server: $schema=./kurbel.schema.json
     """
     from kurbel.machine_file.schema import json_schema
-    from kurbel.render.data import answer_schema
 
     # escapes instead of Greek: valid in whatever encoding a shell redirects to
     text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"

@@ -68,12 +68,12 @@ class Request:
     cases: bool = False
 
     def given(self, **others: object) -> list[str]:
-        """Return which of these options are given; others: some that only one command has."""
+        """Return which of these options are given; others: options of single commands."""
         named = {"--columns": self.columns, "--angles": self.angles, "--where": self.where, "--over": self.over}
         return [option for option, value in (named | others).items() if value is not None]
 
     def case(self, cycle: int | None = None) -> Case:
-        """Read the machine and return it with its results, none of which is computed yet; cycle: one of a trace."""
+        """Return the machine with its results, each computed on first use; cycle: number of one of a trace."""
         case = case_of(self.file, self.case_name, self.overrides, self.output.file_name)
         return case if cycle is None else Case(of_cycle(case.machine, cycle))
 
@@ -101,7 +101,7 @@ class Request:
         self.write(cases_report(machine, cases_of(machine), self.command, self.units, self.columns))
 
     def frame(self, end: float, parts: int) -> Frame:
-        """Return the frame of the report: rows from 0 to `end` degrees, for each of so many parts, or where wanted."""
+        """Return the frame of the report: rows from 0 to `end` degrees for each of so many parts, or as requested."""
         if self.key_values_only and self.columns:
             raise click.UsageError(
                 "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
@@ -121,7 +121,7 @@ class Request:
         return Frame(self.command, angles, self.columns, self.units, "z" if self.over else "", self.compare, prose)
 
     def write(self, report: Report, case: Case | None = None, spreads: Spreads | None = None) -> None:
-        """Write what is wanted of the report; with these uncertainties of inputs, and those that its file gives."""
+        """Write the requested part of the report; spreads: uncertainties of inputs in addition to those of the file."""
         if self.cylinder is not None:
             report = report.of_cylinder(self.cylinder)
         report = report.key_values_alone() if self.key_values_only else report

@@ -112,6 +112,8 @@ def run(wanted: SweepOptions) -> None:
             to_stderr(left + "; run again with --resume to continue" * resumable)
 
         write_rows(chosen, titles, look, wanted.file_name, early, headed, kept)
+    if not (wanted.columns or named or wanted.summary) and for_people and sys.stdout and sys.stdout.isatty():
+        to_stderr(f"{len(heads)} columns; '--columns ID,ID' prints fewer, '-o rows.csv' writes a file")
 
 
 def _refuse_contradictions(wanted: SweepOptions, written: str, named: bool, in_order: bool) -> None:

@@ -1,4 +1,4 @@
-"""How a key of the machine file is declared, and the records that are made of them: `Key`, `Rule`, `Record`.
+"""How a key of the machine file is declared, and the records made of such keys: `Key`, `Rule`, `Record`.
 
 Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`, …).
 """
@@ -22,12 +22,12 @@ Values = Mapping[str, Any]
 
 
 class Key(NamedTuple):
-    """One key: its form, what it means in one sentence, the textbook symbol, and whether it must stand there.
+    """One key: its form, its meaning in one sentence, the textbook symbol, and whether it is required.
 
-    `absent` says what holds without it. `instead` names another key that says the same thing, so that both together are
-    a contradiction; where that one is required, one of both is. `needs` names a key that must stand beside it. `also`:
-    other words that people try for it. attribute: of the record, that the value becomes; '' for one that only `gives`
-    others: it takes the values by key, and returns those that follow from them.
+    absent: what holds without it. instead: another key that gives the same quantity; both together are a contradiction,
+    and if that one is required, one of the two is. needs: a key that must be given with it. also: other words that
+    people try for it. attribute: of the record, which has the value; '' for a key that only determines others: `gives`
+    takes the values by key and returns these attributes.
     """
 
     form: Form
@@ -49,7 +49,7 @@ class Key(NamedTuple):
         return f"{self.text}{symbol}" + (f"; absent: {self.absent}" if self.absent else "")
 
     def line(self, name: str) -> str:
-        """Return a line of a file that gives it, such as `bore: 450 mm`; '' where it takes more than a line."""
+        """Return a line of a file that gives it, such as `bore: 450 mm`; '' if it takes more than one line."""
         sample = self.example or self.form.example
         return "" if sample == "…" else f"{name}: {sample}"
 
@@ -68,7 +68,7 @@ def required(keys: Keys) -> list[str]:
 
 
 def without(keys: Keys, name: str) -> str:
-    """Return what holds without a key: that it must be given, it or one of others, or else what `absent` says."""
+    """Return what holds without a key: its `absent`, or that it (or an alternative) must be given."""
     key = keys[name]
     either = [name, *(other for other, one in keys.items() if one.instead == name)]
     alone = "must be given" if len(either) == 1 else f"{' or '.join(either)} must be given"
@@ -76,10 +76,10 @@ def without(keys: Keys, name: str) -> str:
 
 
 class Rule(NamedTuple):
-    """What must not be: the entry or path that is wrong, where it is broken, the sentence, and its numbers.
+    """A condition that is an error: the entry or path that is wrong, the condition, the message, and its numbers.
 
-    broken: true where it is, of one machine or of many, (machines,); comparisons with an unknown number, NaN, are not.
-    The sentence has entries and numbers in braces: `{bore}` with its unit, `{x:length}` a number with that of a kind.
+    broken: true if the condition holds, for many machines an array (machines,); an unknown number (NaN) breaks no rule.
+    sentence: the message; braces hold entries and numbers: `{bore}` is written with its unit, `{x:length}` as a length.
     """
 
     place: Union[str, Path]
@@ -90,20 +90,20 @@ class Rule(NamedTuple):
 
     @classmethod
     def of(cls, fault: Fault) -> "Rule":
-        """Return a fault that was found by itself as a rule that is broken."""
+        """Return a broken rule for a fault that was found in another way."""
         return cls(fault.path, True, fault.message, at_key=fault.at_key)
 
     def below(self, *path: Step) -> "Rule":
-        """Return it as seen from further up."""
+        """Return the rule with its place relative to an outer record."""
         return self._replace(place=(*path, *self.path))
 
     @property
     def path(self) -> Path:
-        """Where it is broken, from its record on."""
+        """The place, relative to its record."""
         return self.place if isinstance(self.place, tuple) else (self.place,)
 
     def fault(self, record: "Record | None" = None) -> Fault:
-        """Return what is wrong with a machine, its numbers filled in, also from the entries of a record."""
+        """Return the fault, with numbers of the rule and entries of the record filled into its message."""
 
         def filled(found: re.Match[str]) -> str:
             name, kind = found[1], found[2] or ""
@@ -120,7 +120,7 @@ class Rule(NamedTuple):
 
 
 def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
-    """Yield which keys give the same quantity, or need another key."""
+    """Yield the rules on keys that give the same quantity, or that need another key."""
     for name, key in keys.items():
         other = key.instead
         if name in given and other in given:
@@ -133,7 +133,7 @@ def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
 
 
 def _broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]:
-    """Return what is wrong with one machine; rules on the numbers of many are left to those who have them."""
+    """Return the faults of one machine; rules with arrays of many machines are evaluated by the sweep."""
     return [rule.fault(record) for rule in rules if np.ndim(rule.broken) == 0 and rule.broken]
 
 
@@ -145,7 +145,7 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Record:
-    """A record of the machine file; each entry is said once, by `field` or `alternative`."""
+    """A record of the machine file; each entry is declared once, by `field` or `alternative`."""
 
     KEYS: ClassVar[Keys] = {}
 
@@ -170,16 +170,16 @@ class Record:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in given)})"
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what must not be, beside the bounds of the entries."""
+        """Yield the rules on the values, in addition to the bounds of the entries."""
         return iter(())
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield what must not be of the values by key, before they become a record; some may be REFUSED."""
+        """Yield the rules on the values by key, before they become a record; some may be REFUSED."""
         return iter(())
 
     def faults(self) -> list[Fault]:
-        """Return what is wrong with the record of one machine: the bounds, or else the rules, or what is no number."""
+        """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
         default = {one.name: one.default for one in fields(self)}
         keys = {name: key for name, key in self.KEYS.items() if key.attribute}
         known = {name: (vars(self)[key.attribute], default.get(key.attribute)) for name, key in keys.items()}
@@ -194,10 +194,10 @@ class Record:
 
     @classmethod
     def from_keys(cls, **values: Any) -> Any:
-        """Return the record that the values of these keys make; None is a value that is not given.
+        """Return the record of these values by key; None for a key that is not given.
 
-        What holds for a machine file holds here. Raises RuleError for values that contradict or lack one another, or
-        are out of the bounds of their keys, and for whatever the record refuses.
+        The same checks as for a machine file: raises RuleError for keys that contradict or require one another, for
+        values out of bounds, and for broken rules.
         """
         given = {name: value for name, value in values.items() if value is not None}
         refuse(*_broken(contradictions(cls.KEYS, given)), *_out_of_bounds(cls.KEYS, given))
@@ -206,7 +206,7 @@ class Record:
 
     @classmethod
     def of_keys(cls, *args: Any, **values: Any) -> Any:
-        """Return the record of the values of its keys: its fields, and what its alternatives give."""
+        """Return the record of the values of its keys: its fields, and those that alternatives determine."""
         keys = cls.KEYS
         known = {keys[name].attribute if name in keys else name: value for name, value in values.items()}
         known.pop("", None)
@@ -217,5 +217,5 @@ class Record:
 
     @classmethod
     def faults_of_keys(cls, given: Values) -> list[Fault]:
-        """Return what is wrong with values by key, of which some are REFUSED: contradictions, and rules of others."""
+        """Return what is wrong with values by key, of which some are REFUSED: contradictions and rules on keys."""
         return _broken((*contradictions(cls.KEYS, given), *cls.rules_of_keys(given)))

@@ -8,7 +8,7 @@ from kurbel.errors import UnitError
 NUMBER = re.compile(r"[-+]?(?:(?:0|[1-9][0-9]*)(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 """A number as YAML 1.2 writes it: no leading zero, no underscore, no base 60, no inf."""
 RATIO = rf"({NUMBER.pattern})\s*(?:/\s*({NUMBER.pattern})|%)"
-"""What stands for a number by a division; compiled only where something is no number."""
+"""A quotient or a percentage; compiled only when a text is no plain number."""
 
 WRITTEN = rf"(?:[0-9]{{1,4}}[ -])?{NUMBER.pattern}(?:\s*/\s*{NUMBER.pattern})?"
 """A number before a unit, as inches have it, too: 2 1/4."""
@@ -41,7 +41,7 @@ def plain(text: str) -> str:
 
 
 def parse_number(text: str) -> float:
-    """Return the finite number that `text` is. Raises UnitError that says what to write instead."""
+    """Return the finite number that `text` is; raises UnitError with a fix."""
     number = NUMBER.fullmatch(text) or NUMBER.fullmatch(plain(text))
     if not number:
         raise UnitError(f"expected a number, got '{text}'{_hint(plain(text))}")

@@ -1,6 +1,6 @@
-"""What forms read from: the tree of a machine file, and one pass over it that collects every fault.
+"""What forms read: the tree of a machine file, and one pass over it that collects every fault.
 
-The tree is made of dict, list and texts. Numbers stay text: what a text means is decided by the key it stands under.
+The tree is made of dict, list and texts. Numbers stay text, since their key decides what a text means.
 """
 
 import re
@@ -12,12 +12,12 @@ from kurbel.errors import Fault, Path, RuleError
 from kurbel.quantity import Quantity
 
 Node = Union[str, list["Node"], dict[str, "Node"], "_Reported"]
-"""What stands under a key: a text, a list, a mapping, or REFUSED."""
+"""The value of a key: a text, a list, a mapping, or REFUSED."""
 Tree = dict[str, Node]
 FAULT_LIMIT = 100
-"""A file with more faults than this is not read on: it is no machine file, and suggestions cost time."""
+"""Reading stops at this number of faults: the file is no machine file, and suggestions cost time."""
 LONGEST_VALUE = 200
-"""Characters of a value; what is longer is no number, and would flood the message."""
+"""Most characters of a value; a longer one is no number, and would flood the message."""
 
 
 class Plain(str):
@@ -31,7 +31,7 @@ class _Reported(Enum):
 
 
 REFUSED: Final = _Reported.REFUSED
-"""What stands in place of a value that has been reported already; readers pass over it in silence."""
+"""Replaces a value whose fault has been reported; readers ignore it."""
 
 
 def has_refused(values: Iterable[object]) -> bool:
@@ -40,14 +40,14 @@ def has_refused(values: Iterable[object]) -> bool:
 
 
 class StopReading(Exception):
-    """The rest of the file cannot be read, or has so many faults that reading on would help nobody."""
+    """The rest of the file cannot be read, or there are too many faults."""
 
 
 class Reading:
     """One pass over a machine file, with the faults found so far.
 
-    folder: what paths in the file are relative to; places: every key of a machine file after the words for its place;
-    key_values: those on which figures may be put, by id.
+    folder: to which paths in the file are relative; places: returns (words for its place, key) of every key of a file;
+    key_values: returns the quantities that may have limits and expectations, by id.
     """
 
     def __init__(
@@ -60,13 +60,13 @@ class Reading:
         self._places = places
         self.faults: list[Fault] = []
         self.alike: dict[Path, Path] = {}
-        """Of what takes over the values of another mapping: its path and that of the other."""
+        """Path of a mapping that copies the values of another one (`like`) -> path of the other one."""
 
     def where_it_belongs(self, key: str, path: Path) -> str:
-        """Return where near a path a key may stand, such as "it belongs under 'friction.rings'", or ''.
+        """Return where near a path a key is valid, such as "it belongs under 'friction.rings'", or ''.
 
-        Near are the mappings above it and those right below, or any below where none is near: a key of that name
-        elsewhere means something else.
+        Near are the mappings above the path and those directly below it; if none of these has the key, any further
+        below. A key of that name elsewhere means something else.
         """
         here = [step for step in path if isinstance(step, str)]
         if here[:1] == ["cylinders"]:  # the places are those within a cylinder
@@ -80,9 +80,9 @@ class Reading:
         return "it belongs " + " or ".join(found[:3]) if found else ""
 
     def note(self, fault: Fault) -> Any:
-        """Keep a fault and return REFUSED, which stands for the value that could not be read.
+        """Keep a fault and return REFUSED, which replaces the value that could not be read.
 
-        A fault that was taken over is told once, where it stands.
+        A fault in a copied value is reported once, at the original.
         """
         if self.alike and self._is_known(fault):
             return REFUSED
@@ -95,7 +95,7 @@ class Reading:
         return REFUSED
 
     def _is_known(self, fault: Fault) -> bool:
-        """Return whether a fault is one of values that were taken over, and noted where they stand."""
+        """Return whether a fault is in a copied value and has been reported at the original."""
         others = (
             fault._replace(path=other + fault.path[len(path) :])
             for path, other in self.alike.items()
@@ -108,14 +108,14 @@ class Reading:
         return self.note(Fault(path, message, at_key))
 
     def refuse(self, path: Path, error: RuleError) -> Any:
-        """Keep what was raised for the value at a path, and return REFUSED."""
+        """Keep the faults of an error that was raised for the value at a path, and return REFUSED."""
         for fault in error.faults:
             self.note(fault.below(path))
         return REFUSED
 
 
 def shown(text: str, most: int = 60) -> str:
-    """Write a text from the file so that it fits into one line of a message and cannot steer a terminal."""
+    """Write a text from the file so that it fits into one line of a message, without control characters."""
     if text.isprintable() and len(text) <= most:
         return text
     flat = "".join(c if c.isprintable() else " " if c in "\t\r\n" else f"\\u{ord(c):04x}" for c in text[: most + 1])
@@ -123,7 +123,7 @@ def shown(text: str, most: int = 60) -> str:
 
 
 def kind_of(value: Node) -> str:
-    """Return what a value of the tree is, for 'got …'."""
+    """Return the description of a value of the tree for messages, as in 'got a list'."""
     if isinstance(value, dict):
         return "a mapping" if value else "an empty mapping"
     if isinstance(value, list):
@@ -137,6 +137,6 @@ def is_nothing(value: Node) -> bool:
 
 
 def glued_hint(value: Node) -> str:
-    """Return what to write when a key without a space after its colon hides in a value, or an empty text."""
+    """Return a hint if a value seems to contain a key without a space after its colon, or an empty text."""
     found = re.search(r"\b[A-Za-z_]\w*:\S", value) if isinstance(value, str) else None
     return f"; perhaps a space is missing after the colon of '{found.group().split(':')[0]}'" if found else ""

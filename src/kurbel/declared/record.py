@@ -1,9 +1,8 @@
-"""How a record of the machine file says its entries: one `field` or `alternative` each, and rules beside them.
+"""How a record of the machine file declares its entries: one `field` or `alternative` each, and rules.
 
-A record says `rules`, conditions on its values, and `rules_of_keys`, conditions on what the file has, before there is a
-record. `faults` and `faults_of_keys` are those that one machine breaks; a sweep asks the rules themselves, with arrays.
-Which keys contradict or lack one another follows from `instead` and `needs`: the reader asks that of every file, and a
-record that is also made in Python yields its `contradictions` among its rules.
+A record has `rules`, conditions on its values, and `rules_of_keys`, conditions on the keys of the file, checked before
+the record is made. `faults` and `faults_of_keys` return the rules that one machine breaks; a sweep evaluates the rules
+with arrays. Which keys contradict or require one another follows from `instead` and `needs` (`contradictions`).
 """
 
 import dataclasses
@@ -31,12 +30,12 @@ Made = TypeVar("Made")
 
 @dataclass_transform(frozen_default=True, eq_default=False)
 def record(made: type[Made]) -> type[Made]:
-    """Make a class of entries a record: frozen, equal to nothing but itself, and shown without its defaults."""
+    """Make a class of entries a record: frozen, compared by identity, and shown without its defaults."""
     return dataclasses.dataclass(frozen=True, eq=False, repr=False)(made)
 
 
 def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
-    """Yield rules of which only the first that is broken counts."""
+    """Yield rules so that only the first broken one counts."""
     before: Any = False
     for rule in rules:
         yield rule._replace(broken=rule.broken & np.logical_not(before))
@@ -46,8 +45,8 @@ def first_of(rules: Iterator[Rule]) -> Iterator[Rule]:
 def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more: Any) -> Any:
     """Declare an attribute of a record that is an entry of the machine file.
 
-    form: see `form_of`; text: what it means, in one sentence; symbol: of the textbooks; default: its value where the
-    file has none, None unless it is required; key: its name in the file, if not that of the attribute; more: of `Key`
+    form: see `form_of`; text: its meaning in one sentence; symbol: of the textbooks; default: its value if the file has
+    none, None unless it is required; key: its name in the file, if not that of the attribute; more: of `Key`
     and `form_of`.
 
     >>> @record
@@ -64,10 +63,10 @@ def field(form: Any, text: str, symbol: str = "", *, default: Any = ..., **more:
 
 
 def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
-    """Declare an entry that is no attribute: `gives` returns those that follow from it, from all values by key.
+    """Declare an entry that is no attribute: `gives` takes all values by key and returns the attributes it determines.
 
     key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and
     bounds of `form_of`.
     """
-    said = {name: more.pop(name) for name in Key._fields if name in more}
-    return Key(form_of(form, more), text, symbol, attribute=key, **said)
+    of_key = {name: more.pop(name) for name in Key._fields if name in more}
+    return Key(form_of(form, more), text, symbol, attribute=key, **of_key)

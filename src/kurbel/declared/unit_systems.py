@@ -13,22 +13,22 @@ SYSTEMS: dict[str, dict[str, Any]] = {
     "technical": {name: kind.technical or kind.si for name, kind in KINDS.items()},
     "imperial": {name: kind.imperial or kind.si for name, kind in KINDS.items()},
 }
-"""Unit system -> kind -> the unit in which results are shown, or several, of which the size decides."""
+"""Unit system -> kind -> the unit in which results are shown, or several, chosen by size."""
 SI: dict[str, str] = SYSTEMS["si"]
 _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3, "m^3/h": 10 / 3600}
-"""Base value from which a larger unit is taken, where that is not one of the unit itself."""
+"""Larger unit -> base value from which it is used, if that is not 1 of the unit itself."""
 
-_TOLD: ContextVar[str] = ContextVar("told", default="metric")
+_OF_MESSAGES: ContextVar[str] = ContextVar("system of messages", default="metric")
 
 
 @contextmanager
-def told_in(system: str) -> Iterator[None]:
-    """Let messages, too, tell values in a unit system: they arise where nobody knows of it, as numpy's warnings do."""
-    before = _TOLD.set(system)
+def messages_in(system: str) -> Iterator[None]:
+    """Write values in messages in this unit system; messages arise in code to which no unit system is passed."""
+    before = _OF_MESSAGES.set(system)
     try:
         yield
     finally:
-        _TOLD.reset(before)
+        _OF_MESSAGES.reset(before)
 
 
 def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
@@ -71,11 +71,11 @@ def convert(value: Any, kind: str, unit: str) -> Any:
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:
-    """Write a base value for a message, in the unit in which people are told (`told_in`; metric otherwise).
+    """Write a base value for a message, in a unit of the system of messages (`messages_in`; else metric).
 
     >>> show(0.3, "length"), show(5e5, "pressure"), show(225.819, "torque", figures=2)
     ('300 mm', '5 bar', '230 N m')
     """
-    unit = shown_unit(kind, _TOLD.get(), value)
+    unit = shown_unit(kind, _OF_MESSAGES.get(), value)
     rounded = float(f"{convert(value, kind, unit):.{figures}g}")
     return f"{rounded:.6g} {unit}".rstrip()

@@ -364,7 +364,7 @@ def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
 
 
 def written_unit(text: str) -> str:
-    """Return the unit that a value is written with, as it stands there; '%' of a percentage, '' of a bare number.
+    """Return the unit of a value, as written; '%' of a percentage, '' of a bare number.
 
     >>> written_unit("5.4 at"), written_unit("2 1/4 in"), written_unit("2 %"), written_unit("1/200")
     ('at', 'in', '%', '')

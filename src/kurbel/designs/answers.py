@@ -1,4 +1,4 @@
-"""Key values of many designs, of any command: machines of one structure in batches, the others one by one."""
+"""Key values of many designs, of any command: machines of the same structure in batches, others one by one."""
 
 from collections.abc import Container, Iterator, Sequence
 from typing import Any, NamedTuple, Union
@@ -22,27 +22,27 @@ from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 
 _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
-"""Mechanisms whose formulas take parameters that are arrays."""
+"""Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
-"""Of a card in a batch."""
+"""Most points of a card in a batch."""
 _FEWEST = 3
-"""Machines of one structure; fewer are computed as quickly one by one."""
+"""Fewest machines of a batch; fewer are computed as quickly one by one."""
 AT_ONCE = 500
-"""Machines of a batch: enough to share the overhead of one run; more would only take memory, and time to get it."""
+"""Most machines of a batch: enough to share the overhead of one run; more would only need more memory."""
 
 _LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
-"""Commands with many quantities at the nodes, and machines of a batch for them: 1000 would take a gigabyte."""
+"""Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
 Values = Union[Sequence[Value], str]
-"""The key values of a machine; or the reason why it has none."""
+"""The key values of a machine, or the reason why it has none."""
 
 
 class Answer(NamedTuple):
     """A key value of a command; subject: the cylinder, bearing or machine it belongs to, as the report names it.
 
-    alone: requested of this subject only, as `LP.c_max`; angle: the crank angle of an extreme, not its size.
+    alone: requested for this subject only, as `LP.c_max`; angle: the crank angle of an extreme instead of its value.
     """
 
     quantity: Quantity
@@ -81,14 +81,10 @@ def requested_answers(
             (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
         )
         for one, value in found:
-            angle = (one._replace(angle=True),) if with_angles and _has_angle(value) else ()
+            # other designs may have a value with an angle where this one has an error
+            angle = (one._replace(angle=True),) if with_angles and isinstance(value, (Extreme, KurbelError)) else ()
             once.setdefault(one._replace(alone=False), (one, *angle))
     return tuple(part for parts in once.values() for part in parts)
-
-
-def _has_angle(value: object) -> bool:
-    """Return whether a value occurs at a crank angle, or may do so in other designs."""
-    return isinstance(value, (Extreme, KurbelError))
 
 
 def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
@@ -102,7 +98,7 @@ def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
 
 
 def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
-    """Return the key values of a name, each with its value for this machine, see `_answer`; pistons: theirs, too."""
+    """Return (key value, its value for this machine: see `_answer`) for a name; pistons: also of single pistons."""
     declared = every_quantity().all_key_values
     ids = called(name, declared)
     owner, _, own = name.rpartition(".")
@@ -127,9 +123,9 @@ def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tu
 
 
 def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
-    """Return the value of a key value, None where there is none; or the error, since other designs may have one."""
+    """Return the value of a key value, None if there is none; or the error, since other designs may have a value."""
     try:
-        return None if default and not subject.says(quantity) else subject.answer(quantity)
+        return None if default and not subject.is_printed(quantity) else subject.answer(quantity)
     except KurbelError as error:
         return error
 
@@ -226,6 +222,6 @@ def _alone(machine: Machine, requested: Sequence[Answer]) -> Values:
     try:
         return answered_alone(machine, requested)
     except KurbelError as error:
-        return str(error)
+        return error.reason
     except ArithmeticError as error:
         return f"numeric overflow ({error})"

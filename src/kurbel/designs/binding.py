@@ -1,8 +1,8 @@
-"""Many machines from one machine file and the values of some of its keys, those of one structure in one record.
+"""Many machines from one machine file and values of some of its keys; machines of one structure are one record.
 
-Rows that differ in numbers alone are read once, with arrays (machines,) in the places of numbers; the rules of records
-hold for arrays, too. Words, counts and points of cards are structure: rows that differ in these are read one by one,
-and so is each row that breaks a rule, for its message.
+Rows that differ only in numbers are read once, with arrays (machines,) instead of numbers; the rules of records hold
+for arrays, too. Words, counts and points of cards are structure: rows that differ in these are read one by one, and so
+is each row that breaks a rule, for its message.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -28,18 +28,18 @@ from kurbel.near_words import did_you_mean
 
 
 class Batch(NamedTuple):
-    """Machines of one structure in one record, with arrays (machines,) for numbers that differ; rows: of each."""
+    """Machines of the same structure as one record, with arrays (machines,) of numbers that differ; rows: of each."""
 
     machine: Machine
     rows: Sequence[int]
 
     def one(self, place: int) -> Machine:
-        """Return one of them, counted from 0, alone."""
+        """Return a single machine, counted from 0."""
         return changed(self.machine, lambda numbers: numbers[place].item())  # type: ignore[no-any-return]
 
 
 class Batches(NamedTuple):
-    """Machines of rows counted from 0, those of one structure in one record, or the reason why a row has none."""
+    """The machines of rows, in batches, and the reasons why other rows have none; rows are counted from 0."""
 
     batches: list[Batch]
     failures: dict[int, str]
@@ -68,9 +68,9 @@ class Binder:
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
     def bound(self, rows: Sequence[Sequence[str]], wanted: range | None = None) -> Batches:
-        """Return the machines of rows of texts, those of one structure in one record, and why other rows have none.
+        """Return the machines of rows of texts, in batches, and why other rows have none.
 
-        wanted: places of the rows that are needed, all of them if None; a row that is read alone is read only then.
+        wanted: the rows that are needed, all if None; other rows are not read one by one.
         """
         found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
@@ -94,7 +94,7 @@ class Binder:
         return self._origin._replace(case=case, varied=given[self._cases :])
 
     def _read(self, texts: Sequence[str], reading: Reading) -> Any:
-        """Return the values of the file with these texts, before records are made; REFUSED after noting its faults.
+        """Return the result of the first pass over the file with these texts; REFUSED after reporting its faults.
 
         Raises UsageError for a key that is unknown with these texts.
         """
@@ -118,10 +118,10 @@ class Binder:
             found.batches.append(Batch(machine, [row]))
             return
         faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
-        found.failures[row] = "; ".join(dict.fromkeys(faults))  # equal cylinders have one fault in common
+        found.failures[row] = "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
 
     def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Batch], list[int]]:
-        """Return the machines of rows of the same words, and the rows that must be read by themselves."""
+        """Return the machines of rows with the same words, and the rows that must be read one by one."""
         words = rows[places[0]]
         texts = [first if number else word for first, number, word in zip(self._start, self._numeric, words)]
         reading = reading_of(self._origin)
@@ -138,21 +138,21 @@ class Binder:
             maker = _Maker(reading, values, every, int(read.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(every[-1])
-        # its formulas are those of one machine
+        # a formula works for a single machine only
         except (RuleError, UsageError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError):
             return [], places.tolist()
         if reading.faults:
             return [], places.tolist()
         batches = []
         for at in _structures(machine, np.flatnonzero(~maker.broken)):
-            # what all of them have is a number
+            # a value that all machines have in common becomes a number
             batch = changed(machine, lambda numbers, at=at: _column(numbers[at]))  # type: ignore[misc]
             batches.append(Batch(batch, places[read][at].tolist()))
         return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
 
 
 class _Maker(Maker):
-    """Makes records with arrays (count,) in the places of some numbers; broken: which of the machines break a rule."""
+    """Makes records with arrays (count,) instead of some numbers; broken: which of the machines break a rule."""
 
     def __init__(
         self, reading: Reading, values: dict[tuple[int, str], Any], every: Sequence[Given], count: int
@@ -195,7 +195,7 @@ def _values(
         if form.number is None:
             raise UsageError(f"{key}: no number")
         plain = form.number.numbers(texts)
-        if plain is None:  # one by one, nan for what is none
+        if plain is None:  # one by one, nan for a text that is no number
             known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
             plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
         numbers = np.array(plain)
@@ -234,8 +234,8 @@ def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
 
 
 def _column(values: Array) -> Any:
-    """Return numbers of many machines, or the one that all of them have."""
-    bits = values.view(np.int64)  # 0 and −0 are two
+    """Return an array of many machines, or the number if all have the same."""
+    bits = values.view(np.int64)  # 0 and −0 are different
     return values if (bits != bits[0]).any() else values[0].item()
 
 
@@ -254,7 +254,7 @@ def _every(value: object) -> Iterator[Given]:
 
 
 def _reads(given: Given, name: object) -> bool:
-    """Return whether a record reads the value of a key itself."""
+    """Return whether a key is one of the record itself, and given."""
     return name in given.values and name in given.form.keys
 
 

@@ -1,4 +1,4 @@
-"""The values of one or two keys that give wanted key values, or make a key value least or greatest."""
+"""The values of one or two keys that give required key values, or that make a key value least or greatest."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from kurbel.numerics.search import common_roots, lowest, roots
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
 _ASIDE = 1e-6
-"""Of the range: step from an extreme to a design that shows which bound limits it."""
+"""Share of the range: step from an extreme to a design that shows which bound limits it."""
 
 
 class Varied(NamedTuple):
@@ -334,7 +334,7 @@ def _varied(span: _Span, kind: str) -> Varied:
     ends = [_parsed(f"--vary {key}", text, kind) for text in (low, high)]
     if not ends[0] < ends[1]:
         raise UsageError(f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first")
-    return Varied(key, ends[0], ends[1], unit, kind)
+    return Varied(key, ends[0], ends[1], "" if unit == "%" else unit, kind)  # a share is printed as a sweep prints it
 
 
 def _parsed(where: str, text: str, kind: str) -> float:

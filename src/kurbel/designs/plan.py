@@ -172,19 +172,14 @@ def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]
 
 
 class Plan:
-    """The rows of a sweep, by their number from 0 on; the last axis of a grid runs fastest.
+    """The rows of a sweep, by their number from 0; the last axis of a grid varies fastest.
 
-    axes: the keys that go together on each: their first values make the first place on it, the second ones the second,
-    … side_by_side: all lists are one axis. sample, seed: size and seed of the sample of the distributions.
-    Raises UsageError for lists that do not fit together.
+    axes: for each, the keys that change together along it. side_by_side: all lists form one axis. sample, seed: size
+    and seed of the sample of the distributions. Raises UsageError for lists that do not fit together.
     """
 
     def __init__(
-        self,
-        axes: Sequence[tuple[Input, ...]],
-        side_by_side: bool = False,
-        sample: int | None = None,
-        seed: int = 0,
+        self, axes: Sequence[tuple[Input, ...]], side_by_side: bool = False, sample: int | None = None, seed: int = 0
     ) -> None:
         self.inputs = tuple(one for axis in axes for one in axis)
         self._sample, self._seed = sample, seed

@@ -26,15 +26,14 @@ from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
 
 CHUNK = 1000
-"""Rows that are computed together; a run that starts within a chunk computes it from its beginning."""
+"""Rows computed together; a run that starts within a chunk computes the chunk from its beginning."""
 _FIRST = 20
-"""Rows of the first chunk, so that a reader soon sees something."""
+"""Rows of the first chunk, so that the first lines appear soon."""
 _SLOWLY = 10
-"""Rows that are handed over together where machines are computed one after another."""
+"""Rows returned together if machines are computed one after another."""
 _STARTS = 100
-"""Rows that are tried for one that makes a machine."""
+"""Rows in which the first valid machine is searched for."""
 _GOLDEN = (5**0.5 - 1) / 2
-
 
 Found = TypeVar("Found")
 Cell = Union[Value, str]
@@ -42,11 +41,11 @@ Cell = Union[Value, str]
 
 
 class Spec(NamedTuple):
-    """Everything that defines a sweep, as texts, so that any process can build it.
+    """All that defines a sweep, as texts, so that it can be passed to other processes.
 
-    vary: `KEY=…` each, or several that change together; given: further inputs. columns: ids or symbols; with_angles:
-    next to each extreme its crank angle; system: of units; most: rows, None for any number; cases: every load case of
-    the file; the others: see `Plan`.
+    vary: one or several `KEY=…` each that change together; given: further inputs. columns: ids or symbols; with_angles:
+    next to each extreme its crank angle; system: of units; most: largest number of rows, None for any; cases: all load
+    cases of the file; the others: see `Plan`.
     """
 
     origin: Origin
@@ -63,9 +62,9 @@ class Spec(NamedTuple):
 
 
 class Head(NamedTuple):
-    """A column of the table: its id, the unit of its values, '' for none; input: whether it is what varies.
+    """A column of the table: its id, and the unit of its values, '' for none.
 
-    kind: of the values, '' of texts; listed: whether each is a list of values.
+    input: whether it is an input of the sweep; kind: of the values, '' of texts; listed: each value is a list.
     """
 
     id: str
@@ -76,9 +75,10 @@ class Head(NamedTuple):
 
 
 class Design(NamedTuple):
-    """One design: its number from 1 on, values under the heads (texts, numbers, tuples or None), and why it has none.
+    """One design: its number from 1, and the values of the columns (texts, numbers, tuples or None).
 
-    keeps: whether all limits of the file are kept, None where there are none; broken: the first one that is not.
+    keeps: whether all limits of the file are kept, None if it has none or one cannot be judged; broken: the first limit
+    that is not kept; failure: why there are no values, or which limits cannot be judged.
     """
 
     number: int
@@ -88,7 +88,7 @@ class Design(NamedTuple):
     failure: str = ""
 
     def text(self, name: str) -> str:
-        """Return the text of the row under `keeps`, `broken` or `failure`."""
+        """Return the text of the column `keeps`, `broken` or `failure`."""
         return KEPT[self.keeps] if name == "keeps" else str(getattr(self, name))
 
 
@@ -105,7 +105,7 @@ class Limit(NamedTuple):
 
 
 class Sweep:
-    """Rows of one machine. Raises UsageError where the options define none."""
+    """The rows of one machine file. Raises UsageError for options that define no sweep."""
 
     def __init__(self, spec: Spec) -> None:
         self.spec = spec
@@ -120,7 +120,7 @@ class Sweep:
         self._every = (*self.requested, *(one.answer for one in self._limits))
         self.limited = bool(self._binder.machine.limits)
         self.texts = ("keeps", "broken", "failure") if self.limited else ("failure",)
-        """Heads of the texts after the values, as `Design.text` has them."""
+        """Names of the columns of texts after the values; see `Design.text`."""
 
     def _started(self, keys: Sequence[str]) -> tuple[Binder, tuple[Answer, ...], list[Limit]]:
         """Return the binder, the requested key values, and the limits.
@@ -128,9 +128,8 @@ class Sweep:
         The first valid machine is searched for in the texts of the file itself and in rows of the whole plan.
         """
         rows: Iterable[int] = range(self.rows)
-        if (
-            self.rows > _STARTS
-        ):  # by the golden section: all over the plan, and not at the same value of a key each time
+        if self.rows > _STARTS:
+            # steps of the golden section: all over the plan, without repeating the same value of a key
             rows = (int(self.rows * (number * _GOLDEN % 1)) for number in range(_STARTS))
         starts = chain([written_texts(self.spec.origin, keys)] if self.spec.given else [], map(self.plan.texts, rows))
 
@@ -156,9 +155,9 @@ class Sweep:
 
     @cached_property
     def shown(self) -> list[tuple[str, int]]:
-        """The heads for people, each with the place of its values: key values of cylinders that work alike once.
+        """The heads for people, each with the index of its column: one for the key values of identical cylinders.
 
-        They are equal in every row if they are in one, unless a key of a single cylinder varies, or the load case.
+        Identical cylinders have equal values in all rows, unless the load case or a key of a single cylinder varies.
         """
         heads = [(head.id, place) for place, head in enumerate(self.heads)]
         cylinders = self._binder.machine.cylinders
@@ -191,7 +190,7 @@ class Sweep:
 
     @cached_property
     def _units(self) -> tuple[str, ...]:
-        """Units of the key values, from their sizes for the first machine."""
+        """Units of the key values, chosen by their sizes for the first machine."""
         if self.spec.system == "si":
             return tuple(SI[one.kind] for one in self.requested)
         first = answers_of([Batch(self._binder.machine, (0,))], self.requested)[0]
@@ -236,9 +235,9 @@ class Sweep:
         return keeps, broken, "; ".join(f"limits.{name}: {without(name, id)}" for name, id in unknown.items())
 
     def chunks(self, rows: range) -> Iterator[tuple[range, range]]:
-        """Yield the chunks that these rows are computed in, each with those rows that are wanted of it.
+        """Yield the chunks in which these rows are computed, each with the rows that are wanted of it.
 
-        A row is computed with the same others in every run, since its last digits may depend on their number.
+        A row is computed together with the same rows in every run, since its last digits may depend on their number.
         """
         for start in range(rows.start - rows.start % CHUNK, rows.stop, CHUNK):
             cuts = (start, start + CHUNK) if start else (0, _FIRST, CHUNK)
@@ -249,7 +248,7 @@ class Sweep:
 
     @cached_property
     def _at_once(self) -> int:
-        """Rows that are computed and handed over together: few where each takes long."""
+        """Rows computed and returned together: few if each takes long."""
         return _SLOWLY if any(is_slow(self._binder.machine, one) for one in self._every) else CHUNK
 
 
@@ -260,9 +259,9 @@ def begun(
     answers: Callable[[Machine], Found],
     cases: bool = False,
 ) -> tuple[Binder, Found]:
-    """Return the binder from the first texts that make a machine, and what `answers` returns of that machine.
+    """Return the binder of the first texts that give a valid machine, and the result of `answers` for that machine.
 
-    Raises the error of the first texts where none make one, or the first that two texts have.
+    Raises the error of the first texts if none are valid, or the first error that occurs for two of them.
     """
     failed: list[KurbelError] = []
     for texts in starts:
@@ -272,7 +271,7 @@ def begun(
         except KurbelError as error:
             failed.append(error)
             if isinstance(error, UsageError) and str(error) in map(str, failed[:-1]):
-                raise  # it is of what is wanted, not of these texts
+                raise  # the request is wrong, not these texts
     raise UsageError(str(failed[0])) if isinstance(failed[0], MachineFileError) else failed[0]
 
 
@@ -291,20 +290,19 @@ def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
 
 def _in_unit(column: Sequence[Value], kind: str, unit: str) -> list[Value]:
     """Return values of a kind in a unit; lists as tuples, None for a missing value."""
-    if set(map(type, column)) == {float}:  # as most are
+    if set(map(type, column)) == {float}:  # the usual case
         return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
-    return [
-        tuple(convert(part, kind, unit) + 0.0 for part in one)
-        if isinstance(one, tuple)
-        else None
-        if one is None
-        else convert(one, kind, unit) + 0.0
-        for one in column
-    ]
+
+    def converted(value: Value) -> Value:
+        if isinstance(value, tuple):
+            return tuple(convert(part, kind, unit) + 0.0 for part in value)
+        return None if value is None else convert(value, kind, unit) + 0.0
+
+    return list(map(converted, column))
 
 
 def limits_of(machine: Machine) -> Iterator[Limit]:
-    """Yield the limits of the file, each for all that it holds for; raises UsageError where the machine has none."""
+    """Yield the limits of the file, each for every subject that it applies to; raises UsageError if there is none."""
     case = Case(machine)
     for name, bound in machine.limits:
         try:
@@ -318,7 +316,7 @@ def limits_of(machine: Machine) -> Iterator[Limit]:
 
 
 def broken_of(limits: Sequence[Limit], values: Sequence[Value]) -> Iterator[str]:
-    """Yield the names of the limits that these values break, one for each limit, None where there is none."""
+    """Yield the names of the limits that these values break; values: one for each limit, None if there is none."""
     for (name, one, bound), value in zip(limits, values):
         if not (value is None or isinstance(value, tuple)) and breaks(one.quantity, bound, value):
             yield name
@@ -328,5 +326,5 @@ _sweep = lru_cache(maxsize=4)(Sweep)
 
 
 def computed(spec: Spec, together: range, wanted: range) -> list[Design]:
-    """Return rows of a sweep, in whatever process; a sweep is made once in each."""
+    """Return rows of a sweep, in any process; each process makes a sweep only once."""
     return _sweep(spec).chunk(together, wanted)

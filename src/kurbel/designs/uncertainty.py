@@ -7,7 +7,7 @@ rounding. Where a key value is too nonlinear over the width of an uncertainty, a
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import NormalDist
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,9 +27,6 @@ from kurbel.machine_file.overrides import path_of, tree_of
 from kurbel.report.frame import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
-
-if TYPE_CHECKING:
-    from kurbel.accuracy.trials import Difference
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Sampled machines where the first order does not hold: computed in batches, and where each is computed alone."""
@@ -214,25 +211,19 @@ _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE"
 """Command -> ids of the quantities whose errors of data are compared with other errors."""
 
 
-def data_uncertainty(machine: Machine) -> "tuple[Difference, ...]":
+def data_uncertainty(machine: Machine) -> dict[str, float]:
     """Return the relative uncertainties of motion, work and torques that come from those in a machine's file.
 
-    Of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
+    By symbol, of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
     """
-    from kurbel.accuracy.trials import Difference
-
     inputs = given_uncertainty(machine)
     if inputs is None:
-        return ()
+        return {}
     case = Case(machine)
     requested = [one for command, ids in _COMPARED for one in _numeric_answers(case, command) if one.quantity.id in ids]
     first = [one for one in requested if one.subject in (requested[0].subject, "whole machine")]
     found = [one for one in uncertainties(inputs, first) if one.spread > _NOISE * abs(one.value)]
-    return tuple(
-        Difference(one.answer.quantity.symbol, "standard uncertainties of the file", one.spread / abs(one.value))
-        for one in found
-        if one.value
-    )
+    return {one.answer.quantity.symbol: one.spread / abs(one.value) for one in found if one.value}
 
 
 def _numeric_answers(case: Case, command: str) -> list[Answer]:

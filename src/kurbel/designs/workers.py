@@ -18,9 +18,9 @@ from kurbel.designs.sweep import Design, Spec, Sweep, computed
 from kurbel.errors import KurbelError, UsageError
 
 _FOR_ONE = 5_000
-"""Rows that one process should have at least: about so many are computed while another one starts."""
+"""Least rows of a process: about as many are computed while another process starts."""
 _MOST_JOBS = 4
-"""Processes that are started unless a number is given: the machine may have other work, and each holds the library."""
+"""Most processes started by default: the computer may have other work, and each needs memory for the library."""
 _AHEAD = 3
 """Chunks per worker that are submitted ahead: little is computed that is not yet read."""
 _RETRIES = 5
@@ -41,7 +41,7 @@ def rows_of(
 ) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
-    jobs: processes of this machine; dask: address of a cluster; note: is called with messages for the user.
+    jobs: processes on this computer; dask: address of a cluster; note: is called with messages for the user.
     Raises UsageError for an address that does not answer, KurbelError where a process or the cluster is lost.
     """
     if dask:
@@ -56,7 +56,7 @@ def rows_of(
 
 
 def likely_jobs(rows: int) -> int:
-    """Return how many processes of this machine so many rows are worth."""
+    """Return the number of processes on this computer that is worthwhile for so many rows."""
     # a scheduler may have left this process fewer cores than the machine has
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)

@@ -1,4 +1,4 @@
-"""The machine: one immutable description in SI, complete at birth, from a file or from Python.
+"""The machine: one immutable description in SI, complete when it is made, from a file or in Python.
 
 Records check their own rules and raise RuleError. They hold numbers only; what the numbers lead to is in
 `kurbel.solver`.
@@ -55,7 +55,7 @@ def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder
 
 @record
 class LoadCase(Record):
-    """A load case: values by dotted key, as in the file, that stand there instead of its own."""
+    """A load case: values by dotted key that replace those of the file."""
 
     name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
     values: tuple[tuple[str, Any], ...] = field(
@@ -73,8 +73,8 @@ class Machine(Record):
 
     speed: revolutions per second, None where it is not given; ambient: absolute pressure in Pa; efficiency η of the
     driving side, by which the turning effort is divided where no piston drives; limits: key-value id -> bound in SI;
-    expect: key-value id -> the smallest and the largest value in SI that are met, either id after `machine.` or the
-    name of a cylinder where it is of that one; uncertainty: dotted key -> its standard uncertainty as a text.
+    expect: key-value id -> the smallest and the largest permissible value in SI; in both, an id may have the prefix
+    `machine.` or the name of a cylinder; uncertainty: dotted key -> its standard uncertainty as a text.
     """
 
     _kurbel = alternative(int, "Version of the file format", least=FORMAT, most=FORMAT, absent="1")
@@ -249,14 +249,14 @@ class Machine(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield what is wrong with the shaft line, where other keys could not be read."""
+        """Yield the rules on the shaft line if other keys could not be read."""
         shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
         if has_refused(given.values()) and isinstance(shaft, tuple) and not unknown:
             yield from map(Rule.of, _shaft_faults(shaft, cylinders))
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what must not be of the machine as a whole."""
+        """Yield the rules on the machine as a whole."""
         nothing = not self.cylinders and self.effort is None and self.shaft is None
         none = "the machine has no cylinder: give 'crank' and 'rod', or 'cylinders'"
         yield Rule((), nothing, f"{none}, or 'effort', a given turning-moment diagram")
@@ -314,14 +314,14 @@ class Machine(Record):
         return cylinder.cycle or self.cycle
 
     def cycle_of_piston(self, cylinder: Cylinder, number: int) -> str:
-        """Return the working cycle of a piston of a cylinder, counted from its own one as 0."""
+        """Return the working cycle of a piston of a cylinder; number: 0 for its own, then the tandem ones."""
         cycle = self.cycle_of(cylinder)
         return cylinder.pistons[number].cycle_beside(cycle) if number else cycle
 
     def piston_names(self, cylinder: Cylinder) -> tuple[str, ...]:
-        """Return what the pistons with an indicator are called in figures, where a rod has several: `pump`.
+        """Return the names of the pistons with an indicator, as in limits, if a rod has several: `pump`.
 
-        Of several cylinders each has its own, `cylinder 1.pump`; of equal names all but the first are numbered.
+        With several cylinders the name of the cylinder comes first, `cylinder 1.pump`; equal names are numbered.
         """
         names = [piston.name for piston in cylinder.pistons if piston.indicator]
         own = [f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one for n, one in enumerate(names)]
@@ -346,7 +346,7 @@ class Machine(Record):
         files = (one.files for one in measured if isinstance(one, (Trace, Effort)))
         return tuple(dict.fromkeys(chain(*files)))
 
-    def lean_of(self, cylinder: Cylinder) -> float | None:
+    def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
         inclination = cylinder.inclination
         return inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
@@ -373,7 +373,7 @@ class Machine(Record):
 
 
 def firings(machine: Machine) -> list[tuple[float, int]]:
-    """Return the crank angles of a cycle in degrees at which cylinders fire, each with the number of its cylinder."""
+    """Return (crank angle in degrees, number of the cylinder) for every ignition of a cycle, in order."""
     cycle = 360 * machine.revolutions
     found = []
     for number, cylinder in enumerate(machine.cylinders, 1):
@@ -396,9 +396,9 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
 
 
 def of_cycle(machine: Machine, number: int) -> Machine:
-    """Return the machine with the cycle of this number, counted from 1, of every trace that has several.
+    """Return the machine with one cycle, counted from 1, of every trace that has several.
 
-    Raises UsageError where no trace has so many.
+    Raises UsageError if no trace has several cycles, or one has fewer.
     """
     counts = [len(trace.over(period).samples) for trace, period in _of_several(machine)]
     if not counts:
@@ -417,7 +417,7 @@ def of_cycle(machine: Machine, number: int) -> Machine:
 
 
 def _of_several(machine: Machine) -> Iterator[tuple[Trace, float]]:
-    """Yield the traces of several cycles, each with the degrees of one."""
+    """Yield the traces of several cycles, each with the length of a cycle in degrees."""
     for cylinder in machine.cylinders:
         for index, piston in enumerate(cylinder.pistons):
             period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]

@@ -38,7 +38,7 @@ class _Weight(Record):
 
 @record
 class Counterweight(_Weight):
-    """A weight that turns with the crank; without a place it stands at its cylinder, one of the machine nowhere."""
+    """A weight that turns with the crank; without a place it is at its cylinder, one of the machine has no place."""
 
     angle: float = field(
         "angle",
@@ -54,10 +54,10 @@ class Counterweight(_Weight):
 
 @record
 class SharedCounterweights(Record):
-    """Counterweights opposite each throw, for what turns with it and a share of what goes to and fro.
+    """Counterweights opposite each throw, for the rotating mass and a share of the reciprocating mass.
 
-    planes: two places along the shaft in m between which those of every throw are divided as by a lever, so that they
-    have its force and its moment; empty: each stands at its own throw.
+    planes: two places along the shaft in m; the weight of every throw is divided between them by the lever rule, so
+    that force and moment are the same. Empty: each is at its own throw.
     """
 
     share: float = field(
@@ -114,7 +114,7 @@ class BalanceShaft(_Weight):
 
 @record
 class Locomotive(Record):
-    """The driven wheels of a locomotive, in which its counterweights stand; the cylinders are in their middle."""
+    """The driven wheels of a locomotive, with its counterweights; the cylinders are halfway between them."""
 
     wheel_distance: float = field(
         "length", "Between the counterweights of the left and of the right wheel", above=0, required=True

@@ -1,4 +1,4 @@
-"""Many machines of one structure as one machine, whose numbers are arrays (machines,) where they differ.
+"""Many machines of the same structure as one machine; numbers that differ are arrays (machines,).
 
 The rules of each machine were checked when it was made, and are not checked again here.
 """
@@ -19,7 +19,7 @@ def values_of(record: Any) -> dict[str, Any]:
 
 
 def varies(value: Any) -> bool:
-    """Return whether a value of a record has numbers of many machines; a record keeps where it has them."""
+    """Return whether a value has arrays of many machines; a record remembers which of its fields do."""
     if isinstance(value, np.ndarray):
         return True
     if isinstance(value, tuple):
@@ -35,7 +35,8 @@ def varies(value: Any) -> bool:
 def changed(record: Any, change: Callable[[Array], Any], known: dict[int, Any] | None = None) -> Any:
     """Return a record with every array (machines,) changed, without checking its rules again.
 
-    What has no array stays the same object, and what stands in several places stays one; known: what is changed, by id.
+    Objects without arrays are not copied, and an object in several places stays one object; known: changed objects by
+    id, for the recursion.
     """
     if isinstance(record, np.ndarray):
         return change(record)

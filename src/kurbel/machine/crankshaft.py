@@ -17,7 +17,7 @@ class Crankshaft(Record):
 
     a, b: from the middle of the pin to A and B; web_distance: from there to the middle of each web; flywheel_position:
     from B, positive outward, negative between the bearings. Without the journals' diameter they are not examined.
-    overhung: the pin stands outside of A, on one web beside it.
+    overhung: the pin is outside bearing A, on a single web.
     """
 
     a: float = field(
@@ -138,14 +138,14 @@ class Crankshaft(Record):
 
     @property
     def _rooms(self) -> Iterator[tuple[Any, str]]:
-        """Lengths in m beside the middles of the bearings, with what stands at both ends."""
+        """Distances in m between middles of bearings, pin and flywheel, each with what is at its two ends."""
         yield self.a - self._web_end, "the middle of bearing A and web A"
         if self.overhung:
             yield self.span / 2, "the middle of bearing A and half the way to B"
         else:
             yield self.b - self._web_end, "the middle of bearing B and web B"
-        stands = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
-        yield np.where(stands, abs(self.flywheel_position), np.inf), "the middles of bearing B and flywheel"
+        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
+        yield np.where(has_flywheel, abs(self.flywheel_position), np.inf), "the middles of bearing B and flywheel"
 
     @property
     def place_A(self) -> float:

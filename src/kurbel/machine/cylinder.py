@@ -1,4 +1,4 @@
-"""One cylinder with its mechanism, and which parts fit that: no piston on what only swings, no rod without one."""
+"""One cylinder with its mechanism, and which parts fit it: no piston on a swinging output, no rod without a piston."""
 
 from __future__ import annotations
 
@@ -24,8 +24,7 @@ from kurbel.traces.correct import CYCLES as CYCLES
 Item = TypeVar("Item")
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
-"""Keys of a cylinder that only something that slides can have, besides those of its pistons."""
-
+"""Keys, apart from those of pistons, of a cylinder whose output slides."""
 
 _OTHER_NAMES = {
     **dict.fromkeys(("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"),
@@ -33,11 +32,11 @@ _OTHER_NAMES = {
     **dict.fromkeys(("crank-slider", "crosshead", "trunk-piston"), "slider-crank"),
     "parallelogram": "parallel-crank",
 }
-"""What people call a mechanism -> the word of the machine file."""
+"""Common name of a mechanism -> the word of the machine file."""
 
 
 def counterweights() -> Any:
-    """Return the field of counterweights of a cylinder beside its throw, or of the whole machine."""
+    """Return the field of the counterweights of a cylinder, next to its throw, or of the whole machine."""
     return field(
         OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
         "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
@@ -51,10 +50,10 @@ class Cylinder(Record):
     """One cylinder with its crank mechanism and all that is on the same rod.
 
     pistons: its own first, then the tandem ones; inclination in degrees against the horizontal, None where the weight
-    is left out; crank_position: degrees by which this crank follows crank 1, None in a cylinder from a file that gives
-    none, until the machine has it; bank_angle: degrees from the stroke line
-    of cylinder 1 to its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not
-    known; ram_force, moment: what the output works against, where it slides or only swings. Raises
+    is left out; crank_position: degrees by which its inner dead centre follows that of cylinder 1, None in a cylinder
+    from a file that gives none, until the machine sets it; bank_angle: degrees from the stroke line of cylinder 1 to
+    its own, in the sense of rotation; axial_position: place along the shaft in m, None where it is not known;
+    ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
     """
 
@@ -92,7 +91,7 @@ class Cylinder(Record):
     )
     crank_position: float = field(
         "angle",
-        "Angle by which this crank lags crank 1",
+        "Crank angle by which the inner dead centre of this cylinder follows that of cylinder 1",
         default=0.0,
         absent="0 deg; 360 deg in a four-stroke cycle where the firing intervals are then more even",
     )
@@ -149,8 +148,8 @@ class Cylinder(Record):
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
-    """Yield the rule that no cylinder stands where another one does, on one stroke line and at one place."""
-    message = "stands where '{other}' does, {place:length} along the shaft, on the same stroke line; give another"
+    """Yield the rule that no two cylinders are at the same place along the shaft and on the same stroke line."""
+    message = "is at the place of '{other}', {place:length} along the shaft, on the same stroke line; give another"
     for index, one in enumerate(cylinders):
         rules = []
         for other in cylinders[:index]:
@@ -165,9 +164,9 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
 
 def may_lock(cylinder: Cylinder) -> bool:
     """Return whether the friction of the crosshead is great enough to lock it where it is driven: f tan ψ ≥ 1."""
-    coefficient = cylinder.friction.crosshead if cylinder.friction else None
+    coefficient = (cylinder.friction.crosshead if cylinder.friction else None) or 0.0
     widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
-    return bool(coefficient) and any(coefficient * abs(sin_psi) >= cos_psi for sin_psi, cos_psi in widest)
+    return coefficient > 0 and any(coefficient * abs(float(sin)) >= cos for sin, cos in widest)
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
@@ -238,17 +237,17 @@ def _of_yoke(yoke: ScotchYoke | None, friction: Friction, kind: str) -> Iterator
 
 
 _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")
-"""Keys of a cylinder that say where on the shaft it stands, and what the shaft carries there."""
+"""Keys of a cylinder on its place along the shaft, and on what the shaft carries there."""
 
 
 def work_alike(one: Cylinder, other: Cylinder) -> bool:
-    """Whether two cylinders move and are pushed alike, wherever on the shaft they stand."""
+    """Return whether two cylinders have the same motion and forces, at whatever place along the shaft."""
     keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
     return all(_same(vars(one)[key], vars(other)[key]) for key in keys)
 
 
 def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """Return the items in groups of equal ones, in the order of their first ones."""
+    """Return the items in groups of equal ones, in order of first occurrence."""
     groups: list[list[Item]] = []
     for item in items:
         found = next((group for group in groups if equal(group[0], item)), None)

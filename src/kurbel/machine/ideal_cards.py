@@ -17,9 +17,9 @@ from kurbel.declared.reading import REFUSED, has_refused
 from kurbel.declared.record import Record, Rule, Values, alternative, field, record
 
 CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
-"""A clearance volume over the stroke volume: what a machine can have, and p V^n can be computed with."""
+"""A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
 CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
-"""The same where nothing need be compressed into it: then it may be left out of the theory."""
+"""The same if it may also be 0, which leaves the clearance out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
@@ -68,7 +68,7 @@ def _diagram_factor() -> Any:
 
 
 def _factor_notes(factor: float) -> tuple[str, ...]:
-    """Return what a diagram factor leaves out of the pressures."""
+    """Return the note on what a diagram factor leaves out of the pressures."""
     if factor == 1:
         return ()
     most = f"{100 * (1 - factor):.3g} %"
@@ -76,7 +76,7 @@ def _factor_notes(factor: float) -> tuple[str, ...]:
 
 
 class _TwoStroke(Record):
-    """What the cards of machines of two strokes share: two pressures, one above the other."""
+    """The common part of cards of two-stroke machines: a higher and a lower pressure."""
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
     higher: ClassVar[str]
@@ -89,7 +89,7 @@ class _TwoStroke(Record):
             yield _order(cls.higher, high, cls.lower, low)
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield what does not fit the cycle of the machine, or the absolute pressures."""
+        """Yield the rules on the cycle of the machine, and on absolute pressures."""
         two = f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
         yield Rule((), cycle != "two-stroke", two)
         both = (self.higher, self.lower)
@@ -159,7 +159,7 @@ class Compressor(_TwoStroke):
     expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression", None)
     unloaded: bool = field(
         bool,
-        "Whether the suction valves are held open, so that nothing is delivered; stands beside `compressor`, too",
+        "Whether the suction valves are held open, so that nothing is delivered; may also be given with `compressor`",
         default=False,
         absent="false",
     )
@@ -225,7 +225,7 @@ def _compression_exponent() -> Any:
 
 
 class _Engine(Record):
-    """What the cards of combustion engines share."""
+    """The common part of cards of combustion engines."""
 
     intake: float
     exhaust: float | None

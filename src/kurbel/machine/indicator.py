@@ -24,9 +24,9 @@ from kurbel.machine.measured import Measured
 class Rectangle:
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 
-    level: the pressure on every stroke, None for the ambient; mean: what the expansion line of a chamber that drives
-    stands above it, or, where it is negative, the compression line of one that is driven: p_i. notes: what is to be
-    said of such a card.
+    level: the pressure on every stroke, None for the ambient; mean: the mean indicated pressure p_i, by which the
+    expansion line of a driving chamber (or, if negative, the compression line of a driven one) differs from it. notes:
+    remarks for the user.
     """
 
     level: float | None = None
@@ -36,7 +36,7 @@ class Rectangle:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """That a card which only keeps the work is none that was indicated."""
+        """That such a card has the correct work, but not the true pressures."""
         if not self.mean:
             return ()
         return (
@@ -45,7 +45,7 @@ class Rectangle:
         )
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield what is below the vacuum; lift makes the pressure absolute, in Pa."""
+        """Yield the rule that no pressure is below the vacuum; lift: added to make pressures absolute, in Pa."""
         if self.level is not None:
             below = "{level:pressure} is below the vacuum, which is at {vacuum:pressure}"
             yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
@@ -79,7 +79,7 @@ _POINTS = Points("stroke fraction", "pressure", ratio=True)
 
 
 class Chamber(Protocol):
-    """What stands in one end of a cylinder: a card, an ideal card or a trace."""
+    """The pressure in one end of a cylinder: a card, an ideal card or a trace."""
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -113,7 +113,7 @@ class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
     interpolate: `linear`, or `polytropic`: straight in log p over log V, which needs the clearance volume over
-    the stroke volume. `notes` tells what was tidied up; drawn: whether its points count from an atmospheric line.
+    the stroke volume. `notes`: what was corrected; drawn: whether its points count from an atmospheric line.
     """
 
     _unit = alternative(
@@ -224,7 +224,7 @@ class Card(Record):
 
 
 def _line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
-    """Return what keeps lines from running once through the whole stroke; points that are not on it are told once."""
+    """Return the faults of lines that do not run once through the whole stroke; points outside are reported once."""
     faults = []
     for name, points in lines.items():
         beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]

@@ -22,7 +22,7 @@ from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout
 
 
 class Columns(Record):
-    """How a file of columns is laid out; `what` is measured in it, pressures or torques, beside the angles."""
+    """The layout of a file of columns; `what` was measured over the angles: pressures or torques."""
 
     what: ClassVar[str]
     file = alternative(FILE_PATH, "File with a column of angles in degrees", example="indicator.csv")
@@ -52,7 +52,7 @@ class Columns(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield what contradicts in the layout of a file."""
+        """Yield the rules on keys of the layout that contradict one another."""
         if "file" not in given or has_refused(given.values()):
             return
         key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"

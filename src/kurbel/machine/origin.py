@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from kurbel.declared.reading import LONGEST_VALUE, shown
-from kurbel.errors import Fault, MachineFileError, Path
+from kurbel.errors import Fault, MachineFileError
 
 _LINE_END = r"\r\n|[\n\r\x85\u2028\u2029]"  # what YAML takes for the end of a line, no more
 
@@ -40,19 +40,13 @@ class Origin(NamedTuple):
     def error(self, *faults: Fault) -> MachineFileError:
         """Return these faults as an error, each once and in the order of the file."""
         lines = [*lines_of(self.text), ""]  # the end of a file may be a place, too
-        return MachineFileError(
-            self.name,
-            [
-                fault._replace(path=_shown_path(fault.path), source_line=lines[fault.line - 1])
-                for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column))
-            ],
-        )
+        found = []
+        for fault in sorted(dict.fromkeys(faults), key=lambda fault: (fault.line, fault.column)):
+            path = tuple(shown(step) if isinstance(step, str) else step for step in fault.path)
+            found.append(fault._replace(path=path, source_line=lines[fault.line - 1]))
+        return MachineFileError(self.name, found)
 
 
 def lines_of(text: str) -> list[str]:
     """Return the lines of a text, split where YAML splits them."""
     return re.split(_LINE_END, text)
-
-
-def _shown_path(path: Path) -> Path:
-    return tuple(shown(step) if isinstance(step, str) else step for step in path)

@@ -1,4 +1,4 @@
-"""What belongs to a cylinder: its moving masses, friction, what it works against, a point of its rod, its piston."""
+"""The parts of a cylinder: moving masses, friction, resistance, a point of the rod, the piston."""
 
 import math
 from collections.abc import Iterator
@@ -45,7 +45,7 @@ class ConnectingRod(Record):
         return self.center_of_gravity is not None
 
     def at_crosshead(self, length: float) -> float:
-        """Mass in kg that goes to and fro: the share, or m (1 − a/L) with the length L of the rod in m."""
+        """Reciprocating mass in kg: the share, or m (1 − a/L) with the length L of the rod in m."""
         if self.center_of_gravity is None:
             return self.mass * self.share
         return self.mass * (1 - self.center_of_gravity / length)
@@ -141,17 +141,11 @@ class Masses(Record):
         yield Rule((), not given, none)
 
     def at_pin(self, rod_length: float) -> float:
-        """Mass in kg that turns with the crank pin, with what of a connecting rod of this length in m does."""
+        """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""
         return self.rotating + (self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0)
 
-    @property
-    def reciprocating(self) -> float:
-        """m in kg: all parts and the connecting rod's share (R 298); an exact rod needs `at_crosshead`."""
-        assert self.connecting_rod is None or not self.connecting_rod.exact
-        return self.at_crosshead(math.inf)
-
     def at_crosshead(self, rod_length: float) -> float:
-        """m in kg: all parts and what of a connecting rod of this length in m goes to and fro with them."""
+        """Reciprocating mass m in kg (R 298): all parts, and the share of a connecting rod of this length in m."""
         return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
 
 
@@ -306,7 +300,7 @@ class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
     origin: `crank_pin`, or the other pin as the mechanism calls it; across: positive to the side to which the crank
-    pin stands at φ = 90°.
+    pin is at φ = 90°.
     """
 
     origin: str = field(

@@ -16,10 +16,10 @@ from kurbel.machine.cylinder import CYCLES, Cylinder
 
 @record
 class EqualCylinders(Record):
-    """Cylinders that differ in name, crank position and place only.
+    """Cylinders that differ only in name, crank position and place.
 
     cylinders: with bank angle γ in degrees and place along the shaft in m; firing_order: their numbers, from 1; placed:
-    their crank positions are given; shared: every bank has one cylinder, so that all can stand on one crank pin.
+    their crank positions are given; shared: every bank has one cylinder, so that all can share one crank pin.
     """
 
     _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4")
@@ -38,7 +38,8 @@ class EqualCylinders(Record):
     )
     _spacing = alternative(
         "length",
-        "Distance between neighbouring cylinders of a bank along the shaft; 0 mm: two rods on one pin",
+        "Distance between neighbouring cylinders of a bank along the shaft, the first of every bank at 0; 0 mm: two "
+        "rods at one place; for rods side by side list the cylinders, each with its axial_position",
         least=0,
         absent="unbalanced moments left out",
     )
@@ -74,7 +75,7 @@ class EqualCylinders(Record):
             twice = given["each"].crank_position is not None
             yield Rule(("each", "crank_position"), twice, "'crank_positions' sets it; leave it out")
 
-    def standing(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
+    def positioned(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
         """Return the cylinders with their crank positions; order: of the machine; cycle: of the machine."""
         if order and (self.firing_order or self.placed):
             given = "crank positions are also given" if self.placed else "a firing order is also given"
@@ -104,7 +105,7 @@ def _equal(
     bank_angles: tuple[float, ...] = (0.0,),
     **more: Any,
 ) -> dict[str, Any]:
-    """Return the cylinders that these keys of a machine file describe, and how they stand."""
+    """Return the fields of the record that these keys of a machine file describe."""
     angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
     cylinders = []
     for index, angle in enumerate(angles):
@@ -135,7 +136,7 @@ def in_order(
     cycle: that of the machine.
     """
     if not isinstance(cylinders, tuple):
-        return cylinders.standing(order, cycle)
+        return cylinders.positioned(order, cycle)
     if order:
         return fired(cylinders, order, _degrees(cylinders, cycle), ("firing_order",))
     free = [one.crank_position is None for one in cylinders]
@@ -151,7 +152,8 @@ def _degrees(cylinders: Sequence[Cylinder], cycle: str) -> float:
 def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:
     """Return the cylinders with the crank positions, from cylinder 1, of a firing order over a cycle in degrees.
 
-    Raises RuleError, `where` the order stands, if it does not name each cylinder, and for positions given besides.
+    where: the place of the order, for errors. Raises RuleError if it does not name each cylinder once, and if crank
+    positions are given, too.
     """
     if len(order) != len(cylinders):
         refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)

@@ -105,7 +105,7 @@ Part = Union[ShaftPart, str]
 
 
 def kind_of(part: Part) -> str:
-    """Return what an item of the list is: `mass`, `piece`, `gear` or `ground`."""
+    """Return the kind of an item of the list: `mass`, `piece`, `gear` or `ground`."""
     if isinstance(part, str):
         return GROUND if part == GROUND else "mass"
     for kind, keys in (("mass", _OF_MASS), ("piece", _OF_PIECE)):
@@ -130,7 +130,7 @@ class ShaftSection(NamedTuple):
 class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
-    cylinders: names of those whose cranks stand here; flywheel: how many times J of that of the machine counts here;
+    cylinders: names of those whose cranks are here; flywheel: how many times J of the machine's flywheel counts here;
     ratio: speed of this mass over that of the cranks.
     """
 
@@ -170,7 +170,7 @@ class ShaftLine:
 
 
 def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
-    """Return what is wrong with a list; of one with parts that could not be read what can be told of the others."""
+    """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
     found = _of_cylinders(parts, cylinders)
     if REFUSED in parts:
         return [fault for fault in found if fault.path]
@@ -197,7 +197,7 @@ def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> list[Fault
 
 
 def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield what is wrong with the order of the items."""
+    """Yield the faults in the order of the items."""
     kinds = [kind_of(part) for part in parts]
     for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
         if kind == "piece" and not (before and after):
@@ -218,7 +218,7 @@ def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
 
 
 def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield what there is too much or too little of."""
+    """Yield faults of the whole list: items that are missing, or given too often."""
     kinds = [kind_of(part) for part in parts]
     gears = [index for index, kind in enumerate(kinds) if kind == "gear"]
     grounds = [index for index, kind in enumerate(kinds) if kind == GROUND]
@@ -267,7 +267,7 @@ def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
     ground = {(True, True): "both", (True, False): "before", (False, True): "after"}.get(
         (parts[0] == GROUND, parts[-1] == GROUND), ""
     )
-    # what drives or is driven stands at an end, and is no crank
+    # the driving or driven machine is at an end, and is no crank
     usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
     return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])
 
@@ -282,7 +282,7 @@ def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
 
 
 def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
-    """Return two masses that a pair of gears joins as one."""
+    """Return one mass for the two that a pair of gears joins."""
     return replace(
         mass,
         name=f"{mass.name} + {other.name}",

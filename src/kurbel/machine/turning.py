@@ -195,7 +195,7 @@ class Effort:
 
     @classmethod
     def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
-        """Return the diagram of the points that stand under `points` in a machine file; raises RuleError."""
+        """Return the diagram of the value of `points` in a machine file; raises RuleError."""
         refuse(*(_angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
@@ -213,7 +213,7 @@ class Effort:
 
     @property
     def key(self) -> str:
-        """The key that the torques stand under."""
+        """The key of the torques in the machine file."""
         return "file" if self.files else "points"
 
 
@@ -231,7 +231,7 @@ class Harmonics:
 
     @classmethod
     def of_keys(cls, unit: Factor, mean: float, terms: list[tuple[float, float, float]]) -> "Harmonics":
-        """Return those that stand under `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
+        """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
         up, down = unit
         for index, (order, _, _) in enumerate(terms):
             if not 0 < order <= _HIGHEST:
@@ -283,7 +283,7 @@ Known = Effort | Harmonics | Swing
 
 
 class InUnit(float):
-    """A bare number in the unit that is given beside it."""
+    """A bare number in the unit of the key `unit`."""
 
 
 class _MeanTorque(OneOf):
@@ -364,7 +364,7 @@ class Load(Record):
 
     @property
     def key(self) -> str:
-        """The key that the torques stand under."""
+        """The key of the torques in the machine file."""
         return self.diagram.key if self.diagram else "points"
 
     def cycle_fault(self, cycle: str, turns: int) -> str:

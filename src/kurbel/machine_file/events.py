@@ -1,8 +1,8 @@
-"""From YAML text to dictionaries, lists and texts, event by event, with a guard at every event; and back to places.
+"""From YAML text to dictionaries, lists and texts, event by event; and from a path back to its place in the text.
 
-No nodes of YAML's own: libyaml's loader crashes on deep nesting and is slow on long lists. What a machine file has no
-use for (anchors, aliases, tags, further documents) is refused when its event comes by, before anything is built of it.
-Numbers stay text: what a scalar means is decided by the key that it stands under.
+The loader of libyaml is not used, since it crashes on deep nesting and is slow on long lists. What a machine file does
+not need (anchors, aliases, tags, further documents) is rejected at its event, before anything is built. Numbers stay
+text, since their key decides what a text means.
 """
 
 import re
@@ -17,6 +17,7 @@ from kurbel.errors import Fault, Path, Step
 from kurbel.machine.origin import lines_of
 
 DEPTH_LIMIT = 32
+_TOO_DEEP = f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that"
 _LIKE = "; a cylinder may be 'like: NAME' of another"
 _MOST_SCALARS = 3 * MOST_POINTS
 Place = tuple[int, int]
@@ -24,19 +25,18 @@ Place = tuple[int, int]
 
 
 def parse(text: str, reading: Reading) -> Node:
-    """Return the tree of a YAML text; what is wrong with it as YAML is noted.
+    """Return the tree of a YAML text, after reporting faults of its YAML.
 
-    The tree has REFUSED in place of what was noted; it is REFUSED as a whole when the text could not be read to its
-    end.
+    The tree has REFUSED instead of faulty values; it is REFUSED as a whole if the text could not be read to its end.
     """
     return Parser(text, reading).document()
 
 
 def located(text: str, faults: list[Fault]) -> list[Fault]:
-    """Return faults that have a path each with its place; the text has been read without a syntax error before.
+    """Return faults with the places of their paths; the text has been read without a syntax error before.
 
-    Where the key is not meant, a text or number is pointed at itself, a mapping or list by its key. Of a path that does
-    not exist, the part that does is pointed at.
+    The place of a text or number is its own unless its key is meant; that of a mapping or list is its key. For a path
+    that does not exist it is that of the part that does.
     """
     if not faults:
         return []
@@ -52,9 +52,9 @@ def located(text: str, faults: list[Fault]) -> list[Fault]:
 
 
 class Parser:
-    """Builds the tree of a text and notes what is wrong; locating: also where everything is.
+    """Builds the tree of a text and reports faults; locating: also collects the places.
 
-    keys: places of keys, and of what has no key or no text of its own; values: those of texts.
+    keys: path -> place of keys, and of values that have no key or are no text; values: path -> place of texts.
     """
 
     def __init__(self, text: str, reading: Reading, locating: bool = False) -> None:
@@ -98,7 +98,7 @@ class Parser:
         wrong = self._guard(event)
         if isinstance(event, yaml.CollectionStartEvent):
             if len(self._path) >= DEPTH_LIMIT:
-                self._stop(event, f"nested deeper than {DEPTH_LIMIT} levels; no machine needs that")
+                self._stop(event, _TOO_DEEP)
             found = self._mapping() if isinstance(event, yaml.MappingStartEvent) else self._items()
         return REFUSED if wrong else found
 
@@ -170,7 +170,7 @@ _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
 
 
 def explain(error: Any, lines: list[str]) -> Fault:
-    """Return the fault that an error of the YAML scanner or parser stands for, in a text of these lines."""
+    """Return the fault for an error of the YAML scanner or parser, in a text of these lines."""
     mark = error.problem_mark or error.context_mark
     opened = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete
@@ -187,6 +187,7 @@ def explain(error: Any, lines: list[str]) -> Fault:
     no_start = "cannot start any token" in problem or "node content" in problem
     table = (
         ("tab character" in problem or sign == "\t", here, "a tab in the indentation; indent with spaces"),
+        ("nesting depth" in problem, begin, _TOO_DEEP),
         (
             "quoted scalar" in context and "end of stream" in problem,
             begin,

@@ -15,13 +15,13 @@ from kurbel.near_words import did_you_mean
 
 _NUMBER = "[0-9]{1,9}"
 _FIGURE = re.compile(rf"\s*(limits|expect)\s*\.(.+?)(?:[.[]({_NUMBER})]?)?\s*", re.DOTALL)
-"""A limit or an expectation, before whose key value may stand whose it is; or one of two bounds of it."""
+"""A limit or an expectation, whose key value may have a prefix; or one of its two bounds."""
 
 
 class Override(NamedTuple):
-    """One value in place of that of the file: as it was given, where it belongs, and what stands there.
+    """One value that replaces that of the file: as it was given, its path, and the value.
 
-    place: where in the file it is given itself, () for one from outside.
+    place: its own path in the file, as in a load case; () for one from an option.
     """
 
     given: str
@@ -31,7 +31,7 @@ class Override(NamedTuple):
 
 
 def read_override(text: str, option: str = "--set") -> Override:
-    """Return the override that a text `cylinders.0.bore=450 mm` of an option is; raises UsageError.
+    """Return the override of a text such as `cylinders.0.bore=450 mm`; raises UsageError.
 
     >>> read_override("cylinders.0.bore=450 mm")
     Override(given='--set cylinders.0.bore=450 mm', path=('cylinders', 0, 'bore'), value='450 mm', place=())
@@ -40,12 +40,13 @@ def read_override(text: str, option: str = "--set") -> Override:
     key, equals, value = text.partition("=")
     path = path_of(key)
     if not equals or "" in path:
-        _refused(given, f"write KEY=VALUE, such as {option} cylinders.0.bore='450 mm'")
+        one = f"{option} bore='450 mm'"
+        _refused(given, f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'")
     if any(str(step).endswith(":") for step in path):
         _refused(given, "write KEY=VALUE, without the colon")
-    try:  # an argument has the bytes that its locale does not read as surrogates
+    try:  # bytes that the locale cannot decode are surrogates in an argument
         content = value.encode("utf-8", "surrogateescape")
-    except UnicodeEncodeError:  # those that stand for no byte are reported by the decoder
+    except UnicodeEncodeError:  # surrogates that are no byte are reported by the decoder
         content = value.encode("utf-8", "surrogatepass")
     reading = Reading()
     try:
@@ -177,7 +178,7 @@ def by_numbers(tree: Tree, key: str) -> str:
 
 
 def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
-    """Return a fault with the override that it is of; of another it is said that there are some."""
+    """Return a fault with the override that caused it; any other fault with a list of all overrides."""
     for one in overrides:
         length = len(one.path)
         if [*map(str, fault.path[:length])] == [*map(str, one.path)]:
@@ -186,11 +187,11 @@ def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
                 if one.place
                 else fault._replace(override=one.given)
             )
-    beside = f" (with {', '.join(one.given for one in overrides)})" if overrides else ""
-    return fault._replace(message=fault.message + beside)
+    listed = f" (with {', '.join(one.given for one in overrides)})" if overrides else ""
+    return fault._replace(message=fault.message + listed)
 
 
-# what a file gives, key by key, as it was read: with what is set over it, and nothing guessed
+# what a file gives, key by key, as it was read, with overrides and without defaults
 
 _MOST = 12
 _LONGEST = 160
@@ -202,7 +203,7 @@ def given(origin: Origin) -> tuple[tuple[str, str], ...]:
 
 
 def tree_of(origin: Origin) -> Tree:
-    """Return a file that was read without a fault as mappings, lists and texts, with what is set over it."""
+    """Return the tree of a file that has been read without a fault, with its overrides."""
     tree = parse(origin.text, Reading())
     assert isinstance(tree, dict)
     set_over(tree, origin)
@@ -210,7 +211,7 @@ def tree_of(origin: Origin) -> Tree:
 
 
 def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
-    """Yield the keys of a tree below which no key stands, each by its path with its value: a text or a list."""
+    """Yield (path, value) of the keys of a tree that have no keys below them; a value is a text or a list."""
     if isinstance(node, dict):
         for name, below in node.items():
             yield from leaves(below, (*path, name))
@@ -222,7 +223,7 @@ def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
 
 
 def _short(value: Node) -> str:
-    """Return a value in one line; of a long list its ends, and how many there are."""
+    """Return a value in one line; a long list is shortened to its ends and its length."""
     if not isinstance(value, list):
         text = " ".join(str(value).split())
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
@@ -247,10 +248,10 @@ def case_names(origin: Origin) -> tuple[str, ...]:
 
 
 def rewritten(text: str, values: Mapping[str, str]) -> str:
-    """Return the text of a machine file with texts of values in place of those under dotted keys.
+    """Return the text of a machine file in which the values of these dotted keys are replaced.
 
-    A key that is not there yet comes last in the file, or first in its mapping. Raises UsageError for one of a list or
-    mapping.
+    A new key is added at the end of the file, or at the beginning of its mapping. Raises UsageError for a key whose
+    value is a list or a mapping.
 
     >>> rewritten("crank: 400 mm  # of 1905\\nrod: 2 m\\n", {"crank": "410 mm", "flywheel.inertia": "9 kg m2"})
     'crank: 410 mm  # of 1905\\nrod: 2 m\\nflywheel: {inertia: 9 kg m2}\\n'
@@ -262,7 +263,7 @@ def rewritten(text: str, values: Mapping[str, str]) -> str:
 
 
 def _edit(text: str, path: Path, value: str) -> tuple[int, int, str]:
-    """Return from where to where a value stands, or belongs, and what is to stand there."""
+    """Return start and end of the text to be replaced, and the new text."""
     node = yaml.compose(text, Loader=yaml.SafeLoader)
     for place, step in enumerate(path):
         if isinstance(node, yaml.SequenceNode) and isinstance(step, int) and step < len(node.value):

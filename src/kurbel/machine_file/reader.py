@@ -26,9 +26,9 @@ ROOT = RecordForm(Machine)
 def load(path: str | os.PathLike[str], overrides: Iterable[str] = (), case: str = "") -> Machine:
     """Return the machine that a file describes; "-" is standard input.
 
-    overrides: values in place of those of the file, such as `cylinders.0.bore=450 mm`; case: the name of one of its
-    load cases, over which they are set. Raises UsageError for one that
-    cannot be set, MachineFileError with every fault of the file, UnreadableFileError where there is none to read.
+    overrides: values that replace those of the file, such as `cylinders.0.bore=450 mm`; case: the name of one of its
+    load cases, whose values they replace, too. Raises UsageError for an override that cannot be set, MachineFileError
+    with every fault of the file, UnreadableFileError if the file cannot be read.
     """
     return read_machine(source.read(path)._replace(case=case).set_over(overrides))
 
@@ -48,7 +48,7 @@ def load_cases(origin: Origin, names: Iterable[str]) -> list[Machine]:
 
 
 def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Machine:
-    """Return the machine that a text describes; `name` stands for the file in messages; overrides: see `load`.
+    """Return the machine that a text describes; name: used as the file name in messages; overrides: see `load`.
 
     Raises MachineFileError with every fault of the text.
 
@@ -60,9 +60,9 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
 
 
 def machine_of(given: Any) -> Machine:
-    """Return a machine as it is, that of a file by its path, or that of a text; raises UsageError for anything else.
+    """Return the machine: given itself, as the path of a file, or as a text; raises UsageError for anything else.
 
-    A text has several lines, or braces, or a colon with a blank behind it; a path has none of these.
+    A text has several lines, or braces, or a colon followed by a blank; a path has none of these.
     """
     if isinstance(given, Machine):
         return given
@@ -79,7 +79,7 @@ def key_values() -> Mapping[str, Quantity]:
 
 
 def reading_of(origin: Origin) -> Reading:
-    """Return a pass over a file that has not begun."""
+    """Return a new pass over a file."""
     return Reading(origin.folder, lambda: places(ROOT), key_values)
 
 
@@ -91,14 +91,14 @@ def read_machine(origin: Origin) -> Machine:
 
 
 def read_tree(tree: Node, origin: Origin, reading: Reading) -> Any:
-    """Return what the tree of a file says, before records are made of it; REFUSED after noting its faults."""
+    """Return the result of the first pass over the tree of a file; REFUSED after reporting its faults."""
     return ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
 
 
 def read_values(origin: Origin, reading: Reading) -> Given:
-    """Return what a file says, with the records that were made of it; errors: see `load`; reading: see `reading_of`."""
+    """Return the result of both passes over a file; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
-    known = len(reading.faults)  # YAML has told their places
+    known = len(reading.faults)  # those of YAML, which have their places
     overrides = set_over(tree, origin)
     given = REFUSED
     try:
@@ -119,22 +119,22 @@ def read_values(origin: Origin, reading: Reading) -> Given:
     return given
 
 
-# pressure units that name their zero, such as psia and barg, must agree with what a value counts from; in the tree they
-# are replaced by the units without, so that nothing else needs to have them
+# pressure units that name their zero, such as psia and barg, must agree with the reference of the value; in the tree
+# they are replaced by psi and bar, so that no other code needs to handle them
 
 _COUNTED = {
     "ambient": "absolute",
     "vapour_pressure": "absolute",
     **dict.fromkeys(("offset", "mean_pressure", "drawn"), ""),
 }
-"""Keys whose pressures do not count as the indicator around them says: '' where they are differences."""
+"""Keys whose pressures are not relative to the reference of the indicator: '' for differences of pressure."""
 _ZEROED = re.compile(rf"((?:{WRITTEN})?\s*)({'|'.join(ZEROED_UNITS)})")
 
 
 def _without_zeros(tree: Node, reading: Reading, path: Path = (), counted: str = "") -> Any:
     """Return a tree without such units; one that does not agree with `counted`, gauge or absolute, is a fault.
 
-    Pressures of an indicator count as its `pressures` say, the ambient is absolute, and no others have a zero.
+    Pressures of an indicator are gauge or absolute by its `pressures`, the ambient is absolute, others are neither.
     """
     if isinstance(tree, dict):
         if path[-1:] == ("indicator",):

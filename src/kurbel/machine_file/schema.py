@@ -1,6 +1,6 @@
 """JSON Schema (draft-07) of the machine file, for editors, from the same declarations that the reader reads.
 
-A schema cannot know rules between numbers, such as a rod longer than its crank; it knows keys, shapes, words, units and
+A schema cannot express rules between numbers, such as a rod longer than its crank, but keys, shapes, words, units,
 bounds of bare numbers, and which keys exclude each other.
 """
 
@@ -76,7 +76,7 @@ def _of(form: Form, definitions: Schema) -> Schema:
 
 
 def _reference(name: str) -> Schema:
-    # draft-07 overlooks whatever stands beside a $ref, so it goes into a list of its own
+    # draft-07 ignores everything next to a $ref, so the $ref goes into a list of its own
     return {"allOf": [{"$ref": f"#/definitions/{name}"}]}
 
 

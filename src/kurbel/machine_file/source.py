@@ -31,7 +31,9 @@ def read(path: str | os.PathLike[str]) -> Origin:
             return decode(name, file.read(SIZE_LIMIT + 1), os.path.dirname(name))
     except FileNotFoundError:
         writes = f"'kurbel example {name} > {name}.yaml' writes the shipped machine of this name"
-        hint = writes if name in shipped() else "'kurbel example' lists machines to start from"
+        named = next((f"{name}{end}" for end in (".yaml", ".yml") if name and os.path.isfile(f"{name}{end}")), "")
+        other = f"did you mean '{named}'?" if named else "'kurbel example' lists machines to start from"
+        hint = writes if name in shipped() else other
         what = f"{name or 'the empty name'}: there is no such file; {hint}"
     except IsADirectoryError:
         what = f"{name} is a folder; name the machine file in it"

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import UsageError
@@ -77,18 +77,18 @@ class Turning(NamedTuple):
     A connecting rod or coupler counts its angle τ as φ counts, from the crank pin toward its other pin.
     """
 
-    degrees: Any
-    slope: Any
-    curvature: Any
+    degrees: Number
+    slope: Number
+    curvature: Number
 
 
 class PointMotion(NamedTuple):
     """Place in m of a point from the shaft axis: x along φ = 0, y along φ = 90°; |dr/dφ| and |d²r/dφ²|, in m."""
 
-    x: Any
-    y: Any
-    speed: Any
-    acceleration: Any
+    x: Number
+    y: Number
+    speed: Number
+    acceleration: Number
 
 
 Point = tuple[Any, Any]
@@ -176,15 +176,15 @@ class Mechanism(Record):
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
         raise NotImplementedError
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dq/dφ in m (or rad) per radian."""
         raise NotImplementedError
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²q/dφ² in m (or rad) per radian squared."""
         raise NotImplementedError
 
@@ -199,20 +199,22 @@ class Mechanism(Record):
         """
         passed = np.asarray(displacement, dtype=float)
         inner, outer = (np.full_like(passed, degrees) for degrees in self.dead_centres())
-        ends = ((inner, -passed), (outer, self.stroke - passed))
+        ends = (inner, -passed), (outer, np.asarray(self.stroke - passed))
         (low, f_low), (high, f_high) = ends if outstroke else (ends[1], (inner + 360.0, -passed))
 
         def left(degrees: Array) -> tuple[Array, Array]:
             angle = CrankAngle.of(degrees)
-            return self.coordinate(angle) - self.start - passed, self.slope(angle) * (np.pi / 180)
+            over = np.asarray(self.coordinate(angle) - self.start - passed)
+            return over, np.asarray(self.slope(angle) * (np.pi / 180))
 
         found = bracketed_roots(left, low, high, f_low, f_high)
         # near a dead centre the rounding of the coordinate leaves 1e-6 degrees open
         return np.where(f_low == 0, low, np.where(f_high == 0, high, found))
 
-    def remaining(self, angle: CrankAngle) -> Any:
+    def remaining(self, angle: CrankAngle) -> Number:
         """Return what is left of the stroke to the outer dead centre, s − (q − start), in m (or rad)."""
-        return self.stroke - (self.coordinate(angle) - self.start)
+        left: Number = self.stroke - (self.coordinate(angle) - self.start)
+        return left
 
     @property
     def phi_work(self) -> float:
@@ -230,7 +232,7 @@ class Mechanism(Record):
         """Time ratio of the outstroke (working stroke) to the return stroke, at uniform rotation."""
         return self.phi_work / self.phi_return
 
-    def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any] | None:
+    def rod_angle(self, angle: CrankAngle) -> tuple[Number, Number] | None:
         """Return (sin ψ, cos ψ) of the connecting rod, or None where there is none."""
         return None
 
@@ -277,7 +279,7 @@ class Mechanism(Record):
         """λ = R/L, 0 without a connecting rod."""
         return self.crank / self.rod_length
 
-    def radial(self, angle: CrankAngle) -> Any | None:
+    def radial(self, angle: CrankAngle) -> Number | None:
         """Return D/P, the radial force at the crank pin (positive toward the shaft) over the force at the output."""
         return None
 
@@ -290,7 +292,7 @@ def finite(record: Record, *names: str) -> Iterator[Rule]:
             yield Rule(name, np.logical_not(np.isfinite(value)), "must be finite")
 
 
-def on_circle(radius: Any, cos: Any, sin: Any, centre: Point = (0.0, 0.0)) -> Point:
+def on_circle(radius: Number, cos: Number, sin: Number, centre: Point = (0.0, 0.0)) -> Point:
     """Return the point of a circle in a direction."""
     return centre[0] + radius * cos, centre[1] + radius * sin
 

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
+from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field, record
 from kurbel.declared.unit_systems import show
@@ -64,12 +65,12 @@ class Closure(NamedTuple):
     rocker and diagonal, times the cosine of the angle between them.
     """
 
-    sin: Any
-    cos: Any
-    slope: Any
-    curvature: Any
-    H: Any
-    foot: Any
+    sin: Number
+    cos: Number
+    slope: Number
+    curvature: Number
+    H: Number
+    foot: Number
 
 
 def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle: CrankAngle) -> Closure:
@@ -178,15 +179,15 @@ class FourBar(Mechanism):
         """Return the loop closed at a crank angle."""
         return closed_loop(self.crank, self.coupler, self.rocker, self.frame, angle)
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return θ in radians; where it turns fully, it runs on with φ."""
         return self.swing_at(angle).degrees * (math.pi / 180)
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dθ/dφ."""
         return self.closed_at(angle).slope
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²θ/dφ²."""
         return self.closed_at(angle).curvature
 
@@ -218,14 +219,14 @@ class FourBar(Mechanism):
         """b in m."""
         return self.coupler
 
-    def coupler_force_factor(self, angle: CrankAngle) -> Any:
+    def coupler_force_factor(self, angle: CrankAngle) -> Number:
         """Return the coupler's force over the moment on the rocker, 1/(c sin μ) in 1/m, with sin μ = H/(b c)."""
         return self.coupler / self.frame / self.frame / self.closed_at(angle).H
 
     def transmission(self, degrees: float) -> Extreme:
         """Return the transmission angle μ between coupler and rocker, smallest at 0° and largest at 180°."""
         loop, c = self.closed_at(CrankAngle.of(degrees)), self.rocker / self.frame
-        return Extreme(bearing(loop.H, c * c - loop.foot), degrees)  # b c sin μ and b c cos μ
+        return Extreme(float(bearing(loop.H, c * c - loop.foot)), degrees)  # b c sin μ and b c cos μ
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, coupler and rocker."""

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import (
@@ -112,15 +113,15 @@ class ParallelCrank(Mechanism):
         """Return 0° and 180°, where cranks and coupler lie in one line and the motion is undetermined."""
         return 0.0, 180.0
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return θ = φ in radians."""
         return angle.degrees * (math.pi / 180)
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dθ/dφ = 1."""
         return angle.sin * 0 + 1.0
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²θ/dφ² = 0."""
         return angle.sin * 0
 
@@ -134,7 +135,7 @@ class ParallelCrank(Mechanism):
         joints = {SHAFT: (0.0, 0.0), PIN: pin, "second pin": (pin[0] + self.frame, pin[1]), "second": (self.frame, 0.0)}
         return Sketch(joints, ((SHAFT, PIN), (PIN, "second pin"), ("second pin", "second")), (SHAFT, "second"))
 
-    def coupler_force_factor(self, angle: CrankAngle) -> Any:
+    def coupler_force_factor(self, angle: CrankAngle) -> Number:
         """Return the coupler's force over the torque it passes on, sin φ/R in 1/m, with a second pair at 90°.
 
         Of two equally stiff couplers at 90° each takes a force as its stretch, R sin φ δ, so that the two torques add

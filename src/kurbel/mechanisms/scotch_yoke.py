@@ -1,11 +1,11 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import (
@@ -79,31 +79,31 @@ class ScotchYoke(Mechanism):
         """Return 0° and 180°."""
         return 0.0, 180.0
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return x = R(1 − cos φ) in m, R 287."""
         return self.crank * angle.versine
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R sin φ in m, R 289."""
         return self.crank * angle.sin
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R cos φ in m, R 295."""
         return self.crank * angle.cos
 
-    def block_slope(self, angle: CrankAngle) -> Any:
+    def block_slope(self, angle: CrankAngle) -> Number:
         """Return R cos φ in m: times ω, the speed at which the block slides along the yoke."""
         return self.crank * angle.cos
 
-    def pin_force_factor(self, angle: CrankAngle) -> Any:
+    def pin_force_factor(self, angle: CrankAngle) -> Number:
         """Return the force on the crank pin over P: 1, of the shape of the angle."""
         return angle.sin * 0 + 1.0
 
-    def radial(self, angle: CrankAngle) -> Any:
+    def radial(self, angle: CrankAngle) -> Number:
         """Return D/P = cos φ, R 302 with ψ = 0."""
         return angle.cos
 
-    def guide_pair_factor(self, angle: CrankAngle) -> Any | None:
+    def guide_pair_factor(self, angle: CrankAngle) -> Number | None:
         """Return R sin φ/l_g: the couple of P on piston and pin, over the distance of the guides; None without it."""
         return None if self.guide_length is None else self.crank / self.guide_length * angle.sin
 

@@ -1,4 +1,4 @@
-"""Slider-crank (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
+"""Slider-crank, straight or offset (gerader und geschränkter Schubkurbeltrieb), R ch. 14 B."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, Values, alternative, field, record
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
-from kurbel.numerics.arithmetic import bearing, every, sqrt, total, ulp, where
+from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
 _INFINITE = (("infinite", math.inf),)
 
@@ -24,14 +24,14 @@ def crank_field() -> Any:
 
 
 def stroke_instead(gives: Callable[[Values], dict[str, Any]]) -> Any:
-    """Return the entry of the stroke that stands for the crank; gives: the crank, from all values by key."""
+    """Return the field of the stroke, given instead of the crank; gives: the crank, from all values by key."""
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
 
-def _book(id: str, kind: str, text: str, formula: Callable[[Any, Any, Any], Any], omega: int = 0) -> Offer:
-    """Return what the books have in place of a column, by their formula for R = 1; they have none with an offset."""
+def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Number], Number], omega: int = 0) -> Offer:
+    """Return the first-order approximation of a column; formula: for R = 1. With an offset the books have none."""
 
-    def factor(one: Any, angle: CrankAngle) -> Any:
+    def factor(one: Any, angle: CrankAngle) -> Number | None:
         return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
 
     return Offer(on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id), factor, omega)
@@ -62,8 +62,8 @@ class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
     crank: R in m; rod: L in m, `math.inf` for the infinite rod; offset: e in m of the stroke line from the shaft axis,
-    positive toward the side where the crank pin runs on the outstroke. sin ψ = (R sin φ − e)/L; it turns fully for
-    L > R + |e|. Raises RuleError otherwise.
+    positive toward the side of the crank pin on the outstroke. sin ψ = (R sin φ − e)/L. The crank turns fully for
+    L > R + |e|; otherwise RuleError is raised.
     """
 
     crank: float = crank_field()
@@ -120,7 +120,7 @@ class SliderCrank(Mechanism):
         yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
         if not np.any(apart):
             return
-        # three lengths that add up as people write them miss each other as floats by this; two by nothing
+        # rounding: decimal lengths with L = R + |e| exactly may differ by this as floats; without an offset they do not
         rounding = where(self.offset == 0, 0.0, ulp(rod) + ulp(offset) / 2)
         short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= rounding)
         numbers = {"reach": offset}
@@ -142,15 +142,15 @@ class SliderCrank(Mechanism):
         return every(self.offset == 0) or every(self.rod == math.inf)
 
     @cached_property
-    def _gaps(self) -> tuple[Any, ...]:
-        """(L − R + e)/L and (L − R − e)/L, how far sin ψ stays from 1 and from −1; (L + R + e)/L and (L + R − e)/L."""
+    def _gaps(self) -> tuple[float, ...]:
+        """(L − R + e)/L and (L − R − e)/L, the least 1 − sin ψ and 1 + sin ψ; (L + R + e)/L and (L + R − e)/L."""
         if every(self.rod == math.inf):
             return 1.0, 1.0, 1.0, 1.0
         sums = ((crank, offset) for crank in (-self.crank, self.crank) for offset in (self.offset, -self.offset))
         return tuple(total(self.rod, *both) / self.rod for both in sums)
 
     @cached_property
-    def _reaches(self) -> tuple[Any, Any]:
+    def _reaches(self) -> tuple[float, float]:
         """√((L+R)² − e²)/L and √((L−R)² − e²)/L: the crosshead's distances from the shaft at the dead centres."""
         beyond, within, above, below = self._gaps
         return sqrt(above * below), sqrt(beyond * within)
@@ -167,14 +167,14 @@ class SliderCrank(Mechanism):
         outer, inner = self._reaches
         return bearing(self.offset / self.rod, outer), 180.0 + bearing(self.offset / self.rod, inner)
 
-    def rod_angle(self, angle: CrankAngle) -> tuple[Any, Any]:
+    def rod_angle(self, angle: CrankAngle) -> tuple[Number, Number]:
         """Return (sin ψ, cos ψ) with sin ψ = (R sin φ − e)/L."""
         if angle.rod is not None:
             return angle.rod
         lam, gaps = self.lam, self._gaps
         if self.straight:  # 1 − λ² sin²φ without its cancellation
             return lam * angle.sin, sqrt(angle.cos * angle.cos + gaps[0] * gaps[2] * (angle.sin * angle.sin))
-        near = 1 + abs(angle.sin)
+        near = 1 + magnitude(angle.sin)
         far = angle.cos * angle.cos / near
         up = angle.sin >= 0
         # 1 − sin ψ and 1 + sin ψ, each as a gap plus λ(1 ∓ sin φ), both positive
@@ -183,14 +183,14 @@ class SliderCrank(Mechanism):
         return lam * angle.sin - self.offset / self.rod, sqrt(below_one) * sqrt(above_minus_one)
 
     def coupler_at(self, angle: CrankAngle) -> Turning:
-        """Return the rod, which leads from the crank pin to the crosshead in the direction −ψ."""
+        """Return the rotation of the rod, whose direction from crank pin to crosshead is −ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
         slope = formulas.rod_slope(angle.cos, cos_psi, self.lam)
         curvature = formulas.rod_curvature(angle.sin, sin_psi, cos_psi, slope, self.lam)
         return Turning(bearing(-sin_psi, cos_psi), -slope, -curvature)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
-        """Return crank, rod and crosshead, whose line runs e from the shaft; for an infinite rod a Scotch yoke."""
+        """Return crank, rod and crosshead, whose line is e from the shaft; for an infinite rod a Scotch yoke."""
         if math.isinf(self.rod):
             return yoke_sketch(self.crank, angle)
         far = self.rod * self._reaches[0]
@@ -214,7 +214,7 @@ class SliderCrank(Mechanism):
         start = CrankAngle.of(self.dead_centres()[0])
         return start._replace(rod=self.rod_angle(start))
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0.
 
         With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
@@ -225,9 +225,9 @@ class SliderCrank(Mechanism):
         start = self._start
         sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
-        # sine and cosine of half of θ, both perhaps with the other sign, which their products do not see
+        # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
         sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
-        large = sqrt((1 + abs(cos)) / 2)
+        large = sqrt((1 + magnitude(cos)) / 2)
         small = sin / (2 * large)
         half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
         middle_sin = start.sin * half_cos + start.cos * half_sin
@@ -235,29 +235,30 @@ class SliderCrank(Mechanism):
         bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
         return self.crank * (2 * half_sin * bracket)
 
-    def remaining(self, angle: CrankAngle) -> Any:
-        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), which keeps its digits."""
+    def remaining(self, angle: CrankAngle) -> Number:
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), without cancellation."""
         if not self.straight:
             return super().remaining(angle)
         lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
         return self.crank * (angle.vercosine * (1 - lead))
 
-    def _lead(self, angle: CrankAngle, cos_psi: Any) -> Any:
-        """Return cos ψ + λ cos φ without offset; for cos φ < 0 as ρ/(cos ψ − λ cos φ), where ρ = 1 − λ²."""
-        sum_of_both = cos_psi + self.lam * abs(angle.cos)
+    def _lead(self, angle: CrankAngle, cos_psi: Number) -> Number:
+        """Return cos ψ + λ cos φ without cancellation, for e = 0; for cos φ < 0 as (1 − λ²)/(cos ψ − λ cos φ)."""
+        sum_of_both = cos_psi + self.lam * magnitude(angle.cos)
         return where(angle.cos >= 0, sum_of_both, self._gaps[0] * self._gaps[2] / sum_of_both)
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R sin(φ+ψ)/cos ψ in m, R 288; without offset R sin φ (cos ψ + λ cos φ)/cos ψ."""
         sin_psi, cos_psi = self.rod_angle(angle)
         if self.straight:
             return self.crank * (angle.sin * self._lead(angle, cos_psi) / cos_psi)
         return self.crank * (angle.sin + angle.cos * sin_psi / cos_psi)
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R [cos(φ+ψ)/cos ψ + λ cos²φ/cos³ψ] in m: exact, where R 291 is its first-order form.
 
-        Without offset as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ ρ sin²φ/cos³ψ], whose terms have one sign for cos φ < 0.
+        For e = 0 as R [cos φ (cos ψ + λ cos φ)/cos ψ − λ (1 − λ²) sin²φ/cos³ψ], whose terms have one sign for
+        cos φ < 0.
         """
         sin_psi, cos_psi = self.rod_angle(angle)
         cube = cos_psi * cos_psi * cos_psi
@@ -267,7 +268,7 @@ class SliderCrank(Mechanism):
         bend = self.lam * (angle.cos * angle.cos) / cube
         return self.crank * (angle.cos - angle.sin * sin_psi / cos_psi + bend)
 
-    def radial(self, angle: CrankAngle) -> Any:
+    def radial(self, angle: CrankAngle) -> Number:
         """Return D/P = cos(φ+ψ)/cos ψ, R 302."""
         sin_psi, cos_psi = self.rod_angle(angle)
         return angle.cos - angle.sin * (sin_psi / cos_psi)
@@ -275,8 +276,8 @@ class SliderCrank(Mechanism):
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees at which x (n,) in m is passed on the outstroke or the return stroke.
 
-        From the triangle shaft, pin, crosshead by half angles, so that no digit is lost near the dead centres.
-        Cards over the stroke need it for every point, of every design of a sweep: a search takes fifty times as long.
+        From the triangle shaft, pin, crosshead by half angles, accurate near the dead centres. In closed form, since
+        every point of a card over the stroke needs it, and a search takes fifty times as long.
         """
         lam, passed, whole = self.lam, displacement / self.crank, self.stroke / self.crank
         eps, (outer, inner) = self.offset / self.rod, self._reaches

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
+from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, alternative, field, record
 from kurbel.declared.unit_systems import show
@@ -35,19 +36,19 @@ class Lever(NamedTuple):
     reach: distance of the pin from the pivot over the longer of r and e.
     """
 
-    sin: Any
-    cos: Any
-    reach: Any
-    slope: Any
-    curvature: Any
+    sin: Number
+    cos: Number
+    reach: Number
+    slope: Number
+    curvature: Number
 
 
 class Ram(NamedTuple):
     """The ram over the length of the lever: its place, its derivative by θ, and minus the derivative of that."""
 
-    place: Any
-    lead: Any
-    bend: Any
+    place: Number
+    lead: Number
+    bend: Number
 
 
 @record
@@ -191,7 +192,7 @@ class SlottedLever(Mechanism):
             crank * angle.sin / reach, cos, reach, crank * _sum_along(crank, frame, -gap, angle) / square, bend
         )
 
-    def _ram(self, sin: Any, cos: Any) -> Ram:
+    def _ram(self, sin: Number, cos: Number) -> Ram:
         """Return the ram where the lever is at (sin θ, cos θ), by the link's angle γ, sin γ = (h − cos θ)/l.
 
             x = sin θ − l(1 − cos γ)      x′ = cos(θ + γ)/cos γ      −x″ = sin θ + cos θ tan γ + sin²θ/(l cos³γ)
@@ -267,19 +268,19 @@ class SlottedLever(Mechanism):
         """−s/2: x, and θ of what swings, count from the middle of the stroke; where it turns fully from φ = 0."""
         return 0.0 if self.turns else -self.stroke / 2
 
-    def coordinate(self, angle: CrankAngle) -> Any:
+    def coordinate(self, angle: CrankAngle) -> Number:
         """Return x of the ram in m from the middle of its stroke: R_l sin θ for the fork head; θ without a ram."""
         if not self.slides:
             return self.swing_at(angle).degrees * (math.pi / 180)
         lever = self._lever_at(angle)
         return self._end * (self._ram(lever.sin, lever.cos).place - sum(self._places) / 2)
 
-    def slope(self, angle: CrankAngle) -> Any:
+    def slope(self, angle: CrankAngle) -> Number:
         """Return dx/dφ = R_l θ′ cos(θ + γ)/cos γ in m; for the fork head R_l r (r + e cos φ)(e + r cos φ)/ρ³."""
         lever = self._lever_at(angle)
         return self._end * (lever.slope * self._ram(lever.sin, lever.cos).lead) if self.slides else lever.slope
 
-    def curvature(self, angle: CrankAngle) -> Any:
+    def curvature(self, angle: CrankAngle) -> Number:
         """Return d²x/dφ² = R_l [θ″ dx/dθ + θ′² d²x/dθ²] in m."""
         lever = self._lever_at(angle)
         if not self.slides:
@@ -289,22 +290,21 @@ class SlottedLever(Mechanism):
 
     # the block on the crank pin
 
-    def block_slope(self, angle: CrankAngle) -> Any:
+    def block_slope(self, angle: CrankAngle) -> Number:
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
         return -self.crank * self._shares[1] * angle.sin / self._lever_at(angle).reach
 
-    def pin_force_factor(self, angle: CrankAngle) -> Any:
+    def pin_force_factor(self, angle: CrankAngle) -> Number | None:
         """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
         if not self.slides:
             return None
         lever = self._lever_at(angle)
         return self._end / max(self.crank, self.frame) * self._ram(lever.sin, lever.cos).lead / lever.reach
 
-    def radial(self, angle: CrankAngle) -> Any:
+    def radial(self, angle: CrankAngle) -> Number | None:
         """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
-        if not self.slides:
-            return None
-        return -self.pin_force_factor(angle) * (self._shares[1] * angle.sin / self._lever_at(angle).reach)
+        force = self.pin_force_factor(angle)
+        return None if force is None else -force * (self._shares[1] * angle.sin / self._lever_at(angle).reach)
 
     # what readers see of it
 
@@ -354,6 +354,6 @@ class SlottedLever(Mechanism):
         return tuple(found)
 
 
-def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Any:
+def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Number:
     """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
     return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field, record
 from kurbel.mechanisms import Offer, finite, own_force
@@ -92,7 +93,7 @@ class YokeFrame(SliderCrank):
         yield from SliderCrank.rules(self)
         yield from finite(self, "gland")
 
-    def bending_arm(self, angle: CrankAngle) -> Any | None:
+    def bending_arm(self, angle: CrankAngle) -> Number | None:
         """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.
 
         The rod is taken as held by this stuffing box alone, which is on the safe side.

@@ -5,31 +5,31 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Truth
+from kurbel.arrays import N, Number, Truth
 
 
-def is_number(value: Any) -> bool:
+def is_number(value: object) -> bool:
     """Return whether a value is a float, or a number that brings its own operations."""
     return isinstance(value, (float, int)) or hasattr(value, "sqrt")
 
 
-def sqrt(value: Any) -> Any:
+def sqrt(value: N) -> N:
     """Return the square root of a float, an array, or any number with its own `sqrt` (as those of mpmath)."""
     if isinstance(value, (float, int)):
         return math.sqrt(value)
     if hasattr(value, "sqrt"):
-        return value.sqrt()
+        return value.sqrt()  # type: ignore[no-any-return]
     return np.sqrt(value)
 
 
-def where(condition: Any, value: Any, otherwise: Any) -> Any:
+def where(condition: Truth, value: N, otherwise: N) -> N:
     """Return `value` where the condition holds and `otherwise` elsewhere; shapes as for numpy.where."""
     if not getattr(condition, "ndim", 0):
         return value if condition else otherwise
-    return np.where(condition, value, otherwise)
+    return np.where(condition, value, otherwise)  # type: ignore[return-value]
 
 
-def bearing(sin: Any, cos: Any) -> Any:
+def bearing(sin: N, cos: N) -> N:
     """Return the direction of (cos, sin) in degrees, from −180 to 180, of floats or arrays.
 
     >>> bearing(1.0, 0.0)
@@ -40,11 +40,16 @@ def bearing(sin: Any, cos: Any) -> Any:
     return np.degrees(np.arctan2(sin, cos))
 
 
-def ulp(value: Any) -> Any:
+def ulp(value: N) -> N:
     """Return the unit in the last place of a positive float or array."""
     if isinstance(value, (float, int)):
         return math.ulp(value)
     return np.spacing(value)
+
+
+def magnitude(value: N) -> N:
+    """Return the magnitude of a number, of the same kind."""
+    return abs(value)  # type: ignore[return-value]
 
 
 def every(condition: Truth) -> bool:
@@ -57,27 +62,27 @@ def some(condition: Truth) -> bool:
     return condition if isinstance(condition, bool) else bool(condition.any())
 
 
-def is_whole(value: Any) -> Any:
+def is_whole(value: Number) -> Truth:
     """Return whether a float, or each of an array, is a whole number but for rounding."""
-    return abs((value + 0.5) % 1 - 0.5) < 1e-9
+    return magnitude((value + 0.5) % 1 - 0.5) < 1e-9
 
 
-def total(*terms: Any) -> Any:
+def total(*terms: N) -> N:
     """Return the sum of floats, rounded once; with arrays among them, as good as that (Ogita, Rump, Oishi 2005).
 
     >>> total(1e16, 1.0, -1e16)
     1.0
     """
     if all(isinstance(term, (float, int)) for term in terms):
-        return math.fsum(terms)
-    whole, missed = terms[0], 0.0
+        return math.fsum(terms)  # type: ignore[return-value]
+    whole, missed = terms[0], terms[0] * 0
     for term in terms[1:]:
         before, whole = whole, whole + term
         missed = missed + lost(before, term, whole)
     return whole + missed
 
 
-def lost(before: Any, term: Any, whole: Any) -> Any:
+def lost(before: N, term: N, whole: N) -> N:
     """Return by what a sum misses its two terms as it is rounded, exactly (Knuth)."""
     of_term = whole - before
     return (before - (whole - of_term)) + (term - of_term)
@@ -87,7 +92,7 @@ _ROUNDING = 16 * 2.0**-52
 """Relative to the sum of the sizes of terms: a smaller sum of them is rounding."""
 
 
-def unless_cancelled(whole: Any, sizes: Any, rounding: float = _ROUNDING) -> Any:
+def unless_cancelled(whole: Any, sizes: Number, rounding: float = _ROUNDING) -> Any:
     """Return a sum, as an array; exactly 0 where nothing is left of its terms but rounding.
 
     sizes: the sum of the sizes of the terms; of complex terms either part may cancel by itself. rounding: relative to

@@ -28,7 +28,7 @@ _ENDLESS = 1e24
 _STEP, _SHORTEST, _MOST_STEPS = 1e-4, 0.998, 80
 """Largest and smallest cut of that energy on the way back, and number of cuts."""
 _STANDING = 0.05
-"""Of the kinetic energy at y = 0: less than this counts as standing still where the way back ends."""
+"""Share of the kinetic energy at y = 0 below which the body is at rest at the end of its return."""
 _AT_ONCE = 4_000_000
 """Numbers of the matrices of the pieces that are solved together."""
 _OPEN = 1e-11

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from kurbel.arrays import Truth
 from kurbel.numerics.arithmetic import where
 
 
@@ -23,32 +26,32 @@ def number_of(answer: Any) -> Any:
 
 
 def size_of(answer: Any) -> float:
-    """Return the magnitude of a key value, of a list the largest, 0 of None."""
+    """Return the magnitude of a key value; of a list the largest; 0 for None."""
     number = number_of(answer)
     return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)
 
 
 def largest(first: Extreme, *others: Extreme) -> Extreme:
-    """Return the one with the largest value, the first of equal ones; one that is nan counts for nothing."""
+    """Return the one with the largest value, the first of equal ones; nan is ignored."""
     for other in others:
         first = chosen(other.value > first.value, other, first)
     return first
 
 
 def smallest(first: Extreme, *others: Extreme) -> Extreme:
-    """Return the one with the smallest value, the first of equal ones; one that is nan counts for nothing."""
+    """Return the one with the smallest value, the first of equal ones; nan is ignored."""
     for other in others:
         first = chosen(other.value < first.value, other, first)
     return first
 
 
-def chosen(condition: Any, extreme: Extreme, otherwise: Extreme) -> Extreme:
-    """Return the one extreme where a condition holds, else the other."""
+def chosen(condition: Truth, extreme: Extreme, otherwise: Extreme) -> Extreme:
+    """Return the extreme where the condition holds, else the other one."""
     return Extreme(*(where(condition, one, other) for one, other in zip(extreme, otherwise, strict=True)))
 
 
 _ALIKE = 1e-13
-"""Of a value: by what two that are alike differ by rounding."""
+"""Relative difference of two values that differ only by rounding."""
 
 
 class Extremes(NamedTuple):
@@ -59,7 +62,7 @@ class Extremes(NamedTuple):
 
     @property
     def peak(self) -> Extreme:
-        """The largest magnitude, whichever sign it has; of two that are alike but for rounding the first."""
+        """The largest magnitude, of either sign; of two that differ only by rounding the first."""
         high, low = self.largest, Extreme(-self.smallest.value, self.smallest.degrees)
         alike = abs(low.value - high.value) <= _ALIKE * abs(high.value)
-        return chosen(where(alike, low.degrees < high.degrees, low.value > high.value), low, high)
+        return chosen(np.where(alike, low.degrees < high.degrees, low.value > high.value), low, high)

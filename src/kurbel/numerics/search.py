@@ -1,6 +1,6 @@
-"""All roots, and the lowest value, of functions over an interval or a square that give many values at once.
+"""All roots, and the minimum, of functions over an interval or a square that are evaluated at many places at once.
 
-A function maps places (n, k), each from 0 to 1, to values (n,); a value is nan where there is none.
+A function maps places (n, k), each from 0 to 1, to values (n,); a value is nan where the function has none.
 """
 
 from __future__ import annotations
@@ -13,31 +13,31 @@ import numpy as np
 from kurbel.arrays import Array, Flags, Indices
 
 _PLACES, _MOST = 65, 1000
-"""Places of an interval that are sampled first, and at most."""
+"""Places of an interval at which a function is sampled first, and at most."""
 _SIDE, _FINE_SIDE = 17, 33
-"""Places of each side of a square at which roots are sought, and lowest values."""
+"""Places along each side of a square: in the search for roots, and for the minimum."""
 _LEAVES = 1e-3
-"""Of the spread of the samples: one farther from the cubic through its neighbours needs more samples around it."""
+"""Share of the spread of the samples: a sample farther from the cubic through its neighbours needs more around it."""
 _ROUNDING = 1e-12
-"""Of the largest value: by less samples differ through rounding."""
+"""Share of the largest value: smaller differences of samples are rounding errors."""
 _NARROWEST = 2.0**-20
-"""So narrow an interval is halved no further."""
+"""Width of the narrowest interval that is halved."""
 _SAME = 1e-8
-"""Roots of two functions closer together are one."""
+"""Distance below which roots of two functions are the same."""
 _LEFT = 1e-7
-"""Of the spread of the samples: if more is left at a change of sign, the function jumps there."""
+"""Share of the spread of the samples: with a larger value at a change of sign, the function jumps there."""
 _PARTS = 16
-"""Into which an interval is divided at whose one end there is no value."""
+"""Parts of an interval that has no value at one end."""
 _CANDIDATES, _MOST_GRIDS = 4, 150
-"""Lowest places of a first grid round which others shrink, and so many of these at most."""
+"""Lowest places of the first grid, from each of which smaller grids start, and the most of these."""
 _REACH = 1.6
-"""Half the side of a grid over the standard deviation of the lowest places of the one before."""
+"""Half the side of a grid over the standard deviation of the lowest places of the previous grid."""
 _THIN = 1e-6
-"""Width of a grid over its length, at least."""
+"""Least ratio of width to length of a grid."""
 _CLOSE = 1e-12
-"""Half the side of a grid that is small enough."""
+"""Half the side of the last grid."""
 _EQUAL = 1e-14
-"""Relative difference of values that are equal but for rounding."""
+"""Relative difference of values that differ only by rounding."""
 
 Function = Callable[[Array], Array]
 
@@ -87,7 +87,7 @@ def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: A
 
 
 def _sampled(function: Function) -> tuple[Array, Array]:
-    """Return places (n,) and values (n,): close where the function bends, and up to where it has values."""
+    """Return places (n,) and values (n,): dense where the function bends, and near the ends of its domain."""
     x = np.linspace(0.0, 1.0, _PLACES)
     y = function(x[:, None])
     while len(x) < _MOST and len(halved := _to_halve(x, y)):
@@ -104,7 +104,7 @@ def _sampled(function: Function) -> tuple[Array, Array]:
 
 
 def _to_halve(x: Array, y: Array) -> Indices:
-    """Return the intervals in whose neighbourhood samples leave a cubic, or might touch zero between two of them."""
+    """Return the intervals near which samples deviate from a cubic, or the function may touch zero in between."""
     nodes = np.stack([x[:-4], x[1:-3], x[3:-1], x[4:]])
     weights = np.ones_like(nodes)
     for one, other in product(range(4), repeat=2):

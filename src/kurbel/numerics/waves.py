@@ -7,11 +7,11 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 
 _PER_WAVE = 10
-"""Samples at least to a period of the shortest wave, …"""
+"""Least samples per period of the shortest wave, …"""
 _STEPS = 3
 """… from which so many steps of Newton's method lead to a crest."""
 _AT_ONCE = 1 << 16
-"""Samples that are held at once."""
+"""Samples in memory at once."""
 
 
 def crests(waves: Sequence[int], amplitudes: ComplexArray) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from kurbel.report.tables import Column, Part, Provenance, Report
 FORMAT = 1
 """Number of the format of JSON; it changes when a script that reads it would break."""
 _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
-"""What a formula begins with in a spreadsheet, also in wide characters."""
+"""Characters that begin a formula in a spreadsheet, also wide ones."""
 _ESCAPED = {code: f"\\u{code:04x}" for code in TURNING}
 _FIRST = {"ratios": "rod_ratio", "bearings": "bearing", "scenes": "scene"}
 """Group of the parts of a report -> head of the column with their names, if not `cylinder`."""
@@ -37,7 +37,7 @@ class _Echo:
 
 
 def csv_line(look: Look) -> Callable[[Iterable[Any]], str]:
-    """Return what makes a line of texts, numbers and None; with the decimal comma, `;` parts the cells."""
+    """Return a function that makes a line of texts, numbers and None; with a decimal comma the separator is `;`."""
     return csv.writer(_Echo(), delimiter=";" if look.comma else ",", lineterminator="\n").writerow
 
 
@@ -157,8 +157,8 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
     """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
 
     An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
-    the case of a limit has no values, so that a CI service compares runs by it, and none occurs twice. Elements and
-    attributes are those of the schema of Jenkins.
+    the case of a limit has no values, so that a CI service compares runs by it, that of an error of the file is the
+    sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
     """
 
     def quoted(text: str) -> str:
@@ -175,7 +175,11 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
         names = Counter[str]()
         for one in found:
             message, key = one["message"], one["key"] or ""
-            own = message.partition(": ")[0] if key.startswith(("limits", "expect")) else message
+            if key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2]):
+                own = message.partition(": ")[0]
+            else:
+                plain = one["severity"] != "error" or message.startswith(key)
+                own = message = message if plain else f"{key}: {message}"
             names[own] += 1
             own += f" ({names[own]})" if names[own] > 1 else ""
             yield f'<testcase classname="{name}" name="{quoted(own)}">'
@@ -226,7 +230,7 @@ def _results(part: Part, look: Look) -> dict[str, Any]:
 
 
 def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
-    """Yield a node in pieces: on one line, or its entries on lines of their own where one of them holds an object."""
+    """Yield a node in pieces: on one line, or with a line for each entry if one of them is an object."""
     if isinstance(node, Column):
         phi = node.id == "phi"  # crank angles have all digits
         values = [whole_if_integral(one) if phi else rounded(one, look.digits) for one in node.values]

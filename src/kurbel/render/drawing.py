@@ -1,4 +1,4 @@
-"""Where pictures go: to the terminal, or to a file whose suffix decides what it is."""
+"""Output of pictures: to the terminal, or to a file whose suffix decides the format."""
 
 import importlib.util
 import os
@@ -58,7 +58,7 @@ def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
 
 
 def draw_stdout(pictures: Iterable[Picture], look: Look) -> None:
-    """Draw pictures as characters to standard output, in colour where that is a terminal that wants it."""
+    """Draw pictures as characters to standard output, in colour on a terminal unless colours are not wanted."""
     look = stdout_look(look)
     lines = [line for picture in pictures for line in (BLANK, *braille(picture, look))][1:]
     if not write_coloured(lines, look):

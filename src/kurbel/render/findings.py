@@ -1,4 +1,4 @@
-"""What `kurbel find` prints of what it found: rows, JSON, and remarks on jumps, failing designs and bounds."""
+"""The output of `kurbel find`: rows, JSON, and remarks on jumps, failing designs and bounds."""
 
 import numpy as np
 
@@ -34,7 +34,7 @@ def as_rows(found: Solutions, system: str) -> list[Design]:
 
 
 def as_json(found: Solutions) -> dict[str, object]:
-    """Return what was found as JSON has it, all in SI."""
+    """Return the findings for JSON, all in SI."""
 
     def solution(one: Solution) -> dict[str, object]:
         key_values = [
@@ -85,7 +85,7 @@ def picture(found: Solutions, system: str) -> Picture:
 
 
 def remarks(found: Solutions) -> list[str]:
-    """Return what is to be said besides the solutions, a line each."""
+    """Return the remarks on the solutions, a line each."""
     key = found.varied[0]
     lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
     for one in found.jumps:

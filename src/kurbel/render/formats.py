@@ -1,4 +1,4 @@
-"""The text of a report in each format, and where it is written."""
+"""The text of a report in each format, and its output."""
 
 import sys
 from collections.abc import Callable, Collection, Iterable
@@ -17,7 +17,7 @@ from kurbel.report.alike import first_selection
 from kurbel.report.tables import Report
 
 _SIDE, _CELL = 14, 8
-"""Cells of a terminal that symbol and unit of a row take, and that each number takes."""
+"""Width in characters of symbol and unit of a row, and of each number."""
 _WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {
     "table": lambda report, look: plain(page(report, look)),
     "csv": csv_text,
@@ -26,7 +26,7 @@ _WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {
     "html": html,
     "latex": lambda report, look: document(report, look, Latex()),
 }
-"""Format, of FORMATS -> the function that makes its text of a report, piece by piece: a long table is never held."""
+"""Format -> the function that yields the text of a report in pieces, so that a long table needs no memory."""
 
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
@@ -35,7 +35,7 @@ def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable
 
 
 def _fitting(report: Report, look: Look, first: Collection[str]) -> Report:
-    """Return the report, or a first selection of it where a terminal has fewer lines."""
+    """Return the report, or a first selection of it if a terminal has fewer lines."""
     most = get_terminal_size().lines
     if not sys.stdout.isatty() or len([*islice(page(report, look), most)]) < most:
         return report
@@ -46,18 +46,18 @@ def _fitting(report: Report, look: Look, first: Collection[str]) -> Report:
 def write_report(
     report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
 ) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in the encoding of that.
+    """Write the report to a file (as UTF-8), or to standard output in its encoding.
 
-    first: ids of what a terminal shows that is too low for the whole report; None for all on every terminal.
+    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
 
-    A terminal gets as many angles to a block as fit its width, and colours where they are wanted; a pipe gets plain
-    text, of a width only if one is given. Raises UsageError where it cannot be written.
+    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
+    only to a given width. Raises UsageError if it cannot be written.
     """
     if file_name not in (None, "-"):
         look = replace(look, encoding="utf-8")
     else:
         look = stdout_look(look)
-        if look.format in ("html", "latex"):  # are read as UTF-8, whatever the terminal has
+        if look.format in ("html", "latex"):  # always read as UTF-8
             look = replace(look, encoding="utf-8")
         if look.format == "table":
             report = report if first is None else _fitting(report, look, first)

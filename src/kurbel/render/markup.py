@@ -1,7 +1,7 @@
-r"""Second pass to markup: one walk through a report, in which every text passes the writer that escapes it.
+r"""The second pass for markup: `document` writes a report with a writer for Markdown, HTML or LaTeX.
 
-A writer knows Markdown, HTML or LaTeX, and nothing of reports: its methods `text`, `sentence` and `symbol` escape, all
-others take what has been escaped. LaTeX is to be \input into a document that has \usepackage{booktabs, longtable}.
+A writer has no knowledge of reports. Its methods `text`, `name`, `sentence`, `symbol` and `number` take plain text and
+escape it; all others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
 """
 
 import re
@@ -26,14 +26,14 @@ from kurbel.report.alike import shown_once
 from kurbel.report.tables import Report
 
 _ON_PAPER = 9
-"""Columns of numbers next to that of the angle on a page of A4; more make a table of their own."""
+"""Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""
 
 
-# writers: elements as templates for escaped text; across: the most columns of numbers in a table, if any
+# writers: elements are templates for escaped text; across: the most columns of numbers in a table, None for any number
 
 
 class Markdown:
-    """Markdown: a line for each row; a blank line parts each element from the one before it."""
+    """Markdown: one line for each row, a blank line between elements."""
 
     across: int | None = None
     title, paragraph, strong = "## {}\n", "\n{}\n", "**{}**"
@@ -41,13 +41,13 @@ class Markdown:
     table_end = ""
 
     def text(self, plain: str) -> str:
-        """Return a text with everything escaped that Markdown would take for a mark."""
+        """Return a text in which everything is escaped that Markdown would take for markup."""
         return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
 
     name = sentence = symbol = number = text
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
-        """Return title, heads and the line that aligns the columns."""
+        """Return title, heads, and the line that sets the alignment of the columns."""
         titles = [f"{symbol} ({unit})" if unit else symbol.strip() for symbol, unit in heads]
         rules = ["---" if one.words else "--:" for one in table.columns]
         titled = f"\n### {caption}\n" if caption else ""
@@ -59,7 +59,7 @@ class Markdown:
 
 
 class Html:
-    """What is in the body of a page of HTML."""
+    """HTML: the content of the body of a page."""
 
     across: int | None = _ON_PAPER
     title, paragraph, strong = "<h1>{}</h1>\n", "<p>{}</p>\n", "<b>{}</b>"
@@ -67,33 +67,33 @@ class Html:
     table_end = "</tbody></table></div>\n"
 
     def text(self, plain: str) -> str:
-        """Return a text with everything escaped that HTML would take for markup."""
+        """Return a text in which everything is escaped that HTML would take for markup."""
         return escape(plain)
 
     def symbol(self, plain: str) -> str:
-        """Return a text in which what follows the underscore of a symbol is below the line.
+        """Return a text in which what follows the underscore of a symbol is a subscript.
 
         >>> print(Html().symbol("φ_P=0"), Html().symbol("A_1, A_2"))
         φ<sub>P=0</sub> A<sub>1</sub>, A<sub>2</sub>
         """
-        return self._lowered(escape(plain))
+        return self._with_subscripts(escape(plain))
 
     def name(self, plain: str) -> str:
-        """Return a name or a value, in which no unit is parted from its number."""
+        """Return a name or a value, with no line break between a number and its unit."""
         text = self._signed(re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain)))
         return in_thousands(measures().sub(r'<span class="n">\g<0></span>', text), "&#8239;")
 
     def sentence(self, plain: str) -> str:
-        """Return a sentence, in which no unit is parted from its number, and symbols have their indices."""
-        return self._lowered(self.name(plain))
+        """Return a sentence, with no line break between a number and its unit, and with subscripts."""
+        return self._with_subscripts(self.name(plain))
 
-    def _lowered(self, escaped: str) -> str:
+    def _with_subscripts(self, escaped: str) -> str:
         parts = subscripts(escaped)
         parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
         return "".join(parts)
 
     def number(self, plain: str) -> str:
-        """Return a number with thin spaces and a minus sign in place of a hyphen, whatever the encoding.
+        """Return a number with thin spaces and a minus sign instead of a hyphen, in any encoding.
 
         >>> print(Html().number("-18066.25, -1.5"))
         &minus;18&#8239;066.25, &minus;1.5
@@ -105,7 +105,7 @@ class Html:
         return re.sub(r"(?<![\w.-])-(?=\d)", "&minus;", escaped)
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
-        """Return the beginning of a table that a narrow window scrolls."""
+        """Return the beginning of a table, which can be scrolled in a narrow window."""
         cells = (
             f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
             for one, (symbol, unit) in zip(table.columns, heads)
@@ -118,7 +118,7 @@ class Html:
         )
 
     def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
-        """Return a row; lists of numbers and long names may be folded."""
+        """Return a row; lists of numbers and long names may be wrapped."""
         shown = []
         for k, (column, cell) in enumerate(zip(table.columns, cells)):
             listed = number in table.lists and k == 1
@@ -145,13 +145,13 @@ _MATH = {
     "½": "frac12", "¼": "frac14", "⅔": "frac23", "₀": "_0", "…": "dots",
     **{power: f"^{{{plain}}}" for power, plain in zip("⁻⁰¹⁴⁵⁶⁷⁸⁹", "-01456789")},
 }  # fmt: skip
-"""Sign -> its command, or what it is in a formula if it begins with -, ^ or _."""
+"""Character -> its command in a formula, without the backslash; what begins with -, ^ or _ is no command."""
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
     "|": r"\textbar{}", '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}",
 }  # fmt: skip
-"""After the end of a row a bracket or a star would belong to it."""
+"""Character -> how LaTeX writes it; a bracket or a star right after the end of a row would be its argument."""
 _DOTS = {"\u0307": "dot", "\u0308": "ddot"}
 _LETTER = re.compile(".[\u0307\u0308]?", re.DOTALL)
 """A character, or a letter with the dots over it."""
@@ -159,7 +159,7 @@ _INDEXED = re.compile("((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)")
 
 
 class Latex:
-    """LaTeX: tables in the manner of booktabs, which may run over several pages, their heads on each."""
+    """LaTeX: tables in the style of booktabs, which may run over several pages with the heads on each."""
 
     across: int | None = _ON_PAPER
     title, paragraph = "% \\usepackage{{booktabs, longtable}}\n\\subsection*{{{}}}\n", "{}\n\n"
@@ -168,7 +168,7 @@ class Latex:
     list_end, table_end = "\\end{itemize}\n\n", "\\bottomrule\n\\end{longtable}}\n\n"
 
     def text(self, plain: str) -> str:
-        r"""Return a text with everything escaped that LaTeX would take for a command.
+        r"""Return a text in which everything is escaped that LaTeX would take for a command.
 
         >>> print(Latex().text("50 % of φ_1 ≤ 90°"), Latex().text("-3"))
         50 \% of $\varphi$\_1 $\le$ 90$^\circ$ $-$3
@@ -191,7 +191,7 @@ class Latex:
         return self.text(in_thousands(plain, "\N{THIN SPACE}")).replace("\N{THIN SPACE}", "\\,")
 
     def symbol(self, plain: str) -> str:
-        r"""Return a symbol, what follows its underscore as its index.
+        r"""Return a symbol, with what follows its underscore as a subscript.
 
         >>> print(Latex().symbol("P_b"), Latex().symbol("φ_P=0"), Latex().symbol("ΔE"))
         $P_{\mathrm{b}}$ $\varphi_{\mathrm{P=0}}$ $\Delta$E
@@ -220,19 +220,19 @@ class Latex:
 
 
 def _formula(one: str) -> str:
-    """Return a character within a formula, or a letter with the dots over it."""
+    """Return a character, or a letter with dots over it, as it is written in a formula."""
     found = _MATH.get(one[0]) or {"_": "\\_"}.get(one[0], one[0])
     base = f"\\{found}" if one[0] in _MATH and found[0] not in "-^_" else found
     return f"\\{_DOTS[one[1]]}{{{base}}}" if one[1:] else base
 
 
-# the walk
+# the report, element by element
 
 Writer = Markdown | Html | Latex
 
 
 def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
-    """Yield the report piece by piece; equal cylinders appear once."""
+    """Yield the text of the report piece by piece; identical cylinders appear once."""
     report = shown_once(report)
     yield out.title.format(out.text(look.text(report.title)))
     yield from (out.paragraph.format(out.sentence(look.text(text))) for text in report.head)
@@ -252,7 +252,7 @@ def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
 
 
 def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> Iterator[str]:
-    """Yield sentences under a title, nothing where there are none."""
+    """Yield a list of sentences under a title, or nothing if there are none."""
     if sentences:
         yield out.list_head.format(out.text(title))
         yield from (out.item.format(out.sentence(sentence_text(one, look))) for one in sentences)
@@ -260,13 +260,13 @@ def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> I
 
 
 def over_angle(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables over the crank angle, in parts of so many columns."""
+    """Yield the tables over the crank angle, split into parts of at most `across` columns."""
     found = [(name, heads, columns, True) for heads, bands in sheets(report, look) for name, columns in bands]
     return _parts_of(found, across)
 
 
 def of_places(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables of places, in parts of so many columns."""
+    """Yield the tables of places, split into parts of at most `across` columns."""
     tables = [place_table(one, look) for one in report.printed_tables]
     found = [(one.caption, [*one.columns[: one.heads]], [*one.columns[one.heads :]], False) for one in tables]
     return _parts_of(found, across)
@@ -285,12 +285,12 @@ def written(table: TextTable, out: Writer) -> Iterator[str]:
     """Yield a table row by row."""
     heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
     yield out.table_head(table, out.text(table.caption), heads)
-    doors = {"number": out.number, "name": out.name, "symbol": out.symbol, "sentence": out.sentence}
-    kinds = [doors[one.kind] for one in table.columns]
+    escapes = {"number": out.number, "name": out.name, "symbol": out.symbol, "sentence": out.sentence}
+    of_columns = [escapes[one.kind] for one in table.columns]
     for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
-        texts = zip(kinds, map(str.strip, row))
         cells = [
-            out.strong.format(out.number(text[:-1])) if text.endswith(MARK) else door(text) for door, text in texts
+            out.strong.format(out.number(text[:-1])) if text.endswith(MARK) else escaped(text)
+            for escaped, text in zip(of_columns, map(str.strip, row))
         ]
         yield out.row(table, number, cells)
     yield out.table_end

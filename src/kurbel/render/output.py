@@ -1,4 +1,4 @@
-"""Where the text goes: standard output, a terminal, or a file; and what its encoding and width are."""
+"""The destination of the text: standard output, a terminal, or a file; with encoding and width."""
 
 import codecs
 import errno
@@ -39,7 +39,7 @@ STYLES = {
 def stdout_look(look: Look) -> Look:
     """Return the look with encoding and width of standard output.
 
-    The width of a terminal is its own, that of a pipe what COLUMNS says, or None.
+    The width is that of the terminal; in a pipe that of COLUMNS, or None.
     """
     stdout = _stdout()
     measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
@@ -54,7 +54,7 @@ def _stdout() -> TextIO:
 
 
 def write_coloured(page: Iterable[Line], look: Look) -> bool:
-    """Write lines in colour and return True; False without a terminal, or where it or its user would rather not."""
+    """Write lines in colour and return True; return False without a terminal, or if colours are not wanted."""
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return False
     lines = list(islice(page, _MOST_COLOURED_LINES + 1))
@@ -71,7 +71,7 @@ def write_coloured(page: Iterable[Line], look: Look) -> bool:
 
 
 def silence(stream: TextIO) -> None:
-    """Let what is still buffered go nowhere: Python would complain about it at its end, and change the exit status."""
+    """Discard what is still buffered: Python would report it at exit, and change the exit status."""
     with suppress(OSError, ValueError, AttributeError):  # there may be no real file behind it
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
@@ -99,7 +99,7 @@ def write_out(texts: Iterable[str], file_name: str | None, encoding: str | None 
 
 @contextmanager
 def opened(file_name: str | None, resumed: int | None = None) -> Iterator[BinaryIO]:
-    """Yield what takes the bytes of standard output or of a file, which is replaced once it is whole, or not at all.
+    """Yield a binary stream to standard output or to a file, which is replaced only when the new one is complete.
 
     A device or a pipe is written to as it is. resumed: of what may go on later, the bytes that stay of what is there;
     it goes to FILE.part, which an early end leaves. A reader that leaves early is no fault; raises UsageError.
@@ -127,7 +127,7 @@ def opened(file_name: str | None, resumed: int | None = None) -> Iterator[Binary
 
 @contextmanager
 def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
-    """Yield a new file next to a target, which takes its mode and its place; without anything in it it is removed."""
+    """Yield a new file next to a target, which it replaces with the same mode; an empty one is removed."""
     ending = f".kurbel-{os.urandom(8).hex()}"
     path = f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
     if resumed and not os.path.isfile(path):
@@ -148,7 +148,7 @@ def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
 
 
 def whole_file(file_name: str) -> str:
-    """Return the path of a file that may be replaced once a new one is whole, "" for a device, a pipe or /dev/stdout.
+    """Return the path of a file that may be replaced by a new one, "" for a device, a pipe or /dev/stdout.
 
     Raises OSError where it may not be written.
     """
@@ -165,14 +165,14 @@ def whole_file(file_name: str) -> str:
 
 
 def _is_same(one: os.stat_result, other: str | int) -> bool:
-    """Whether a file is the one with this name or descriptor: /dev/stdout has another name."""
+    """Return whether a file is the one with this name or descriptor; /dev/stdout, for one, has another name."""
     with suppress(OSError, ValueError):
         return os.path.samestat(one, os.stat(other))
     return False
 
 
 def refuse_overwriting(file_name: str | None, read: Iterable[str]) -> None:
-    """Raise UsageError where a file to be written is one of those that are read, by whatever name; - is stdin."""
+    """Raise UsageError if a file to be written is one of those that are read, under any name; - is stdin."""
     if file_name is None or file_name == "-":
         return
     for other in read:

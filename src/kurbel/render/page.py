@@ -154,7 +154,7 @@ def book_sizes(count: int) -> list[int]:
 
 
 def fitting_sizes(count: int, most: int) -> list[int]:
-    """Return blocks as even as can be of at most `most` angles, the longer ones last."""
+    """Return blocks of nearly equal length of at most `most` angles, the longer ones last."""
     blocks = -(-count // max(most, 1))
     return [count // blocks + (index >= blocks - count % blocks) for index in range(blocks)] if count else []
 
@@ -206,7 +206,7 @@ def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "
 
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
-    """Yield a head and its sentence, which is folded next to it, or below it where it leaves little room."""
+    """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
     text = sentence_text(text, look)
     if look.width is None or width(head) + width(text) <= look.width:
         yield (Piece(head, "cell"), Piece(text))

@@ -1,4 +1,4 @@
-"""Where everything of a panel is placed, on paper and in a terminal alike: scales, ticks, and labels on free ground."""
+"""The layout of a panel, for paper and terminal: scales, ticks, and labels in free space."""
 
 import math
 from collections.abc import Iterator
@@ -15,9 +15,9 @@ from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 _ROUNDING = 1e-9
-"""Over the size of a curve, the height that is its rounding."""
+"""Height of a curve, relative to its size, that is only rounding error."""
 _AIR = 0.12
-"""Share of its height that a panel leaves free above and below its curves."""
+"""Free space of a panel above and below its curves, relative to their height."""
 _MOST_MARKED = 12
 LOOKS = 6
 """Different colours and strokes of curves."""
@@ -32,7 +32,7 @@ def symbol(words: Words, look: Look) -> str:
 
 
 def axis_text(axis: Axis, look: Look) -> str:
-    """Return what is written at the end of an axis: words, symbol, unit."""
+    """Return the title of an axis: words, symbol, unit."""
     words = look.text(axis.name.words)
     name = " ".join(filter(None, (words[:1].upper() + words[1:], symbol(axis.name, look))))
     return " in ".join(filter(None, (name, look.unit(axis.unit))))
@@ -90,7 +90,7 @@ class AxisScale(NamedTuple):
 
 
 def scale_of(axis: Axis, drawn: list[Array], air: bool, around: float = 0.0) -> AxisScale:
-    """Return the scale from 0 to 1 of an axis, which holds all that is drawn; air: with some around it.
+    """Return the scale from 0 to 1 of an axis, which includes all that is drawn; air: with free space around it.
 
     around: what is above and below a level line, if it is not a tenth of its height.
     """
@@ -151,11 +151,10 @@ class Medium(NamedTuple):
 
 
 class Label(NamedTuple):
-    """A text that names a point x + iy; look: of the curve that it names; led: a line leads to it where it is far.
+    """The label of a point x + iy; look: of the curve that it names; led: with a leader line if it is far away.
 
-    spare: it is left out rather than be far, or on a curve.
-
-    Once it is placed it is between left and right, below top; lead: the end of that line.
+    spare: it is omitted if there is no free space nearby. Once placed it is between left and right, below top; lead:
+    the end of the leader line.
     """
 
     text: str
@@ -167,10 +166,6 @@ class Label(NamedTuple):
     right: float = 0.0
     top: float = 0.0
     lead: complex | None = None
-
-
-def _is_number(text: str) -> bool:
-    return text.replace(".", "", 1).isdecimal()
 
 
 class PanelFrame:
@@ -197,7 +192,8 @@ class PanelFrame:
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
         names = panel.x.names
         between = abs(float(self.x.place(1.0) - self.x.place(0.0))) - medium.letter if names else 0.0
-        if any(width(name) * medium.letter > between for name in names) and not all(map(_is_number, names)):
+        numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
+        if not numeric and any(width(name) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
             key = ", ".join(
                 f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)

@@ -42,7 +42,9 @@ _SHEET = """
         columns: (1fr,) * of.facts.len(), column-gutter: 2 * u, row-gutter: 1.1 * u,
         ..of.facts.map(one => grid.cell(align: center + bottom, faint(one.title))),
         ..of.facts.map(one => align(center)[#text(size: 2.9 * u, one.value) #text(size: 1.6 * u, one.unit)]),
-        ..of.facts.map(one => align(center, faint[#emph(one.symbol.at(0))#sub(one.symbol.at(1, default: ""))])),
+        ..of.facts.map(one => align(center, faint[
+          #emph(one.symbol.at(0))#sub(one.symbol.at(1, default: ""))#one.where
+        ])),
       )
     },
   ))
@@ -80,9 +82,11 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
         "facts": [
             {
                 "title": look.text(one.title),
-                "value": printed(look.counted(*single(one.value, look.digits or DIGITS, look.comma)), look),
-                "unit": look.unit(one.unit),
+                "value": printed(look.counted(*single(one.value, look.digits or DIGITS, look.comma)), look)
+                + "°" * (one.unit == "deg"),
+                "unit": look.unit(one.unit) if one.unit != "deg" else "",
                 "symbol": subscripts(look.text(one.symbol)),
+                "where": f" {look.text(one.where)}",
             }
             for one in facts.facts[:_MOST_FACTS]
         ],

@@ -33,12 +33,14 @@ figcaption b{color:var(--ink)}
 .notice{margin:.5rem 0}
 .warning{padding:.4rem .8rem;border-left:.3rem solid var(--warn);background:var(--warned)}
 tr.good,tr.bad{color:var(--ink);font-weight:400}
+tr.good td:nth-child(3),tr.bad td:nth-child(3){white-space:nowrap}
 tr.good td:nth-child(4){color:var(--good);font-weight:600}
 tr.bad td:nth-child(4){color:var(--bad);font-weight:600}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.3rem;list-style:none;padding:0}
 footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
-figure svg{width:100%;min-width:30rem;height:auto;display:block}#summary svg{min-width:0}
+figure svg{width:100%;min-width:30rem;height:auto;display:block}
+#summary figure svg{min-width:0}
 @media print{main{padding:0}figure svg{min-width:0;max-height:23cm}nav{display:none}
 h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
 a{color:inherit;text-decoration:none}}
@@ -118,10 +120,11 @@ def _written(tables: Iterable[TextTable]) -> Iterator[str]:
 
 def _fact(one: Fact, look: Look) -> str:
     """Return a key value as a tile: what it is, its value, its symbol with its place."""
-    unit = f"{' ' * (one.unit != 'deg')}<small>{_OUT.text(look.unit(one.unit))}</small>" if one.unit else ""
+    degrees = look.unit(one.unit) if one.unit == "deg" else ""
+    unit = f" <small>{_OUT.text(look.unit(one.unit))}</small>" if one.unit and not degrees else ""
     at = "" if one.at_deg is None else f"at {angle(one.at_deg, look.comma)}°"
     place = " ".join(filter(None, (look.text(one.where), at)))
-    value = f"<small>{_text(one.title, look)}</small><br><b>{_OUT.number(_number(one.value, look))}</b>{unit}"
+    value = f"<small>{_text(one.title, look)}</small><br><b>{_OUT.number(_number(one.value, look))}{degrees}</b>{unit}"
     return f"<p>{value}<br><small>{_OUT.symbol(look.text(one.symbol))} {_OUT.text(place)}</small></p>\n"
 
 

@@ -8,6 +8,7 @@ from textwrap import wrap
 from typing import NamedTuple
 from unicodedata import combining, east_asian_width, normalize
 
+from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.quantity import GREEK
 
 FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
@@ -145,8 +146,6 @@ def measures() -> re.Pattern[str]:
     >>> measures().findall("within 10 % of 2.35 kN m at 5 points")
     ['10 %', '2.35 kN m']
     """
-    from kurbel.declared.unit_systems import SYSTEMS  # `kurbel table` prints no unit and does not load them
-
     of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
     units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
     printed = {"%", "°", *units, *map(Look().unit, units)} - {""}

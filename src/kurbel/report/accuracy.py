@@ -1,7 +1,7 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -20,8 +20,9 @@ from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 
 Loads = Callable[[str], Machine]
+"""Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
 Progress = Callable[[str, float], None]
-"""Reads the text of a machine file: only the command line knows how."""
+"""Called with what is computed, and the completed share."""
 NUMERICAL = "numerical_error"
 """Id of the table that the picture is drawn from."""
 
@@ -106,13 +107,13 @@ def accuracy_report(
     machine: Machine | None,
     quick: bool,
     loads: Loads,
-    uncertain: Sequence[trials.Difference] = (),
+    uncertain: Mapping[str, float],
     progress: Progress | None = None,
 ) -> Report:
     """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and points.
 
-    uncertain: what the uncertainties of the machine's data make of its quantities; progress: called with the name of
-    each scene and the share of them that is done.
+    uncertain: relative uncertainties of quantities by symbol, from those in the file of the machine; progress: called
+    with the name of each scene and the share of them that is done.
     """
     scenes = [(machine, 0)] if machine else [(loads(one.text), one.turns) for one in _SCENES if one.quick or not quick]
     parts: list[Part] = []
@@ -123,12 +124,16 @@ def accuracy_report(
                 progress(one.name, number / len(scenes))
             degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
             rows, lacking = trials.examined(one, degrees, quick)
+            spreads = [
+                trials.Difference(symbol, "standard uncertainties of the file", one)
+                for symbol, one in uncertain.items()
+            ]
             heavy = any(cylinder.masses or cylinder.pistons for cylinder in one.cylinders)
             saved = [*trials.savings(one, _everything, quick)] if heavy else []
             tables = (
                 _table(NUMERICAL, f"{one.name}: numerical error", rows, 4),
                 _table("model_error", f"{one.name}: error of the model", [*trials.model_errors(one)], 2),
-                _table("data_error", f"{one.name}: error of the data", [*trials.data_errors(one), *uncertain], 2),
+                _table("data_error", f"{one.name}: error of the data", [*trials.data_errors(one), *spreads], 2),
                 _table("leaving_out", f"{one.name}: what leaving out saves", saved, 1),
             )
             left_out = tuple(LeftOut(*what) for what in lacking)

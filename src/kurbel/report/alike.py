@@ -1,4 +1,4 @@
-"""What people are shown of a report: equal cylinders, pins and bearings once; on a low terminal a first selection."""
+"""What tables show of a report: identical cylinders, pins and bearings once; on a low terminal a first selection."""
 
 import re
 from collections.abc import Callable, Collection, Hashable, Iterable, Sequence
@@ -12,7 +12,7 @@ Item = TypeVar("Item")
 
 
 def together(names: Sequence[str]) -> str:
-    """Return several names as one: those that differ in their number by their numbers.
+    """Return several names as one text; names that differ only in a number are listed by their numbers.
 
     >>> together(["cylinder 1", "cylinder 2", "cylinder 3", "cylinder 6"]), together(["HP", "LP"])
     ('cylinders 1–3, 6', 'HP, LP')
@@ -37,7 +37,7 @@ def together(names: Sequence[str]) -> str:
 
 
 def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list[Item]]:
-    """Return the items in groups of equal key, in the order of their first ones."""
+    """Return the items in groups of equal key, in order of first occurrence."""
     groups: dict[Hashable, list[Item]] = {}
     for item in items:
         groups.setdefault(key(item), []).append(item)
@@ -45,10 +45,10 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Hashable]) -> list[list
 
 
 def shown_once(report: Report) -> Report:
-    """Return the report with its equal parts as one; its title names them if no other part is left.
+    """Return the report with identical parts merged into one; the title names them if no other part is left.
 
-    Pins and bearings are equal if their key values are, at whatever crank angles they are loaded; cylinders, if their
-    tables are, too, over their own crank angle.
+    Pins and bearings are identical if their key values are, at any crank angles; cylinders, if in addition their tables
+    over their own crank angle are.
     """
     if len(report.parts) < 2 or report.group not in ("cylinders", "bearings"):
         return report
@@ -75,10 +75,10 @@ def shown_once(report: Report) -> Report:
 
 
 def first_selection(report: Report, ids: Collection[str], across: int, rows: int) -> Report:
-    """Return these columns, key values and tables, with the warnings.
+    """Return the report with only these columns, key values and tables, and the warnings.
 
-    across: the most crank angles of a column; rows: the first ones of a table that are shown. Without ids all columns
-    and key values stay, and the tables of the whole machine, if it has any.
+    across: the largest number of crank angles; rows: the largest number of rows of a table. Without ids all columns and
+    key values stay, and the tables of the whole machine, if it has any.
     """
     report = shown_once(report)
     of_whole = report.whole is not None and report.whole.place_tables
@@ -112,12 +112,12 @@ _SHIFTED = (
 
 
 def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
-    """Return what equally loaded bearings of one kind have in common; of: the cylinder that a pin belongs to."""
+    """Return a value that is the same for equally loaded bearings of one kind; of: the cylinder of a pin."""
     return name.removesuffix(of).rstrip("0123456789"), _figures(key_values)
 
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:
-    """Return the key values without the angles at which they are, those of one unit relative to the largest."""
+    """Return the key values without their crank angles, to nine digits of the largest one of the same unit."""
     given, by_unit = tuple(key_values), dict[str, list[Value]]()
     for one in given:
         if not one.noise:
@@ -129,4 +129,4 @@ def _nine_digits(values: Sequence[Value]) -> Hashable:
     """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
     largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
     relative = tuple(None if value is None else round(value / largest, 9) for value in values)
-    return f"{largest:.9g}", hash(relative)  # of a long table the values themselves would take much memory
+    return f"{largest:.9g}", hash(relative)  # the values of a long table would take much memory

@@ -21,11 +21,11 @@ from kurbel.solver.case import Case
 from kurbel.solver.shaft import shaft_obstacle
 
 _EVEN = 0.5
-"""Degrees by which firing intervals differ where angles were rounded."""
+"""Difference of firing intervals in degrees that rounded angles explain."""
 
 
 class Topic(NamedTuple):
-    """A head line with its entries; cylinder: they are all about the cylinder of this name."""
+    """A title with its entries; cylinder: it is the name of the cylinder that all of them are about."""
 
     title: str
     entries: tuple[Entry, ...]
@@ -33,7 +33,7 @@ class Topic(NamedTuple):
 
 
 class Checked(NamedTuple):
-    """The outcome of a check; broken: a limit is, or a figure is off; unjudged: which cannot be compared, and why."""
+    """The outcome of a check; broken: a limit or an expectation FAILs; unjudged: those that cannot be compared."""
 
     title: str
     sections: tuple[Topic, ...]
@@ -42,12 +42,12 @@ class Checked(NamedTuple):
 
     @property
     def errors(self) -> tuple[KurbelError, ...]:
-        """What keeps limits and expectations from being compared."""
+        """The reasons why limits and expectations cannot be compared."""
         return tuple(one.error for one in self.unjudged)
 
     @property
     def shown_once(self) -> list[Topic]:
-        """The sections, equal cylinders in one."""
+        """The sections, with one for identical cylinders."""
 
         def content(section: Topic) -> Hashable:
             return section.cylinder or section.title, tuple(one[:3] for one in section.entries)
@@ -57,7 +57,7 @@ class Checked(NamedTuple):
 
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
-    """Return the check of a machine, and of its limits in its load cases, computed only as far as it needs."""
+    """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
     machine = case.machine
     unjudged: list[Unjudged] = []
     figures: dict[str, list[Entry]] = {"limits": [], "expect": []}
@@ -134,7 +134,7 @@ def _left_out(found: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
 
 
 def _crank_entries(machine: Machine) -> Iterator[Entry]:
-    """Yield for each of several cylinders by how much it follows the first, and where that puts its crank pin."""
+    """Yield for each of several cylinders by which angle it follows the first, and where its crank pin is."""
     banked = any(cylinder.bank_angle for cylinder in machine.cylinders)
     for cylinder in machine.cylinders if len(machine.cylinders) > 1 else ():
         # the dead centre of a crank is at its bank
@@ -144,7 +144,7 @@ def _crank_entries(machine: Machine) -> Iterator[Entry]:
 
 
 def _turning_entries(machine: Machine) -> Iterator[Entry]:
-    """Yield what kurbel flywheel has of a machine, if that is more than its only cylinder has."""
+    """Yield what `kurbel flywheel` computes of a machine, unless it is a single cylinder with nothing on the shaft."""
     given, load = (machine.flywheel, machine.load, machine.effort, machine.coupling), machine.load
     alone = len(machine.cylinders) == 1 and machine.efficiency == 1 and not any(given)
     if alone or not (machine.cylinders or machine.effort):
@@ -179,7 +179,7 @@ def _crankshaft_entries(case: Case) -> Iterator[Entry]:
 
 
 def _balance_entries(case: Case) -> Iterator[Entry]:
-    """Yield what kurbel balance has of a machine with a place, a weight or a wheel."""
+    """Yield what `kurbel balance` computes of a machine with axial positions, counterweights or driven wheels."""
     machine = case.machine
     placed = any(one.axial_position is not None or one.counterweights for one in machine.cylinders)
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
@@ -194,7 +194,7 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
 
 
 def _shaft_entries(case: Case) -> Iterator[Entry]:
-    """Yield what kurbel torsion has of a shaft line or a coupling, or why it refuses it."""
+    """Yield what `kurbel torsion` computes of a shaft line or a coupling, or why it cannot."""
     shaft, path = case.machine.shaft, ("shaft",)
     if shaft is None and case.machine.coupling is None:
         return
@@ -214,7 +214,7 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
 
 
 def _delivery_entries(case: Case) -> Iterator[Entry]:
-    """Yield what kurbel delivery has of a machine with pumps or compressors, or why it refuses it."""
+    """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
     try:
         found = case.delivery
     except KurbelError:  # nothing is delivered
@@ -236,10 +236,10 @@ def _delivery_entries(case: Case) -> Iterator[Entry]:
 
 
 class Finding(NamedTuple):
-    """One finding: file; line and column from 1 and the dotted key, None where it is about no key; severity.
+    """One finding: file; line and column from 1 and the dotted key, None if it is about no key; severity.
 
-    severity: `error`: a fault of the file, a limit that is broken, a figure that is off, or what cannot be judged;
-    `warning`; `info`: what is kept, met or left out.
+    severity: `error` for a fault of the file, for a limit or an expectation that FAILs or cannot be judged; `warning`;
+    `info` for one that is a PASS, and for what is left out.
     """
 
     file: str
@@ -273,7 +273,7 @@ Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 
 
 def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
-    """Return what was found of a machine; locate: returns faults with their places in the text of the file."""
+    """Return the outcome of a check for programs; locate: adds to faults their places in the text of the file."""
     several, origin = len(machine.cylinders) > 1, machine.origin
     found: list[tuple[Path, str, str]] = []
     for section in checked.sections:

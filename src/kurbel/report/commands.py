@@ -7,11 +7,10 @@ BROKEN, NO_SOLUTION = 1, 3
 
 
 class Command(NamedTuple):
-    """A command: its word, what `kurbel --help` says of it, and the statuses that only some commands return.
+    """A command: its word, its summary in `kurbel --help`, and the statuses that only some commands return.
 
-    title: of its section in the whole report, '' for none; turns: whether its table runs over the cycle, else over one
-    turn; first: ids of the columns, key values and tables that a terminal shows if it is
-    too low for all.
+    title: of its section in the whole report, '' for none; turns: whether its table covers the cycle, else one turn;
+    first: ids of the columns, key values and tables that are shown on a terminal with too few lines for all.
     """
 
     word: str

@@ -64,7 +64,7 @@ def polar_force(source: Source) -> Iterator[Panel]:
     radius = _SMALL * (float(np.nanmax(np.hypot(all_x, all_y))) or 1.0)
     for degrees in source.angles or (_USUAL,):
         angle = CrankAngle.of(np.asarray(degrees))
-        sin, cos = mechanism.rod_angle(angle) or (0.0, 1.0)
+        sin, cos = map(float, mechanism.rod_angle(angle) or (0.0, 1.0))
         outward = complex(angle.cos, angle.sin)
         x, y = tip(degrees)[:, 0].tolist()
         force = x * angle.cos + y * angle.sin
@@ -111,7 +111,7 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
 def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
     """Return v of the pin with its component v_s along the rod, which is that of c of the crosshead, too."""
     pin, head = (omega * place for place in _pin_and_head(mechanism, angle))
-    sin, cos = mechanism.rod_angle(angle)
+    sin, cos = map(float, mechanism.rod_angle(angle))
     along, around = complex(-cos, sin), 1j * pin
     share = (around * along.conjugate()).real
     c = share / cos
@@ -131,7 +131,7 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
 
 def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
     """Return c as MF, the curve of c over the displacement, and the circle that it is with an infinite rod."""
-    sin, cos = mechanism.rod_angle(angle)
+    sin, cos = map(float, mechanism.rod_angle(angle))
     pin = omega * _pin_and_head(mechanism, angle)[0]
     v = omega * mechanism.crank
     cut = 1j * (pin.imag + pin.real * sin / cos)

@@ -214,7 +214,8 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
         for one in places:
             stresses = (one.compression, one.bending_in_plane, one.bending_out_of_plane, one.torsion)
             values = (one.degrees, *stresses, one.combined, one.von_mises)
-            rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), values))))
+            numbers = (None if value is None else float(value) for value in values)
+            rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), numbers))))
         declared = {"phi": PHI, **STRESSES}
         tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
 

@@ -1,4 +1,4 @@
-"""From results and their declared quantities to the tables of a report: what all commands on a machine share."""
+"""From results and their declared quantities to the tables of a report: shared by all commands on a machine."""
 
 import math
 from array import array
@@ -25,11 +25,11 @@ from kurbel.solver.figures import Results
 from kurbel.solver.flywheel import DeadCentre
 
 _AT_ONCE = 8192
-"""Crank angles computed at once, so that a table of any length needs little memory besides its own numbers."""
+"""Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""
 _EVERYWHERE = np.arange(0.0, 720.0, 7.5)
-"""Crank angles in degrees over the longest cycle, which show how large a curve is."""
+"""Crank angles in degrees over the longest cycle, at which the size of a curve is estimated."""
 _ROUNDING = 1e-12
-"""Values no larger than this, relative to the largest of their curve, are the rounding of a zero."""
+"""Values below this, relative to the largest of their curve, are rounding errors of a zero."""
 _UNCOMPARED = (
     "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
     "piston with pressures; this machine has neither."
@@ -43,10 +43,10 @@ _UNCOMPARED = (
 class Subject:
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
-    results: the object that has its key values, if any; at: takes crank angles (n,) in degrees and returns a state with
-    its columns, None without columns; lists: the quantities that it can have; source: has `angles_where`, None for
-    what has no rows; of: the cylinder that a pin belongs to. left_out, warnings, tables: further parts of a report,
-    empty where only key values are needed.
+    results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
+    state with the columns, None without columns; lists: the quantities that it can have; source: has `angles_where`,
+    which `--where` searches, None without rows; of: the cylinder that a pin belongs to. left_out, warnings, tables:
+    further parts of a report, empty if only key values are needed.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Subject:
     source: Any = None
     of: str = ""
 
-    def says(self, quantity: Quantity) -> bool:
+    def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
         if self.results is None:
             return True
@@ -73,9 +73,9 @@ class Subject:
         return row and row.of(self.results)
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
-        """Yield the key values of a command that it has, in SI, but for those on request."""
+        """Yield its key values of a command in SI, without those that are printed only on request."""
         for quantity in self.lists.key_values(command).values():
-            value = self.answer(quantity) if command not in quantity.on_request and self.says(quantity) else None
+            value = self.answer(quantity) if command not in quantity.on_request and self.is_printed(quantity) else None
             if value is not None:
                 yield quantity, value
 
@@ -83,9 +83,9 @@ class Subject:
 def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool = False) -> list[Subject]:
     """Return what a command has results of: each cylinder or bearing, and the whole machine last.
 
-    compare: the balance also by the acceleration of first order, next to the exact one; pistons: also each piston of a
-    rod that has several. Raises UsageError where the machine has no such results, NoSolutionError where it locks
-    itself, stalls, or vibrates without limit.
+    compare: the balance also by the approximate acceleration, next to the exact one; pistons: also each piston of a
+    rod that has several. Raises UsageError if the machine has no such results, NoSolutionError if it jams, stalls, or
+    vibrates without limit.
     """
     if command in ("motion", "forces"):
         each = [one for forces in case.cylinders for one in forces.pistons] if pistons and command == "forces" else []
@@ -129,17 +129,17 @@ ENDLESS = (
 )
 
 
-# what is requested, and the report
+# the request and its report
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """What is requested of a report on a machine, whichever its command.
+    """What is requested of the report of any command on a machine.
 
     angles: the crank angles (n,) of the rows in degrees, or a function that returns those of a subject; columns: ids
-    to show besides φ, None for the usual ones; system: see `unit_systems`; over: another column for the rows;
-    compare: with the approximations of the book next to the exact columns; prose: with key values, notes, warnings,
-    and what is left out, none of which a CSV table shows.
+    to show in addition to φ, None for the usual ones; system: see `unit_systems`; over: the column in which the rows
+    have even steps instead of φ, shown as well; compare: with the approximations of the book next to the exact columns;
+    prose: with key values, notes, warnings, and what is left out, none of which a CSV table has.
     """
 
     command: str
@@ -162,7 +162,7 @@ def report_on(
 ) -> Report:
     """Return the report on these subjects, and on the whole machine.
 
-    Raises UsageError for what overflows and for a column that no subject has, NoSolutionError if no row is found.
+    Raises UsageError for a number that overflows or a column that no subject has, NoSolutionError if no row is found.
     """
     every = (*subjects, *((whole,) if whole else ()))
     found: list[tuple[Subject, tuple[Column, ...], str]] = []
@@ -201,7 +201,7 @@ def report_on(
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
-    """Return the columns of a subject that are requested, or the usual ones; raises Nowhere where it has no row."""
+    """Return the requested columns of a subject, or the usual ones; raises Nowhere if it has no row."""
     if subject.at is None:
         return ()
     angles = frame.angles(subject) if callable(frame.angles) else frame.angles
@@ -211,12 +211,12 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
         chosen = [*(known[name] for name in frame.columns if name in known), *added]
     else:
         usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
-        chosen = [one for one in usual if subject.says(one)]
+        chosen = [one for one in usual if subject.is_printed(one)]
     return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
-    """Return the message for a column that does not exist, with those that do."""
+    """Return the message for a column that does not exist, listing those that do."""
     known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
     there: dict[str, Quantity] = {}
     for subject in subjects:
@@ -239,7 +239,7 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
 
 
 def provenance(machine: Machine) -> Provenance:
-    """Return what the results of a machine are made from: files with their SHA-256, values set over them, versions."""
+    """Return what the results of a machine depend on: files with their SHA-256, overridden values, versions."""
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
         inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))
@@ -262,7 +262,7 @@ def too_large(quantity: Quantity) -> UsageError:
 def shown_columns(
     at: Callable[[Any], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
 ) -> tuple[Column, ...]:
-    """Return these columns as far as the machine has them, at crank angles (n,) in degrees; at: as of a Subject.
+    """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
 
     Raises UsageError if one is not finite.
     """
@@ -281,19 +281,19 @@ def shown_columns(
 
 
 def shown_column(
-    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, beside: float = 0.0
+    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, largest: float = 0.0
 ) -> Column:
-    """Return the column of a quantity; values: (n,) in SI, None for no value; size: of the largest of its curve.
+    """Return the column of a quantity; values: (n,) in SI, None for no value; size: the largest value of its curve.
 
-    beside: the largest value in SI that is to have the same unit. Raises UsageError if one is not finite.
+    largest: of all columns that are to have the same unit, in SI. Raises UsageError if a value is not finite.
     """
     known = values if isinstance(values, array) else array("d", [v for v in values if v is not None])
     given = np.frombuffer(known)
     if not (np.isfinite(given).all() and math.isfinite(size)):
         raise too_large(quantity)
-    largest = float(max(given.max(initial=0.0), -given.min(initial=0.0)))
-    size = size if largest <= _ROUNDING * size else 0.0
-    unit = shown_unit(quantity.kind, system, max(size or largest, beside))
+    own = float(max(given.max(initial=0.0), -given.min(initial=0.0)))
+    size = size if own <= _ROUNDING * size else 0.0
+    unit = shown_unit(quantity.kind, system, max(size or own, largest))
     given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
     given += 0.0
     numbers = iter(known)
@@ -304,7 +304,7 @@ def shown_column(
 
 
 Row = tuple[tuple[str, ...], Mapping[str, float | None]]
-"""The names of a row in a table of places, and its values in SI by the ids of their quantities."""
+"""A row of a table of places: its names, and its values in SI by the ids of their quantities."""
 
 
 def place_table(
@@ -317,10 +317,11 @@ def place_table(
     headed: bool = False,
     alone: int = 0,
 ) -> PlaceTable:
-    """Return a table of places; declared: its quantities by id, of which one is left out if no row has it.
+    """Return a table of places; declared: its quantities by id; one that no row has is left out.
 
-    Orders and numbers of modes are written as such, 1.5, but 1 and 2; a distance in thousandths. alone: the digits of
-    values of which each is rounded by itself; all of one kind have one unit.
+    Orders and mode numbers have as many decimals as they need (1.5, but 1 and 2), distances three. alone: the digits
+    to which every value is rounded by itself; values of one kind then have one unit. headed: the names of the rows are
+    texts for people; otherwise spaces in them become underscores.
     """
     largest: dict[str, float] = {}
     for of_row in (values for _, values in rows if alone):
@@ -332,21 +333,20 @@ def place_table(
     for quantity in declared.values():
         if any(quantity.id in values for _, values in rows):
             each = [values.get(quantity.id) for _, values in rows]
-            column = shown_column(quantity, each, system, beside=largest.get(quantity.kind, 0.0))
+            column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
             decimals = 3 if quantity.id == "distance" else None
             if quantity.id in ("order", "mode"):
-                decimals = max(
-                    (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value), default=0
-                )
+                needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
+                decimals = max(needed, default=0)
             columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else alone))
     names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
     return PlaceTable(id, title, heads, names, tuple(columns), headed)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
-    """Return key values with the largest and the smallest of a column in one unit; found: as `Subject.key_values`.
+    """Return key values in the units of the system; found: see `Subject.key_values`.
 
-    Raises UsageError if one is not finite.
+    The maximum and the minimum of a column have the same unit. Raises UsageError if one is not finite.
     """
     given = tuple(found)
     units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)

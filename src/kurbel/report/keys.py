@@ -13,7 +13,7 @@ from kurbel.near_words import did_you_mean, near
 
 
 class ListedKey(NamedTuple):
-    """A key with its dotted path, what holds without it, what may stand for it, and the word that it is beside."""
+    """A key with its dotted path, what holds without it, alternatives to it, and the word that it belongs to."""
 
     path: str
     key: Key

@@ -18,14 +18,14 @@ from kurbel.report.frame import Subject, subjects_of, too_large
 from kurbel.solver.case import Case
 
 _ROUNDING = 1e-9
-"""A bound is no more exact than what is printed of it: a stroke of 110 mm does not break a limit of 110 mm."""
+"""Relative tolerance of a bound: a stroke of 110 mm does not break a limit of 110 mm through rounding."""
 
 
 class Entry(NamedTuple):
     """One line of a section of a check.
 
-    severity: `error` of a limit that is broken or a figure that is off, `warning`, `info`, or '' of a plain statement;
-    path: of what it is about in the machine file. Of a verdict also quantity, value with unit, bound, and whose it is.
+    severity: `error` for a limit or an expectation that FAILs, `warning`, `info`, or '' for a plain statement; path: of
+    its subject in the machine file. A verdict also has quantity, value with unit, bound, and where: the owner.
     """
 
     what: str
@@ -40,7 +40,7 @@ class Entry(NamedTuple):
 
 
 class Unjudged(NamedTuple):
-    """A limit or an expectation that cannot be compared, and why; the error names its path, too."""
+    """A limit or an expectation that cannot be compared, and why; the message of the error includes the path."""
 
     path: Path
     error: KurbelError
@@ -50,7 +50,7 @@ class Unjudged(NamedTuple):
 def judged(case: Case) -> Iterator[Entry | Unjudged]:
     """Yield how each limit and then each expectation compares, or why it cannot be compared.
 
-    Of values that are equal to nine digits the first is compared for all.
+    Values that are equal to nine digits are compared once.
     """
     machine, declared = case.machine, by_id(*every_quantity().all_key_values)
     figures = [("limits", *one) for one in machine.limits] + [("expect", *one) for one in machine.expect]
@@ -77,13 +77,13 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
 
 
 def without(name: str, id: str) -> str:
-    """Return that the machine, or the part of it that a figure is for, does not have this key value."""
+    """Return the message that the machine, or the part of it with this name, does not have a key value."""
     scope = {"": "this machine", MACHINE: "the whole machine"}.get(scoped(name)[0], scoped(name)[0])
     return f"{scope} has no {id}"
 
 
 def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float) -> Entry | Unjudged:
-    """Compare a value in SI with its bound or expectation; what is not finite cannot be compared."""
+    """Compare a value in SI with its bound or expectation; a value that is not finite cannot be compared."""
     if not math.isfinite(value):
         return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
     kind, unit = quantity.kind, getattr(bound, "unit", "")
@@ -108,14 +108,14 @@ def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:
-    """Return whether a key value breaks its bound: is below one from below, above any other; a residual, in size."""
+    """Return whether a key value is below a lower bound or above an upper one; of a residual its magnitude counts."""
     magnitude = abs(value) if quantity.id.endswith("_residual") else value
     excess = bound - value if quantity.bounded_below else magnitude - bound
     return excess > _ROUNDING * abs(bound)
 
 
 def _shown(value: float, kind: str, unit: str) -> str:
-    """Return a value with its unit, in that of the file if one is written there."""
+    """Return a value with its unit, which is that of the file if it has one."""
     if unit == "%":
         return f"{100 * value:.9g} %"
     return f"{convert(value, kind, unit):.9g} {unit or SI[kind]}".rstrip()
@@ -124,7 +124,7 @@ def _shown(value: float, kind: str, unit: str) -> str:
 def _beyond_by_sign(
     case: Case, name: str, bound: float, path: Path, declared: Mapping[str, Quantity]
 ) -> Iterator[Entry]:
-    """Yield where a value of the other sign passes the magnitude of a limit, which the limit does not see."""
+    """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it."""
     base, _, end = name.rpartition("_")
     other = f"{base}_{'min' if end == 'max' else 'max'}" if end in ("max", "min") else ""
     quantity, upward = declared.get(scoped(other)[1]), 1 if end == "max" else -1

@@ -1,4 +1,4 @@
-"""What pictures and long reports are made of, whatever draws them: curves, shades and marks on panels with two axes.
+"""The parts of pictures and long reports, independent of the output: curves, shades and marks on panels with two axes.
 
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
@@ -159,7 +159,7 @@ class Body(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """Whether anything of it changes."""
+        """Whether the body moves or changes."""
         return any(len(one) > 1 for one in self[1:])
 
     def seen(self, turned: float, mirrored: bool = False, moved: complex = 0.0) -> "Body":
@@ -237,7 +237,7 @@ class Panel(NamedTuple):
 
 
 class Picture(NamedTuple):
-    """A picture: its word on the command line, the printed title, and a sentence that says what is seen.
+    """A picture: its word on the command line, the printed title, and the caption.
 
     machine: its name; of: the cylinder or bearing, '' where there is one only; across: panels next to each other;
     legend: names of the looks of its curves, where all panels share them.
@@ -279,7 +279,7 @@ class Grid(NamedTuple):
 
 
 class Fact(NamedTuple):
-    """A key value that says much of a machine: title, number and unit, symbol, the part that has it, crank angle."""
+    """A key value on the first page: title, number and unit, symbol, the part that has it, crank angle."""
 
     title: str
     value: float
@@ -296,14 +296,14 @@ class Facts(NamedTuple):
 
 
 class Notice(NamedTuple):
-    """A sentence that is to be seen; kind: `good`, `bad` or `warning`."""
+    """A highlighted sentence; kind: `good`, `bad` or `warning`."""
 
     text: str
     kind: str
 
 
 class Pair(NamedTuple):
-    """A picture of each of two machines, None of one that does not have it."""
+    """The same picture of two machines; None for one that does not have it."""
 
     left: Picture | None
     right: Picture | None

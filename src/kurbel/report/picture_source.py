@@ -1,4 +1,4 @@
-"""Where pictures take their curves from: results sampled so finely that no line of points leaves its curve visibly."""
+"""The curves of pictures: results sampled so finely that straight lines between the points look like the curve."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -17,14 +17,14 @@ from kurbel.solver.figures import Results
 
 PHI = "phi"
 FINENESS = 1 / 2000
-"""By what of its height a line of points may miss a curve: less than can be seen on paper."""
+"""Permissible distance of a line of points from its curve, relative to the height: invisible on paper."""
 _WIDEST = 7.5  # degrees between two points at first: narrow enough that no wave hides between them
 _HALVINGS = 12
 _BEADS = 30.0
 """Degrees from one mark to the next along the locus of a tip; every third one has its angle."""
 ZERO = "0 at every angle"
 _CROSSING = 1e-9
-"""Of the largest distance between two lines: where they cross, rounding alone is between them."""
+"""Share of the largest distance between two lines that counts as rounding error, where they cross."""
 _MOST_SHADES = 100
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 
@@ -101,7 +101,7 @@ class Source:
             self._start = results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, *ids: str) -> tuple[str, ...]:
-        """Return those of these columns that there are."""
+        """Return those of these columns that the results have."""
         return tuple(id for id in ids if id in self.quantities and self._start[id] is not None)
 
     def values(self, ids: Sequence[str], degrees: Any, within: Array | None = None) -> Array:
@@ -137,9 +137,9 @@ class Source:
         return Words(quantity.symbol, quantity.ascii_symbol, quantity.short)
 
     def marks(self, id: str, place: Callable[[float], Any]) -> tuple[Mark, ...]:
-        """Return the extremes of a column, none of a level line; place: takes the crank angle, returns x, or x and y.
+        """Return marks at the extremes of a column, none for a constant; place: crank angle -> x, or x and y.
 
-        Without y it is the value.
+        Without y the value is used.
         """
         rows = self.results.rows.key_values
         named = {name: rows[name].of(self.results) for name in (f"{id}_max", f"{id}_min") if name in self.key_values}
@@ -161,11 +161,11 @@ class Source:
         curves += [level(x)] if zero else []
         marks = [mark for id in ids for mark in self.marks(id, lambda angle: self.values((over,), angle)[0])]
         axis, title = self.axis(ids[0]), "" if np.any(lines) else ZERO
-        up = axis if len(ids) == 1 else axis._replace(name=kind_words(axis.kind))
+        up = axis if len(ids) == 1 else axis._replace(name=Words("", words=axis.kind.replace("_", " ")))
         return Panel(self.axis(over), up, tuple(curves), (), tuple(marks), title=title)
 
     def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
-        """Yield a panel for each group of columns of one kind, as far as there are any."""
+        """Yield a panel for each group of columns of one kind, without columns that the results lack."""
         if over == PHI or self.having(over):
             yield from (self.panel(ids, over) for group in groups if (ids := self.having(*group)))
 
@@ -191,17 +191,12 @@ class Source:
         return Panel(axis, axis, curves, marks=(*marks, *labelled), equal=True, title=title)
 
 
-def kind_words(kind: str) -> Words:
-    """Return the words of an axis on which there are several quantities of a kind."""
-    return Words("", words=kind.replace("_", " "))
-
-
 def _at(degrees: float) -> PageFigure:
     return PageFigure(Words(""), at_deg=degrees)
 
 
 def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
-    """Return a faint level line as far as x (n,) reaches."""
+    """Return a faint horizontal line over the range of x (n,)."""
     return Curve(name, np.array([np.nanmin(x), np.nanmax(x)]), np.full(2, height), "faint")
 
 
@@ -247,7 +242,7 @@ def in_units(panel: Panel, system: str) -> Panel:
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
-    """Yield what is between two lines, cut where they cross; where they cross all over, what is above and below."""
+    """Yield the areas between two lines, cut at their crossings; if these are too many, all above and all below."""
     apart = line - base
     above = np.where(np.abs(apart) > _CROSSING * np.abs(apart).max(), np.sign(apart), 0.0)
     # a point on the base belongs to the area before it, and to the next one, too

@@ -227,11 +227,11 @@ def _with_infinite_rod(source: Source, panel: Panel, id: str, over: str) -> Pane
 
     def values(degrees: Array, within: Array) -> Array:
         turned, crank, omega = np.radians(degrees), drive.mechanism.crank, drive.omega or 0.0
-        way = crank * (1 - np.cos(turned))
-        of = {"x": way, "c": crank * omega * np.sin(turned), "b": crank * omega**2 * np.cos(turned)}
-        return np.stack([degrees if over == PHI else way, of[id]])
+        x = crank * (1 - np.cos(turned))
+        of = {"x": x, "c": crank * omega * np.sin(turned), "b": crank * omega**2 * np.cos(turned)}
+        return np.stack([degrees if over == PHI else x, of[id]])
 
-    # over the displacement once to and fro, of a straight line once only: dashes over dashes are no dashes
+    # over the displacement out and back, but a straight line only out: two dashed lines would hide the dashes
     once = np.array([0.0, 180.0] if id == "b" else [0.0, 180.0, 360.0]) if over == "x" else None
     samples, symbol = source.samples((over, id), values=values, breaks=once), source.words(id).symbol
     name = Words(f"{symbol}, L/R = ∞", f"{symbol}, L/R = inf")
@@ -244,7 +244,7 @@ def _with_infinite_rod(source: Source, panel: Panel, id: str, over: str) -> Pane
 class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
-    The docstring of that function says what is seen. It yields nothing where the machine lacks what the picture shows.
+    The docstring of that function is the caption. It yields nothing if the machine lacks what the picture shows.
     across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
     case and those that are wanted.
     """
@@ -258,7 +258,7 @@ class PictureKind(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The sentence that says what is seen."""
+        """The caption."""
         return " ".join((self.panels.__doc__ or "").split())
 
 
@@ -289,10 +289,8 @@ PICTURES = (
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
-
-
 _OF_PARTS = ("motion", "forces", "bearings")
-"""Commands whose pictures are drawn of each cylinder or bearing; those of others are of the whole machine."""
+"""Commands whose pictures are of each cylinder or bearing; those of others are of the whole machine."""
 
 
 def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Iterator[Picture]:
@@ -362,7 +360,7 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
 
 
 def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:
-    """Yield what a picture is drawn from, each with the name of its cylinder or bearing; equal ones are drawn once."""
+    """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
     command, bearings = kind.command, kind.command == "bearings"
     if command not in _OF_PARTS:
         results = case.torsion if command == "torsion" else subjects_of(case, command)[-1].results

@@ -1,4 +1,4 @@
-"""At which crank angles a table has its rows, if they are requested otherwise than by angles."""
+"""The crank angles of the rows of a table that are given by a condition or by equal steps of the stroke."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -23,9 +23,9 @@ _OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_accelerati
 
 
 def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]:
-    """Return what finds the angles, up to `end`, at which x passes 0, step, 2 step, … percent of the stroke both ways.
+    """Return a function that finds the angles, up to `end`, at which x is 0, step, 2 step, … percent of the stroke.
 
-    Raises UsageError for a step that is not positive, and for what does not go to and fro.
+    Both strokes count. Raises UsageError for a step that is not positive, and for an output without a stroke.
     """
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
@@ -33,11 +33,11 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
         mechanism = subject.source.drive.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
-        way = mechanism.stroke * fractions
-        out = np.asarray(mechanism.crank_angles_at(way, True))
-        back = np.asarray(mechanism.crank_angles_at(way[::-1], False))
+        x = mechanism.stroke * fractions
+        out = np.asarray(mechanism.crank_angles_at(x, True))
+        back = np.asarray(mechanism.crank_angles_at(x[::-1], False))
         turn = np.concatenate((out, back[1:]))
-        # what ends a turn begins the next one
+        # the end of a turn is the beginning of the next one
         every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
         return np.concatenate(every).tolist()  # type: ignore[no-any-return]
 
@@ -47,8 +47,8 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
 def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Sequence[float]]:
     """Return a function that finds the angles, up to `end`, at which a condition such as `b = 1/6 b_max` holds.
 
-    They are exact but for rounding; it raises Nowhere if there are none. Raises UsageError for a text that is no
-    condition, and says what to write instead.
+    They are exact except for rounding; the function raises Nowhere if there are none. Raises UsageError for a text that
+    is no condition.
     """
     name, equals, value = (part.strip() for part in plain(text).partition("="))
     number = re.match(RATIO, value) or NUMBER.match(value)
@@ -81,7 +81,7 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
             raise Nowhere(
                 f"{subject.name}: {column.id} is nowhere {show(wanted, column.kind)}: it goes from {low} to {high}"
             )
-        # a table over one turn has what a cycle of two has in either
+        # a table over one turn has the rows of both turns of a cycle
         turned = np.sort(np.mod(found.angles, end))
         return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()  # type: ignore[no-any-return]
 

@@ -17,21 +17,21 @@ from kurbel.solver.forces import CylinderForces
 _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""
 _LONGEST = 1.1
-"""Length of the arrow of the largest force over the crank radius."""
+"""Length of the arrow of the largest force, relative to the crank radius."""
 _VANISHING = 0.005
-"""Of the largest force; one that is never more has no arrow."""
+"""A force that never exceeds this share of the largest force has no arrow."""
 _MOST_IN_A_ROW = 16
 _PITCH, _LEAST, _MOST = 1.35, 1.2, 4.5
-"""Distance of cylinders in a row over the widest bore; between which bounds that of the file is drawn."""
+"""Distance of cylinders in a row over the widest bore: the default, and the bounds for distances of the file."""
 _WHEEL = 2.2
-"""Radius of a flywheel over the crank radius, where only its moment of inertia is known."""
+"""Radius of a flywheel, relative to the crank radius, if only its moment of inertia is known."""
 _LEVEL = 0.1
-"""Sine of the inclination below which a machine is a horizontal one."""
+"""Sine of the inclination below which a machine counts as horizontal."""
 _LETTERS = 50.0, 33.0
-"""How many letters a picture is wide and high."""
+"""Width and height of a picture in letters."""
 _Row = list[tuple[float, Train]]
 _Text = tuple[str, complex, complex]
-"""A text, a place in m, and how many letters its middle is from there."""
+"""A text, a place in m, and the distance of the text from there in letters."""
 
 
 def mechanism(source: Source) -> Iterator[Panel]:
@@ -60,7 +60,7 @@ def _rest(first: CylinderForces, alone: bool) -> float:
 
 def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     """Return all views with their texts."""
-    angle, mirrored, R = _standing(trains), machine.rotation == "under", trains[0].mechanism.crank
+    angle, mirrored, R = _drawn_angle(trains), machine.rotation == "under", trains[0].mechanism.crank
     # the first cylinder of each stroke line, which is in front of those behind it; a yoke is in front of its crank
     front = list({round(one.angle % 360.0, 6): one for one in reversed(trains)}.values())
     bodies = [*_wheel(machine, R), Body.of([disc("axis", R)])]
@@ -88,11 +88,11 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     captions = tuple(
         Caption(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts
     )
-    said = _footnote(machine, trains, row, len(front))
-    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), captions=captions, footnote=said)
+    note = _footnote(machine, trains, row, len(front))
+    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), captions=captions, footnote=note)
 
 
-def _standing(trains: Sequence[Train]) -> float:
+def _drawn_angle(trains: Sequence[Train]) -> float:
     """Return the angle in degrees from the horizontal to the stroke line of the first cylinder, as it is drawn."""
     first = trains[0]
     if first.cylinder.inclination is not None and first.is_engine:
@@ -107,9 +107,9 @@ def _standing(trains: Sequence[Train]) -> float:
 
 
 def _row(trains: Sequence[Train]) -> _Row:
-    """Return the cylinders, each with its place along the shaft in m; none where all have stroke lines of their own.
+    """Return the cylinders, each with its place along the shaft in m; none if each has its own stroke line.
 
-    Places are those of the file where the cylinders then stand neither in each other nor far apart.
+    Places are those of the file if the cylinders then neither overlap nor are far apart.
     """
     banks = {round(one.angle % 360.0, 6) for one in trains}
     plain = all(one.is_engine and not (one.has_slot or one.has_frame) for one in trains)
@@ -124,10 +124,10 @@ def _row(trains: Sequence[Train]) -> _Row:
 
 
 def _from_the_side(machine: Machine, row: _Row, along: Sequence[float], level: bool) -> tuple[list[Body], list[_Text]]:
-    """Return the view from the side: below that along the shaft where the machine lies, else at its right.
+    """Return the view from the side, below the view along the shaft if the machine is horizontal, else at its right.
 
-    along: left, right, bottom and top of that view. In the frame of this one the shaft runs along −y, on the page down
-    or to the right.
+    along: left, right, bottom and top of the view along the shaft. In the coordinates of the side view the shaft is
+    along −y, on the page downward or to the right.
     """
     places, first, R = [place for place, _ in row], row[0][1], row[0][1].mechanism.crank
     pitch, bore = float(min(np.diff(places))), min(one.barrels[0].bore for _, one in row)
@@ -152,7 +152,7 @@ def _from_the_side(machine: Machine, row: _Row, along: Sequence[float], level: b
 
 
 def _bounds(bodies: Sequence[Body]) -> tuple[float, float, float, float]:
-    """Return left, right, bottom and top of all that bodies ever cover."""
+    """Return left, right, bottom and top of all positions of the bodies."""
     every = np.concatenate([line.ravel() for body in bodies for _, line in body.outlines()])
     return every.real.min(), every.real.max(), every.imag.min(), every.imag.max()
 
@@ -178,7 +178,7 @@ def _wheel(machine: Machine, crank: float) -> Iterator[Body]:
 
 
 def _footnote(machine: Machine, trains: Sequence[Train], row: _Row, front: int) -> str:
-    """Return what is to scale, and by which shares the rest is drawn; front: cylinders that are not behind others."""
+    """Return the note on what is to scale, and what is assumed; front: number of cylinders not behind others."""
     first, scale, shares = trains[0], list[str](), list[str]()
     if first.is_engine:
         barrel = first.barrels[0]
@@ -201,15 +201,15 @@ def _footnote(machine: Machine, trains: Sequence[Train], row: _Row, front: int) 
     count, pistons = len(trains), [piston for one in trains for piston in one.cylinder.pistons]
     hidden = [] if row or front == count else [f"{count - front} of {count} cylinders, behind the others"]
     hidden += ["pistons by a lever"] if any(one.lever_ratio != 1 for one in pistons) else []
-    said = f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
-    return f"{said} Not drawn: {', '.join(hidden)}." if hidden else said
+    note = f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
+    return f"{note} Not drawn: {', '.join(hidden)}." if hidden else note
 
 
 # the forces
 
 
 def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
-    """Yield every force as an arrow clear of the members, the largest over the cycle as long as any can be."""
+    """Yield every force as an arrow clear of the members; the largest force of the cycle has the longest arrow."""
     source, sketch, R = Source(train.results, None), train.sketch, train.mechanism.crank
     degrees = train.cycle
     outward = np.exp(1j * np.radians(degrees))
@@ -219,7 +219,7 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
         places: ComplexArray = train.joints[name]
         return np.concatenate((places[:1], np.tile(places[1:], turns)))[: len(degrees)]
 
-    # joint, direction in which the force counts, and where the arrow is from there, at a distance
+    # id -> joint, positive direction of the force, side and distance of the arrow from the joint
     clear, place = 1.5 * SHOE * R, joint(sketch.output or PIN)
     if train.has_slot or train.has_frame:
         clear, place = 1.95 * R, joint(PIN).real.astype(complex) if train.has_slot else place
@@ -230,10 +230,10 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
     acting = dict[str, tuple[ComplexArray, ComplexArray, ComplexArray | None, float]]()
     if sketch.toward:
         toward = np.full(len(degrees), complex(*sketch.toward))
-        acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.6 * R  # beside N
+        acting["P"] = place - 1j * toward * (clear + 0.12 * R), toward, toward, 0.45 * R  # its name clear of N
     if sketch.across:
         acting["N"] = place, np.full(len(degrees), complex(*sketch.across)), None, clear
-    # on that side of the pin, or of the shaft, from which the rod does not come; T and D are 0 where that changes
+    # on the side of the pin, or of the shaft, opposite the rod; T and D are 0 where the side changes
     pin, tangent, off_pin = joint(PIN), 1j * outward, EYE * train.pin + 0.12 * R
     coupled = [joint(end) - pin for start, end in sketch.links if start == PIN]
     rod = coupled[0] if coupled else -outward

@@ -1,4 +1,4 @@
-"""The first page of a report: what a machine is, the key values that say most of its kind, verdicts, and warnings."""
+"""The first page of a report: the machine, the most informative key values of its kind, verdicts, and warnings."""
 
 import math
 import re
@@ -90,16 +90,16 @@ _KINDS = {
     "effort": "power_shaft M_mean M_max M_min dE delta J M_coupling_max natural_frequency",
     "masses": "P_peak M_max load_max F_free_max M_free_max c_m c_max b_max",
 }
-"""Kind of machine -> the key values that say most of it, in order; others follow as above."""
+"""Kind of machine -> its most informative key values, in order; then follow those of `_USUAL`."""
 _SMALLEST = ("safety_pin_min", "reversal_angle", "transmission_min")
-"""Key values of which the smallest one of several parts counts."""
+"""Key values of which the smallest of all parts is shown, else the largest."""
 _MOST_FACTS = 8
 _CLAUSE = re.compile(r"[:;,(]| over the cycle")
-"""Where the first words of a sentence end that say which quantity it is."""
+"""End of the first words of a sentence, which name the quantity."""
 
 
 def kind_of(case: Case) -> str:
-    """Return what a machine is: a word that decides which key values are on the first page."""
+    """Return the kind of a machine, which decides the key values on the first page."""
     machine = case.machine
     if not machine.cylinders:
         return "effort" if machine.effort else "shaft line"
@@ -145,7 +145,7 @@ def subtitle_of(machine: Machine) -> str:
 
 
 class Found(NamedTuple):
-    """A key value in SI, with the names of the parts that have it where others have less, and its crank angle."""
+    """A key value in SI; where: the parts that have it, if others have less; at_deg: its crank angle."""
 
     title: str
     number: float
@@ -156,21 +156,33 @@ class Found(NamedTuple):
 
 @np.errstate(all="ignore")
 def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
-    """Return key values for the first page by their ids; without ids, the eight that say most of its kind, none zero.
+    """Return key values for the first page by their ids; without ids, the eight most informative ones, none zero.
 
-    Of several parts the one that has the largest is named, or the smallest where that is what counts.
+    Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`; a key value
+    of the whole machine is taken from there.
     """
     kind = kind_of(case)
-    wanted = ids or (*_KINDS[kind].split(), *_USUAL.split())
+    wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
     commands = {id: word for word, labels in _LABELS.items() for id in labels}
     subjects = {word: if_any(partial(subjects_of, case, word)) for word in _LABELS}
     found: dict[str, Found] = {}
+    if not ids and kind != "effort" and _against(subjects["flywheel"]):
+        wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
+    titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
+    if "M_max" not in wanted:  # the largest torque of a machine that is driven
+        titles["M_min"] = _LABELS["flywheel"]["M_max"]
     for id in dict.fromkeys(wanted):
         one = _largest(id, commands[id], subjects[commands[id]])
         numbers = {0.0, *(abs(other.number) for other in found.values())}  # none twice
         if one and (ids or (abs(one.number) not in numbers and len(found) < _MOST_FACTS)):
-            found[id] = one._replace(title="Largest ram force") if id == "P_peak" and kind == "ram" else one
+            found[id] = one._replace(title=titles.get(id, one.title))
     return found
+
+
+def _against(subjects: Sequence[Subject]) -> bool:
+    """Return whether the largest torque is against the rotation, as that of a pump or a compressor."""
+    most, least = (_largest(id, "flywheel", subjects) for id in ("M_max", "M_min"))
+    return bool(most and least and abs(least.number) > abs(most.number))
 
 
 def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None:
@@ -178,20 +190,21 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None
     for one in subjects:
         quantity = one.lists.key_values(command).get(id)
         with suppress(KurbelError):
-            value = one.answer(quantity) if quantity and one.says(quantity) else None
+            value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
                 each.append((number, one.name, quantity, value))
     if not each:
         return None
     sign = -1 if id in _SMALLEST else 1
-    number, _, quantity, value = max(each, key=lambda one: sign * abs(one[0]))
+    whole = [one for one in each if one[1] == "whole machine"]
+    number, _, quantity, value = max(whole or each, key=lambda one: sign * abs(one[0]))
     equal = [name for size, name, *_ in each if f"{size:.6g}" == f"{number:.6g}"]
     where = together(equal) if len(equal) < len(each) else ""
     return Found(_LABELS[command][id], number, quantity, where, getattr(value, "degrees", None))
 
 
 def tiles(facts: Iterable[Found], system: str) -> Facts:
-    """Return key values as they are shown next to one another, each in its unit."""
+    """Return key values for display as tiles, each in its unit."""
     found = []
     for one in facts:
         unit = shown_unit(one.quantity.kind, system, abs(one.number))
@@ -201,7 +214,7 @@ def tiles(facts: Iterable[Found], system: str) -> Facts:
 
 
 def if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
-    """Return what a machine has, nothing if it has none of that."""
+    """Return the results as a list, empty if the machine does not have them."""
     try:
         return list(found())
     except KurbelError:
@@ -209,7 +222,7 @@ def if_any(found: Callable[[], Iterable[Thing]]) -> list[Thing]:
 
 
 def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[str]) -> Iterator[Item]:
-    """Yield the key values that say most, limits and expectations with their verdicts, load cases, and warnings."""
+    """Yield the most informative key values, limits and expectations with their verdicts, load cases, and warnings."""
     facts = facts_of(case)
     yield tiles(facts.values(), system)
     yield from verdicts(case, cases)
@@ -226,7 +239,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
 
 
 def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
-    """Yield limits and expectations with their bounds and verdicts, and what keeps them from being compared."""
+    """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
     found = checked(case, cases)
     judged = [one for part in found.sections if part.title in ("Limits", "Expected") for one in part.entries]
     rows, marks = list[tuple[Shown, ...]](), list[str]()
@@ -240,21 +253,15 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
             rows.append((symbol, value, one.bound, "FAIL" if bad else "PASS", text, where))
             marks.append("bad" if bad else "good")
     if rows:
-        heads = (
-            "Symbol",
-            "Value",
-            "Bound",
-            "Verdict",
-            "Limit or expectation",
-            "Where",
-        )  # what a narrow window shows first
+        # in this order: a narrow window shows the first columns
+        heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
     yield from (Notice(str(error), "bad") for error in found.errors)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 
 
 def firing_order(machine: Machine) -> Iterator[Grid]:
-    """Yield when each cylinder of an engine of several fires, and the crank angle from one ignition to the next."""
+    """Yield the firing angles of an engine with several cylinders, and the intervals between ignitions."""
     found, cycle = firings(machine), 360.0 * machine.revolutions
     if len(machine.cylinders) < 2 or not found:
         return

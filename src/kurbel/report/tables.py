@@ -1,4 +1,4 @@
-"""What a report is made of, whatever it will be rendered as, and the crank angles of its rows. Needs no numpy."""
+"""The parts of a report, independent of the output format, and the crank angles of its rows. Needs no numpy."""
 
 import math
 from array import array
@@ -12,13 +12,13 @@ Value = Union[float, int, None]
 
 
 class Column(NamedTuple):
-    """One quantity over the crank angle, in the unit that is shown; None where it has no value.
+    """One quantity over the crank angle, in the unit that is shown; values are None where there is none.
 
     values: a tuple, or an array of doubles, which takes a quarter of the memory.
-    decimals: a fixed number of them in print, to keep the digits of a source.
+    decimals: number of decimals in print, if fixed, to keep the digits of a source.
     marked: indices of the values that have an asterisk in print.
-    alone: digits of values that each have their own scale, as errors over many powers of ten; 0 for a common one.
-    size: the largest value of the whole curve, if those here are but rounding relative to it; else 0.
+    alone: significant digits if each value has its own scale, as errors over many powers of ten; 0 for a common scale.
+    size: the largest value of the whole curve, if the values here are only rounding errors relative to it; else 0.
     """
 
     id: str
@@ -36,7 +36,7 @@ class Column(NamedTuple):
 class KeyValue(NamedTuple):
     """One key value, already in its unit; a tuple for a list of angles; `at_deg`: crank angle of an extreme.
 
-    noise: the value is a residual of rounding alone, which has digits in json only; heading: see `Quantity`.
+    noise: the value is only rounding error, printed with digits in JSON only; heading: see `Quantity`.
     """
 
     id: str
@@ -51,7 +51,7 @@ class KeyValue(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """What was neither computed nor printed, and why."""
+    """A result that was neither computed nor printed, and why."""
 
     what: str
     why: str
@@ -60,10 +60,10 @@ class LeftOut(NamedTuple):
 class PlaceTable(NamedTuple):
     """A table whose rows are named places instead of crank angles; `id` names it in csv and json.
 
-    heads: what the names are, such as (part, place), or none.
-    names: those of each row, one to a head, with _ for a blank.
-    headed: the heads are printed, too, and the names are printed with their _.
-    said: a note has all of it, so that it is not printed.
+    heads: titles of the names, such as (part, place), or none.
+    names: of each row, one for each head; a blank is _ unless headed.
+    headed: the heads are printed, and the names as they are; otherwise a _ is printed as a blank.
+    in_note: a note has the whole content, so that the table is not printed.
     """
 
     id: str
@@ -72,14 +72,14 @@ class PlaceTable(NamedTuple):
     names: tuple[tuple[str, ...], ...]
     columns: tuple[Column, ...]
     headed: bool = False
-    said: bool = False
+    in_note: bool = False
 
 
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
-    `name` is the cylinder's name or the L/R as a number; of: the cylinder that a pin belongs to. nowhere: why it has no
-    row, where rows are sought.
+    name: of the cylinder, or the L/R as a number; of: the cylinder that a pin belongs to. nowhere: why `--where` finds
+    no row.
     """
 
     name: str | float
@@ -93,14 +93,14 @@ class Part(NamedTuple):
 
 
 class InputFile(NamedTuple):
-    """A file that was read, and the SHA-256 of its bytes; None where it is gone since."""
+    """A file that was read, and the SHA-256 of its bytes; None if it no longer exists."""
 
     file: str
     sha256: str | None
 
 
 class Provenance(NamedTuple):
-    """What results were made from: files, what was set over the machine file, and the versions of the libraries."""
+    """What results depend on: files, values set over those of the machine file, and versions of libraries."""
 
     inputs: tuple[InputFile, ...]
     overrides: tuple[str, ...]
@@ -108,12 +108,12 @@ class Provenance(NamedTuple):
 
 
 class Report(NamedTuple):
-    """One answer of one command.
+    """The output of one command.
 
-    title: head line over the printed table, with its German title; command and machine as in JSON (`machine` is None
+    title: printed above everything; command and machine as in JSON (`machine` is None
     for `kurbel table`); group: `cylinders`, `bearings`, `ratios` or `scenes`, the JSON key of `parts`; whole: the
-    results of the whole machine, if any; mirrored: what changes under a second head line of the angles 360° − φ
-    (empty: no such line); notes: sentences below the table; head: sentences right below the title; provenance: None
+    results of the whole machine, if any; mirrored: what changes for the angles 360° − φ, which then have a second head
+    line (empty: none); notes: sentences below the table; head: sentences right below the title; provenance: None
     where no file was read; cylinders: the names of all that the machine has.
     """
 
@@ -136,13 +136,13 @@ class Report(NamedTuple):
 
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
-        """The tables of places as people read them."""
-        return (table for part in self.all_parts for table in part.place_tables if not table.said)
+        """The tables of places that are printed for people."""
+        return (table for part in self.all_parts for table in part.place_tables if not table.in_note)
 
     def of_cylinder(self, name: str) -> "Report":
-        """Return the results of one part alone, or of all that belong to a cylinder, by its name or its number.
+        """Return the results of one part, or of all parts of a cylinder, given by name or number.
 
-        Raises UsageError where there are none, and where one is called by the number of another; NoSolutionError where
+        Raises UsageError if there are none, or if a cylinder has the number of another as its name; NoSolutionError if
         no row of it is found.
         """
         name = cylinder_meant(name, self.cylinders)
@@ -164,9 +164,9 @@ class Report(NamedTuple):
 
 
 def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
-    """Return the name of the cylinder that a name or a number from 1 on means; any other name as it is.
+    """Return the name of the cylinder with this name or number from 1; any other name unchanged.
 
-    Raises UsageError where one cylinder is called by the number of another.
+    Raises UsageError if a cylinder has the number of another as its name.
     """
     numbered = dict(zip(map(str, range(1, len(cylinders) + 1)), cylinders))
     if numbered.get(name, name) != name and name in cylinders:
@@ -181,7 +181,7 @@ def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
 # crank angles of the rows
 
 MOST_ROWS = 1_500_000
-"""More rows than this, over all cylinders, are refused: they would not fit into half a gigabyte of memory."""
+"""Most rows of all cylinders together; more would need over half a gigabyte of memory."""
 
 
 def stepped(step: float, end: float, parts: int = 1) -> Sequence[float]:
@@ -195,7 +195,7 @@ def stepped(step: float, end: float, parts: int = 1) -> Sequence[float]:
     if not 0 < step < math.inf:
         raise UsageError("--step must be a positive number of degrees")
     check_rows(end / step, parts)
-    # whole steps are counted, not added up, and 3 · 0.1 is written 0.3, so that no rounding creeps in
+    # steps are multiplied, not added up, and 3 · 0.1 is rounded to 0.3, so that no rounding error accumulates
     count = math.ceil(end / step * (1 - 1e-12))
     angles = array("d", (float(f"{i * step:.15g}") for i in range(count)))
     angles.append(end)
@@ -203,7 +203,7 @@ def stepped(step: float, end: float, parts: int = 1) -> Sequence[float]:
 
 
 def check_rows(angles: float, parts: int) -> None:
-    """Raise UsageError for a table that is too long; parts: the cylinders or L/R that have these angles each."""
+    """Raise UsageError for a table that is too long; parts: number of cylinders or L/R with these angles."""
     if angles * parts > MOST_ROWS:
         each = f" for each of {parts}" if parts > 1 else ""
         raise UsageError(
@@ -212,7 +212,7 @@ def check_rows(angles: float, parts: int) -> None:
 
 
 def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
-    """Return the angles given, or 0, step, 2 step, … `end` in degrees; parts: cylinders or L/R that have them each."""
+    """Return the given angles, or 0, step, 2 step, … `end` in degrees; parts: see `check_rows`."""
     if angles is None:
         return stepped(step, end, parts)
     check_rows(len(angles), parts)

@@ -20,7 +20,7 @@ from kurbel.report.picture import MOMENTS_PER_TURN, Body, Shape
 from kurbel.solver.forces import CylinderForces
 
 BORE = 0.9
-"""Of the stroke, where no bore is given."""
+"""Bore relative to the stroke, if none is given."""
 _CLEARANCE = 0.05  # of the stroke, between piston and cover in the dead centre
 _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # heights of pistons over the bore
 WALL, COVER, _GLAND, _ROD = 0.06, 0.1, 0.16, 0.08  # of the bore; the last is the radius of a piston rod
@@ -89,7 +89,7 @@ class Train:
 
     @property
     def is_engine(self) -> bool:
-        """Whether a piston goes to and fro on the stroke line."""
+        """Whether a piston reciprocates on the stroke line."""
         return bool(self.mechanism.slides) and not self.mechanism.quick_return
 
     @property
@@ -109,13 +109,13 @@ class Train:
 
     @property
     def forked(self) -> bool:
-        """Whether the end of a lever slides in a fork of what it drives."""
+        """Whether the end of a lever slides in a fork of the part that it drives."""
         ends = self.joints.get("end")
         return bool(self.sketch.output) and ends is not None and np.allclose((self.output - ends).imag, 0.0)
 
     @property
     def outer_end(self) -> float:
-        """How far the outermost cylinder reaches along the stroke line, in m."""
+        """Outer end of the outermost cylinder on the stroke line, in m."""
         return max(self.mechanism.crank, *(barrel.ends(COVER)[1] for barrel in self.barrels))
 
     @property
@@ -205,7 +205,7 @@ def _directions(vectors: ComplexArray) -> Array:
 
 
 def cylinders(train: Train) -> Iterator[Body]:
-    """Yield cylinders, guides, and what goes to and fro on the stroke line."""
+    """Yield cylinders, guides, and the reciprocating parts on the stroke line."""
     if not train.is_engine:
         return
     R, level = train.mechanism.crank, 1j * train.mechanism.offset
@@ -224,19 +224,18 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
     gas = next((one for one in train.results.drive.gas if one.piston is barrel.piston), None)
     if gas is None:
         return
-    # also of a single moment by what is high and low over the cycle
-    turning = np.arange(MOMENTS_PER_TURN * train.results.drive.revolutions) * (360.0 / MOMENTS_PER_TURN)
-    degrees = np.append(train.cycle, turning)
-    state, piston = train.results.at(degrees), train.output + barrel.shift
-    ends = [(end, np.broadcast_to(state.pressure(end), degrees.shape)) for end in (gas.crank, gas.head) if end]
+    piston, moments = train.output + barrel.shift, len(train.cycle)
+    # a picture at one angle has the tints of the moving one
+    angles = train.cycle if moments > 1 else np.append(train.cycle, np.arange(0.0, train.results.drive.cycle, 5.0))
+    state = train.results.at(angles)
+    ends = [(end, np.broadcast_to(state.pressure(end), angles.shape)) for end in (gas.crank, gas.head) if end]
     every = np.concatenate([pressure for _, pressure in ends])
     # a pump has one pressure on each stroke
     pumped = bool(gas.work < 0) and all(len(np.unique(np.round(one))) <= 2 for _, one in ends)
     shape = _strip("liquid" if pumped else "gas", 0.0, 1.0, barrel.bore / 2)
-    for end, pressure in ends:
+    for end, pressure in ((end, pressure[:moments]) for end, pressure in ends):
         face, turn = (barrel.low, 0.0) if end is gas.crank else (barrel.high, 180.0)
-        shown = pressure[: len(train.cycle)]
-        tint = 0.08 + 0.72 * ((shown - every.min()) / (np.ptp(every) or 1.0)) ** 0.7
+        tint = 0.08 + 0.72 * ((pressure - every.min()) / (np.ptp(every) or 1.0)) ** 0.7
         length = abs(piston.real - face) - barrel.height / 2
         yield Body.of([shape], face + 1j * train.mechanism.offset, turn, length, tint)
 

@@ -113,7 +113,7 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
             "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
         )
     elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        notes.append("Such a load determines no speed: the mean of ω over time is taken as the nominal speed.")
+        notes.append("The load does not determine the speed: the mean of ω over time is taken as the nominal speed.")
     if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
         notes.append(
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
@@ -208,7 +208,7 @@ def _orders_table(
         if area:
             values["t_order"] = abs(amplitude) / area
         rows.append((("major" if order in major else "",), values))
-    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(said=_uniform(orders))
+    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=_uniform(orders))
 
 
 def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
@@ -228,7 +228,7 @@ def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[f
             rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
     title = "Orders of the turning effort at other speeds"
     table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
-    return table._replace(said=_uniform(found.machine))
+    return table._replace(in_note=_uniform(found.machine))
 
 
 def _uniform(found: Orders) -> bool:

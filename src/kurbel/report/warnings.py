@@ -1,4 +1,4 @@
-"""What looks wrong in a machine: in what was given, in measurements, and in results, whichever command finds it.
+"""Warnings on a machine: on its input, on measurements, and on results.
 
 These are warnings, not errors, since the file may be right. Every command shows those that concern it.
 """
@@ -83,11 +83,11 @@ _LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1
 _LARGEST_MASS = 1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
 _HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
 _ASK = "is beyond anything built; is its unit right?"
-_LARGEST_FLUCTUATION = 0.25  # the books permit the largest, 1/5, for crushers and hammers, 1/5
+_LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for crushers and hammers
 
 
 def _speed_warnings(machine: Machine) -> Iterator[str]:
-    """Yield a speed that no crank has reached, and a wanted δ that is hardly a limit."""
+    """Yield warnings on a speed that no crank has reached, and on a required δ that is hardly a limit."""
     if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
         yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
     wanted = machine.flywheel.fluctuation if machine.flywheel else None
@@ -99,7 +99,7 @@ def _speed_warnings(machine: Machine) -> Iterator[str]:
 
 
 def _size_warnings(cylinder: Cylinder) -> Iterator[str]:
-    """Yield a bore, and moving parts, that no machine has had."""
+    """Yield warnings on a bore and on moving masses beyond those of any machine built."""
     for piston in cylinder.pistons:
         if piston.bore > _LARGEST_BORE:
             yield f"{piston.name}: a bore of {show(piston.bore, 'length')} {_ASK}"
@@ -114,7 +114,7 @@ _SAME_ANGLE = 1e-6  # degrees
 
 
 def pin_warnings(machine: Machine) -> Iterator[str]:
-    """Yield which cylinders at one place along the shaft share no crank pin."""
+    """Yield warnings on cylinders at one place along the shaft that share no crank pin."""
     placed = [(one.axial_position, one) for one in machine.cylinders if one.axial_position is not None]
     for (z, one), (next_z, other) in pairwise(sorted(placed, key=lambda pair: pair[0])):
         # the throws at φ = 0
@@ -132,20 +132,20 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
 
 _EXPONENTS = 0.9, 1.7  # wet steam that dries as it expands; a monatomic gas without heat
 _PLAIN = 0.02
-"""Lean of a card, over its range of pressures, below which it has no high end; one open for half the stroke has ¼."""
+"""Asymmetry of a card below which neither end has the high pressure; with half a stroke of admission it is ¼."""
 
 
 def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
-    """Yield what was tidied up, cards drawn from the wrong dead centre, and exponents that no gas has."""
+    """Yield notes on corrections, and warnings on cards from the wrong dead centre and exponents of no gas."""
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             for text in getattr(chamber, "notes", ()):
                 yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
     for piston in cylinder.pistons:
-        leans = [_lean(card) for card in piston.chambers.values() if isinstance(card, Card)]
+        asymmetries = [_asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)]
         # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
-        if len(leans) == 2 and min(leans) < -_PLAIN and max(leans) > _PLAIN:
-            end, centre = ("crank end", "outer") if leans[1] < 0 else ("head end", "inner")
+        if len(asymmetries) == 2 and min(asymmetries) < -_PLAIN and max(asymmetries) > _PLAIN:
+            end, centre = ("crank end", "outer") if asymmetries[1] < 0 else ("head end", "inner")
             yield (
                 f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from "
                 f"its own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
@@ -159,7 +159,7 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
                 yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
 
 
-def _lean(card: Card) -> float:
+def _asymmetry(card: Card) -> float:
     """Return the mean of p (1 − 2z) over both strokes by the range of p: positive if p is high at small volumes."""
     pressures = [p for line in card.lines for p in line.pressures]
     middle, span = (max(pressures) + min(pressures)) / 2, max(pressures) - min(pressures)
@@ -255,8 +255,8 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
             yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
         elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
             yield (
-                f"the rod load reverses over {angle:.3g} deg, to {ratio:.2%} of the larger load; API 618 requires "
-                "15 deg and 3 %"
+                f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
+                "requires 15 deg and 3 %"
             )
     on_guide = _on_guide(forces)
     if on_guide and forces.lifted:
@@ -350,7 +350,7 @@ def _drawn_by_steam(card: object, lift: float) -> bool:
 _BEYOND = 1e308
 """Floquet multiplier that is as large as a float can be."""
 _SLOWLY = 0.01
-"""Growth of a disturbance in a cycle below which it is written as a share, since "1 times" says nothing."""
+"""Growth of a disturbance in a cycle below which it is written as a share, since "1 times" is uninformative."""
 _LINEAR = 0.1
 """δ up to which the cranks are close enough to uniform rotation."""
 
@@ -370,7 +370,7 @@ def turning_warnings(case: Case) -> Iterator[str]:
         )
     if machine.efficiency != 1 and any(cylinder.friction for cylinder in machine.cylinders):
         yield "both 'efficiency' and 'friction' are given: friction is counted twice"
-    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_the_wish:
+    if turning.J_needed is not None and turning.delta_needed is not None and turning.misses_wanted_delta:
         better = "" if turning.J_exact is None else f"; J = {show(turning.J_exact, 'inertia')} gives the wanted one"
         yield (
             f"with J = ΔE/(δ ω²) = {show(turning.J_needed, 'inertia')} of the books the speed line has δ = "
@@ -405,17 +405,17 @@ _SHELLS = (
     (35, "permissible for the best white metal only (30 to 35)"),
     (math.inf, "more than permissible for white metal (30 to 35)"),
 )
-"""p_m v of the crank pin in kgf m/(cm² s), and what G says of it up to there."""
+"""p_m v of the crank pin in kgf m/(cm² s), and the assessment of G up to this value."""
 
 
 _METALS = {"gunmetal": ("gun metal", 25.0, 25.0), "white-metal": ("white metal", 30.0, 35.0)}
-"""Metal of the shells -> its name, p_m v in kgf m/(cm² s) that it bears, and that the best of it bears (G)."""
+"""Metal of the shells -> its name, p_m v in kgf m/(cm² s) permissible usually, and for the best quality (G)."""
 
 
 def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> tuple[bool, str]:
     """Return whether the shells permit p_m v of the crank pin, and a sentence (G), "" if it is not known.
 
-    metal: of the shells, None where any may be meant.
+    metal: of the shells, None if unknown.
     """
     if pressure_velocity is None:
         return True, ""
@@ -450,7 +450,7 @@ def bearing_warnings(case: Case) -> Iterator[str]:
     if shaft is None or shaft.overhung or any(one.axial_position is None for one in cylinders):
         return
     throws, apart = case.bearings.line.throws if case.bearings.line else (), shaft.a + shaft.b
-    given = [following.place - one.place for one, following in pairwise(throws)]
+    given = [float(following.place - one.place) for one, following in pairwise(throws)]
     wrong = [one for one in given if abs(one - apart) > _ROUNDED * apart]
     if wrong:
         yield (

@@ -58,11 +58,11 @@ def report_of(case: Case, frame: Frame) -> Report:
 def whole_report(
     case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
 ) -> Document:
-    """Return all that a machine has: a first page, pictures and tables of each command, energy, input.
+    """Return the report on a machine: a first page, pictures and tables of each command, energy balance, input.
 
     given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
-    stepped(step, 360.0)  # a step that is none is refused at once
+    stepped(step, 360.0)  # an invalid step is rejected at once
     machine, sections, tables = case.machine, list[Section](), list[Item]()
     left_out: dict[tuple[str, str], list[str]] = {}
     warnings = dict.fromkeys(of_machine(case))
@@ -83,7 +83,7 @@ def whole_report(
             for part in report.all_parts:
                 for reason in part.left_out:
                     left_out.setdefault(reason, []).append(command.title.lower())
-            # those of a cylinder are without its name, and of the machine, too
+            # the warnings of a cylinder lack its name, and are among those of the machine
             warnings |= dict.fromkeys(text for part in report.all_parts[-1:] for text in part.warnings if report.whole)
         if cases and word in IN_CASES:
             items += if_any(lambda: [Answers(cases_report(machine, cases, word, system))])  # noqa: B023 (at once)
@@ -125,7 +125,7 @@ def _mechanism(case: Case, system: str) -> list[Picture]:
 
 
 def _pictures(case: Case, command: Command, system: str) -> Iterator[Item]:
-    """Yield the pictures of a command but for that of the mechanism; a sentence for those without a solution."""
+    """Yield the pictures of a command, except the mechanism; for one without a solution a sentence."""
     for one in PICTURES:
         if one.command == command.word and one.id != "mechanism":
             try:
@@ -135,7 +135,7 @@ def _pictures(case: Case, command: Command, system: str) -> Iterator[Item]:
 
 
 def _input(case: Case, given: Given) -> Iterator[Grid]:
-    """Yield the keys of the file with their meanings, and what a check says of the machine."""
+    """Yield the keys of the file with their meanings, and the results of a check of the machine."""
     places = every_place()
     if given:
         rows = tuple((path, value, meaning(path, places)) for path, value in given)
@@ -147,9 +147,9 @@ def _input(case: Case, given: Given) -> Iterator[Grid]:
 
 
 def _energy(case: Case, system: str) -> Iterator[Grid]:
-    """Yield for every cylinder where the energy of a cycle goes, and what an independent quadrature leaves open.
+    """Yield the energy balance of every cylinder over a cycle, with its residual by an independent quadrature.
 
-    Equal ones are there once, those without a solution not at all.
+    Identical cylinders are listed once, those without a solution are omitted.
     """
     found = [(forces.drive.name, _energy_rows(forces, system)) for forces in case.cylinders]
     for equal in grouped((one for one in found if one[1]), itemgetter(1)):
@@ -185,7 +185,7 @@ def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...]
 
 @np.errstate(all="ignore")
 def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, progress: Progress) -> Document:
-    """Return two machines side by side: input that differs, key values with their differences, pictures in pairs."""
+    """Return the report on two machines: input that differs, key values with their differences, pictures in pairs."""
     names = [case.machine.name for case in cases]
     names = names if names[0] != names[1] else [f"{names[0]} (A)", f"{names[1]} (B)"]
     files = [case.machine.origin.name for case in cases if case.machine.origin]
@@ -205,7 +205,7 @@ def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, pro
         for kind in PICTURES:
             if kind.command == word and kind.id != "mechanism":
                 drawn = [if_any(partial(pictures_if_any, case, kind, PictureOptions(system))) for case in cases]
-                # each picture is named as its machine is here
+                # pictures have the name of the machine in this report
                 drawn = [[one._replace(machine=name) for one in some] for some, name in zip(drawn, names)]
                 items += [Pair(left, right) for left, right in zip_longest(*drawn)]
         sections.append(Section(word, command.title, (*items, *_key_values(cases, names, word, system))))
@@ -237,7 +237,7 @@ def _heads(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, system: str) -> Iterator[Grid]:
-    """Yield the key values of both machines, cylinder next to cylinder, equal ones once."""
+    """Yield the key values of both machines, cylinder by cylinder, identical ones once."""
     both = [if_any(partial(subjects_of, case, command)) for case in cases]
     compared = []
     for pair in zip_longest(*both):
@@ -251,7 +251,7 @@ def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, syste
 
 
 def _numbers(subject: Subject | None, command: str) -> dict[Quantity, float]:
-    """Return the single key values of a subject in SI; no lists, and no residuals of rounding."""
+    """Return the key values of a subject in SI, without lists and residuals."""
     found = if_any(partial(subject.key_values, command)) if subject else []
     numbers = {quantity: number_of(value) for quantity, value in found if not quantity.residual}
     return {quantity: number for quantity, number in numbers.items() if isinstance(number, (int, float))}

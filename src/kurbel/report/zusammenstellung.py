@@ -115,7 +115,7 @@ def zusammenstellung(
 
 def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
     """Return all factors at a crank angle by their ids; ψ and the forces have no form of first order."""
-    sin, cos, lam = angle.sin, angle.cos, 1 / ratio
+    sin, cos, lam = float(angle.sin), float(angle.cos), 1 / ratio
     # ρ = 1 − (R/L)² without its cancellation
     rho = 1.0 if math.isinf(ratio) else (ratio - 1) / ratio * ((ratio + 1) / ratio)
     kappa = math.sqrt(cos * cos + rho * (sin * sin))
@@ -123,7 +123,7 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
     factors = {
         "acceleration_factor": cos - sin * guide + lam * cos * cos / kappa**3,
         "velocity_factor": sin + cos * guide,
-        "displacement_factor": angle.versine + lam * sin * sin / (1 + kappa),
+        "displacement_factor": float(angle.versine) + lam * sin * sin / (1 + kappa),
         "psi": math.degrees(math.atan(guide)),
         "rod_force_factor": 1 / kappa,
         "guide_force_factor": guide,

@@ -1,4 +1,4 @@
-"""From a machine to its results: a case uses the whole machine, the machine its cylinders, a cylinder its pressures.
+"""Results of a machine: pressures in a chamber, forces in a cylinder, torque of all cylinders, and so on.
 
 Letters before the numbers of formulas and pages name their source:
 
@@ -7,13 +7,13 @@ Letters before the numbers of formulas and pages name their source:
     D   Redtenbacher, 1862
     G   Öl- und Gasmaschinen, the chapter on crankshafts
 
-The books print magnitudes and change signs between the strokes; here every quantity has a sign of its own:
+The books print magnitudes and change signs between the strokes; here every quantity is signed:
 
-    φ        crank angle in degrees from the inner dead centre on, in the sense of rotation
-    x, c, b  displacement from the inner dead centre toward the shaft, velocity, acceleration: c < 0 on the way back
-    P        force along the stroke line, positive toward the shaft; friction and resistance count with their sign
-    ψ        angle between rod and stroke line, positive on the side where the pin runs on the outstroke
-    S, N     rod force, positive in compression; force on the guide, positive as P and ψ are
+    φ        crank angle in degrees from the inner dead centre, in the sense of rotation
+    x, c, b  displacement from the inner dead centre toward the shaft, velocity, acceleration; c < 0 on the return
+    P        force along the stroke line, positive toward the shaft, as are friction and load along this line
+    ψ        angle between rod and stroke line, positive where the crank pin is on its side of the outstroke
+    S, N     rod force, positive in compression; force on the guide, positive where P and ψ are positive
     D, T     force on the crank pin toward the shaft, and in the sense of rotation
     M        torque on the shaft, positive where it drives
 """

@@ -1,19 +1,19 @@
 """Balancing of the whole machine: its unbalanced forces and moments, and the counterweights against them.
 
 The unbalanced (shaking) force is minus the sum of mass times acceleration of all moving parts (d'Alembert), at uniform
-rotation. It is a complex number in the plane square to the shaft, everywhere over ω², so that it is in kg m:
+rotation. It is a complex number in the plane normal to the shaft, divided by ω² throughout, so that it is in kg m:
 
-      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      β    angle by which its crank follows crank 1
-          │ ∕                                                       m, m_rot  mass to and fro, mass at the crank pin
-    shaft O────→ F_x  stroke line of cylinder 1, outward            z, z_0    place along the shaft, of the moments
+      F_y ↑   ∕ stroke line of a cylinder, at its bank angle γ      φ − β  crank angle from its own inner dead centre
+          │ ∕                                                       m, m_rot  reciprocating mass, mass at the crank pin
+    shaft O────→ F_x  stroke line of cylinder 1, outward            z, z_0    position along the shaft, and of reference
 
     F = Σ (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ}     all angles in the sense of rotation, x″ = d²x/dφ²
-    M = Σ (z − z_0) F                                     the vector turned back by 90°, so that it points as forces do
-    F = Σ c_n e^{inφ}                                     circles of order n with the rotation, n < 0 against it
-    u n² e^{±inφ}                                         pull of a weight u, mass times radius, that turns n times
+    M = Σ (z − z_0) F                                     a moment vector turned back by 90°, parallel to its force
+    F = Σ c_n e^{inφ}                                     rotating vectors of order n; n < 0 against the crank
+    u n² e^{±inφ}                                         force of a weight u (mass times radius) turning at ±n ω
 
-The rolling moment on the frame about the shaft is −(M + dH/dt), with the turning effort M and the moment of momentum H
-of the masses about the shaft.
+The rolling moment on the frame about the shaft is −(M + dH/dt), with the torque M on the shaft and the angular momentum
+H of the reciprocating masses and rods about the shaft.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.mechanisms import Mechanism
@@ -38,27 +38,27 @@ from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State
 from kurbel.solver.weights import (
-    OwnThrow,
+    CylinderThrow,
     Weight,
     counterweights_of,
-    levered,
     middle_of,
+    split_by_lever,
     throws_with_masses,
     wheels_of,
 )
 
 _SAMPLES = 256
-"""Samples of a turn from which the orders of a mechanism are found; four times as many where a rod is short, …"""
+"""Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
 _MOST_SAMPLES = 1 << 20
 """… up to this many for a batch together: a batch of more raises an error, and its machines are computed singly."""
 _SHOWN = 1e-9
-"""Of the largest order: smaller ones are not listed."""
+"""Relative to the largest order: smaller ones are not listed."""
 _FEWEST = 8
-"""Orders that are kept at least: those of balance shafts."""
+"""Smallest number of orders, so that those of balance shafts are included."""
 _MOST = 24
-"""Orders that are listed; a rod hardly longer than the crank has thousands, which die away slowly."""
+"""Largest number of orders listed; a rod hardly longer than the crank has thousands, which decrease slowly."""
 _AT_ONCE = 1 << 20
-"""Waves that are summed together."""
+"""Largest number of angles times orders evaluated at once, to bound the memory."""
 _EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """Rounding of a direction (relative), or of a lever in m."""
@@ -66,8 +66,12 @@ _REAL = 1e-12
 # forces and moments, order by order
 
 
-def orders_of(throw: OwnThrow, curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
-    """Return the orders c_n in m, n from 1 on, (k, count), with x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
+Curvature = Callable[[Mechanism, CrankAngle], Any]
+"""Takes a mechanism and returns d²x/dφ² in m."""
+
+
+def orders_of(throw: CylinderThrow, curvature: Curvature, count: int) -> ComplexArray:
+    """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
 
     Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. Raises
     UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
@@ -84,19 +88,21 @@ def orders_of(throw: OwnThrow, curvature: Callable[[Mechanism, CrankAngle], Any]
         if last <= samples // 4:
             return np.asarray(waves[:last])
         samples *= 4
-    raise UsageError(f"{throw.name}: the rod is so little longer than the crank that its forces have no end of orders")
+    raise UsageError(
+        f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
+    )
 
 
-def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
+def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Number | None:
     """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
     offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
     return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
 
 
-def waves_of(throws: Sequence[OwnThrow], curvature: Callable[[Mechanism, CrankAngle], Any], count: int) -> ComplexArray:
-    """Return m x″(φ − β) e^{iγ} of each throw in kg m by orders from −k to k, (throws, 2k + 1, count).
+def waves_of(throws: Sequence[CylinderThrow], curvature: Curvature, count: int) -> ComplexArray:
+    """Return m x″(φ − β) e^{iγ} of each throw in kg m as Fourier coefficients from −k to k, (throws, 2k + 1, count).
 
-    Of a mechanism that several cylinders share the orders are found once.
+    Cylinders with the same mechanism share one analysis.
     """
     orders: dict[int, ComplexArray] = {}
     for throw in throws:
@@ -108,16 +114,16 @@ def waves_of(throws: Sequence[OwnThrow], curvature: Callable[[Mechanism, CrankAn
         own = orders[id(throw.mechanism)]
         forward = np.concatenate((own, np.zeros((k - len(own), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        late = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.late, count))
-        found.append(waves * throw.mass * unit_vector(throw.bank - late))
+        lag = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.lag, count))
+        found.append(waves * throw.mass * unit_vector(throw.bank - lag))
     return np.array(found)
 
 
-class Free(NamedTuple):
-    """The unbalanced force over ω² in kg m, and the moment in kg m², None where a place is not known.
+class Unbalanced(NamedTuple):
+    """The unbalanced force over ω² in kg m, and the moment over ω² in kg m², None where an axial position is unknown.
 
-    orders: the lowest ones of one machine that some throw or weight has, whether or not they cancel; next_order: the
-    first that is not among them, None where there is none.
+    orders: of one machine, the lowest orders that any throw or weight has, whether or not they cancel in the sum;
+    next_order: the first one that is not listed, None if all are.
     """
 
     force: ClosedCurve
@@ -126,15 +132,18 @@ class Free(NamedTuple):
     next_order: int | None
 
     def at_most(self, vector: ClosedCurve) -> float:
-        """Return an upper bound of the force, or moment, of the orders that are not listed."""
+        """Return an upper bound, over ω², of the force or moment of the orders that are not listed."""
         higher = np.abs(vector.numbers)[:, None] > self.orders[-1]
         return float(ClosedCurve(vector.waves * higher).farthest()[0][0])
 
 
-def free_of(throws: Sequence[OwnThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: Any) -> Free:
-    """Return the unbalanced force and moment of throws, by the waves of their reciprocating masses, and of weights.
+def unbalanced_of(
+    throws: Sequence[CylinderThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: float | None
+) -> Unbalanced:
+    """Return the unbalanced force and moment of all throws and weights.
 
-    z_0: reference plane of the moments in m, None where it is not known. Orders that cancel are exactly 0.
+    waves: Fourier coefficients of the reciprocating masses, see `waves_of`; z_0: reference plane of the moments in m,
+    None where it is not known. Orders that cancel are exactly 0.
     """
     turning = [one for one in weights if some(one.product != 0)]
     pulls = np.zeros((len(turning), *waves.shape[1:]), complex)
@@ -142,21 +151,23 @@ def free_of(throws: Sequence[OwnThrow], waves: ComplexArray, weights: Sequence[W
         pulls[row, one.order + waves.shape[1] // 2] = one.product * one.order**2
     waves = np.concatenate((waves, pulls))
 
-    def summed(levers: Sequence[Any]) -> ClosedCurve:
+    def summed(levers: Sequence[Number]) -> ClosedCurve:
         terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
         return ClosedCurve(np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0))))
 
     places = [*(one.place for one in throws), *(one.place for one in turning)]
-    known = z_0 is not None and all(place is not None for place in places)
-    moment = summed([place - z_0 for place in places]) if known else None
+    levers = [place - z_0 for place in places if place is not None and z_0 is not None]
+    moment = summed(levers) if len(levers) == len(places) else None
     sizes, k = np.abs(waves[:, :, 0]).max(axis=0), waves.shape[1] // 2
     both = sizes[k + 1 :] + sizes[:k][::-1]
     orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
-    return Free(summed([1.0] * len(places)), moment, orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None)
+    return Unbalanced(
+        summed([1.0] * len(places)), moment, orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None
+    )
 
 
 def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
-    """Return the vectors (n,) of one machine at angles (n,) in degrees; what cancels is exactly 0."""
+    """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
     parts = np.array_split(degrees, math.ceil(len(degrees) * len(curve.waves) / _AT_ONCE) or 1)
     return np.asarray(
         unless_cancelled(np.concatenate([curve.at(part)[0] for part in parts]), np.abs(curve.waves).sum())
@@ -169,7 +180,7 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 def _vector(
     name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False
 ) -> Computed[Any]:
-    """Return a column that is a part, or the size, of a vector of BalanceColumns; asked: printed on request alone."""
+    """Return a column: a component, or the magnitude, of a vector of `BalanceColumns`; asked: on request only."""
 
     def part(columns: BalanceColumns) -> Any:
         found = columns.vector(name)
@@ -181,7 +192,7 @@ def _vector(
 class BalanceColumns(AtAngles):
     """Unbalanced forces in N and moments in N m of one machine at crank angles φ (n,) in degrees.
 
-    within: angles on the side of every jump that is meant.
+    within: at a jump the value is taken on the side of these angles (n,).
     """
 
     commands = ("balance",)
@@ -214,7 +225,7 @@ class BalanceColumns(AtAngles):
         self._vectors: dict[str, ComplexArray | None] = {}
 
     def vector(self, name: str) -> ComplexArray | None:
-        """Return the `force`, the `moment`, or those of the `book` (n,); None where it does not exist."""
+        """Return a vector (n,): `force`, `moment`, `book force`, `book moment`; None where it does not exist."""
         balance = self._balance
         if name not in self._vectors:
             free = balance.book if name.startswith("book") else balance.free
@@ -234,15 +245,15 @@ class BalanceColumns(AtAngles):
 
 
 class MachineBalance(Results):
-    """The key values of the whole machine over a turn; `at(degrees)` gives the columns.
+    """Key values of the balance of the whole machine; `at(degrees)` gives the columns.
 
-    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Raises
-    UsageError where nothing moves that could be balanced, and where a place of a weight is missing. count: of how many
-    machines the numbers are, (machines,); then so are the key values, nan where a machine has none. compare: with the
-    key values by the book's acceleration of first order as well.
+    Attributes are named by the ids of the key values, in SI; None where the machine does not have one. Raises
+    UsageError where there are no moving masses, and where the position of a weight is missing. count: number of
+    machines, whose key values are arrays (machines,), nan where a machine has none. compare: whether to compute also
+    the key values by the acceleration of first order (R 291).
 
-    z_0: place in m from where moments are taken; wheels: of the counterweights in the wheels of a locomotive, none of
-    another machine; counterweights: those of the machine file.
+    z_0: reference plane of moments in m; wheels: positions in m of the wheels of a locomotive that have
+    counterweights, () for another machine; counterweights: those of the machine file.
     """
 
     command = "balance"
@@ -275,7 +286,7 @@ class MachineBalance(Results):
         "Vector sum of the given counterweights, mass times radius",
         lambda one: abs(sum(weight.product for weight in one.counterweights)) if one.counterweights else None,
     )
-    # it takes away the forward circle of order 1
+    # it cancels the forward rotating vector of order 1
     _direction = "Its direction from throw 1"
     counterweight_best = value(
         "u_1",
@@ -320,7 +331,7 @@ class MachineBalance(Results):
         for throw in self.throws:
             if throw.mechanism.quick_return:
                 raise UsageError(f"{throw.name}: the masses of a quick-return mechanism are not known")
-        self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
         self.counterweights = tuple(counterweights_of(machine, self.throws))
 
@@ -328,22 +339,22 @@ class MachineBalance(Results):
         return BalanceColumns(self, phi, within)
 
     def _of_one(self, values: Any) -> Any:
-        """Return complex numbers (machines,) of every machine, or that of the only one."""
+        """Return complex numbers (machines,) of many machines, or the number of the only machine."""
         return values[0].item() if self.count is None else values
 
-    # what moves, all of it over ω²
+    # unbalanced vectors, all divided by ω²
 
     @cached_property
     def _waves(self) -> ComplexArray:
         return waves_of(self.throws, lambda one, angle: one.curvature(angle), self.count or 1)
 
-    def _with(self, waves: ComplexArray, *weights: Weight) -> Free:
+    def _with(self, waves: ComplexArray, *weights: Weight) -> Unbalanced:
         rotating = (throw.weight(throw.rotating) for throw in self.throws)
-        return free_of(self.throws, waves, (*rotating, *weights), self.z_0)
+        return unbalanced_of(self.throws, waves, (*rotating, *weights), self.z_0)
 
     @cached_property
     def _weights(self) -> tuple[Weight, ...]:
-        """The weights of the machine file, on the crank and on shafts."""
+        """The weights in the machine file, on the crank and on balance shafts."""
         shafts = (
             Weight(one.product * unit_vector(one.angle), -one.order if one.against else one.order, one.axial_position)
             for one in self.machine.balance_shafts
@@ -351,37 +362,37 @@ class MachineBalance(Results):
         return (*self.counterweights, *shafts)
 
     @cached_property
-    def bare(self) -> Free:
-        """What the throws give, without counterweights and balance shafts."""
+    def bare(self) -> Unbalanced:
+        """The unbalance of the throws, without counterweights and balance shafts."""
         return self._with(self._waves)
 
     @cached_property
-    def free(self) -> Free:
-        """What is unbalanced, with the counterweights and balance shafts of the machine file."""
+    def free(self) -> Unbalanced:
+        """The unbalance with the counterweights and balance shafts of the machine file."""
         return self._with(self._waves, *self._weights) if self._weights else self.bare
 
     @cached_property
-    def book(self) -> Free | None:
+    def book(self) -> Unbalanced | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
         if any(book_curvature(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
             return None
         return self._with(waves_of(self.throws, book_curvature, self.count or 1), *self._weights)
 
-    def _times_square(self, lengths: Array, degrees: Array) -> Extreme | None:
-        """Return largest lengths over ω² with their angles, times ω²; None without a speed."""
+    def _times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
+        """Return the extreme of a vector from its largest magnitude over ω²; None without a speed."""
         if self.omega is None:
             return None
         return Extreme(self._of_one(lengths) * self.omega * self.omega, self._of_one(degrees))
 
     @cached_property
     def farthest(self) -> dict[str, Extreme | None]:
-        """The largest unbalanced `force` and `moment`; of a locomotive also those `along` the stroke lines."""
+        """Largest unbalanced `force` and `moment`; for a locomotive also those `along` the stroke lines."""
         curves = {"force": self.free.force, "moment": self.free.moment}
         waves = {name: one.waves for name, one in curves.items() if one is not None}
         if self.machine.locomotive:
             waves |= {f"{name} along": (one + one[::-1].conj()) / 2 for name, one in waves.items()}
         found = ClosedCurve(np.concatenate([*waves.values()], axis=1)).farthest()
-        return dict(zip(waves, map(self._times_square, *(np.split(one, len(waves)) for one in found))))
+        return dict(zip(waves, map(self._times_omega_squared, *(np.split(one, len(waves)) for one in found))))
 
     @cached_property
     def farthest_of_book(self) -> tuple[Extreme | None, Extreme | None]:
@@ -389,9 +400,11 @@ class MachineBalance(Results):
         if not self._compare or self.book is None:
             return None, None
         force, moment = self.book.force, self.book.moment
-        return self._times_square(*force.farthest()), self._times_square(*moment.farthest()) if moment else None
+        return self._times_omega_squared(*force.farthest()), self._times_omega_squared(
+            *moment.farthest()
+        ) if moment else None
 
-    # the rolling moment on the frame about the shaft: −(M + dH/dt), H the moment of momentum about the shaft
+    # the rolling moment on the frame about the shaft: −(M + dH/dt), H the angular momentum about the shaft
 
     @property
     def effort(self) -> TurningEffort | None:
@@ -400,23 +413,25 @@ class MachineBalance(Results):
 
     @property
     def rolls_as_it_turns(self) -> bool:
-        """Whether the rolling moment is the turning effort of `kurbel flywheel` with the other sign."""
-        return not any(map(swirls, self._cylinders))
+        """Whether the rolling moment is minus the torque of `kurbel flywheel`, since dH/dt = 0."""
+        return not any(map(changes_angular_momentum, self._cylinders))
 
     @cached_property
     def roll(self) -> Array | None:
         """Samples of the rolling moment in N m on the pieces of the effort. Raises UsageError where no force acts."""
 
-        def swirl(state: State) -> Any:
-            """Return dH/dt = m e b in N m, less the couple of an exact rod, which swings against the crank."""
+        def angular_momentum_rate(state: State) -> Any:
+            """Return dH/dt = m e b in N m, less the couple of an exact rod, as ψ counts against the rotation."""
             drive = state.drive
             moment = state.b * (drive.mass * drive.mechanism.offset)
             return moment - state.rod_couple if drive.rod else moment
 
         if self.effort is None:
             return None
-        swirling = [Term(-1.0, one, swirl) for one in self.effort.groups if swirls(one[0])]
-        return self.effort.sampled(swirling) - self.effort.M
+        changing = [
+            Term(-1.0, one, angular_momentum_rate) for one in self.effort.groups if changes_angular_momentum(one[0])
+        ]
+        return self.effort.sampled(changing) - self.effort.M
 
     @cached_property
     def rolling(self) -> Extremes | None:
@@ -427,7 +442,7 @@ class MachineBalance(Results):
 
     @property
     def cycle(self) -> float:
-        """Degrees after which everything repeats: a turn, or with gas in the rolling moment that of the machine."""
+        """Period in degrees: one revolution, or the cycle of the machine where gas forces are in the rolling moment."""
         return 360.0 * (self.machine.revolutions if any(one.drive.has_gas for one in self._cylinders) else 1)
 
     @property
@@ -440,28 +455,28 @@ class MachineBalance(Results):
 
     @cached_property
     def forward(self) -> Any:
-        """The forward circle of order 1 over ω², in kg m."""
+        """Forward rotating vector of order 1 over ω², in kg m."""
         return self._of_one(self.bare.force.of(1))
 
     @cached_property
     def least_and_force(self) -> tuple[Any, Extreme | None]:
-        """The counterweight in kg m, complex, that leaves the least largest force, and that force.
+        """The counterweight u in kg m, complex, that minimises the largest unbalanced force, and that force.
 
-        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ), to
-        which a weight u on the crank adds u: the least largest |F + u e^{iφ}| has −u in the centre of the smallest
-        circle round it.
+        In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ). A weight
+        u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
+        encloses the curve.
         """
         turning = self.bare.force.of(1)
         centre, radius, degrees = self.bare.force.plus(1, -turning).turned_back().least_circle()
-        return self._of_one(-(turning + centre)), self._times_square(radius, degrees)
+        return self._of_one(-(turning + centre)), self._times_omega_squared(radius, degrees)
 
     @property
     def least(self) -> Any:
-        """The counterweight in kg m, complex, that leaves the least largest force."""
+        """The counterweight in kg m, complex, that minimises the largest unbalanced force."""
         return self.least_and_force[0]
 
     def angle_of(self, product: Any) -> Any:
-        """Return the direction of a weight from throw 1 in degrees, above −180 and up to 180; None, nan of nothing."""
+        """Return the direction of a weight from throw 1 in degrees, in (−180, 180]; None, or nan, for no weight."""
         turned = product / self.throws[0].arm
         degrees = np.degrees(np.arctan2(turned.imag, turned.real))
         degrees = np.where(degrees > _REAL - 180, degrees, 180.0)
@@ -470,9 +485,9 @@ class MachineBalance(Results):
         return np.where(product != 0, degrees, np.nan)
 
     def share_of_least(self) -> Any:
-        """Return the share of the reciprocating mass that the least counterweight balances, opposite the only throw.
+        """Return the share of the reciprocating mass that the counterweight `least` balances in a single-throw machine.
 
-        None where there are several throws, or it is not opposite.
+        None where there are several throws, or where it is not opposite the throw.
         """
         throw, *others = self.throws
         if others or not some(throw.mass != 0):
@@ -486,7 +501,7 @@ class MachineBalance(Results):
 
     @property
     def planes(self) -> tuple[float, ...]:
-        """The two planes of best weights: those given, those of the wheels, or of the outer cylinders; () if one."""
+        """The two correction planes in m: those given, else of the wheels, else of the outer cylinders; or ()."""
         given = self.machine.counterweights
         named = () if isinstance(given, tuple) else given.planes
         places = [one.place for one in self.throws if one.place is not None]
@@ -494,11 +509,11 @@ class MachineBalance(Results):
         return named or self.wheels or outer
 
     def _in_planes(self, order: int) -> tuple[Weight, ...]:
-        """Return the weights in two planes that take away an order, force and moment; () without planes.
+        """Return the weights in two planes that cancel force and moment of an order; () without planes.
 
-        u_a + u_b = −F/n² and (z_a − z_0) u_a + (z_b − z_0) u_b = −M/n², with F and M of the circles of the order.
+        u_a + u_b = −F/n² and (z_a − z_0) u_a + (z_b − z_0) u_b = −M/n², with the rotating vectors F and M of the order.
         """
-        if not self.planes or self.bare.moment is None:
+        if not self.planes or self.bare.moment is None or self.z_0 is None:
             return ()
         force, moment = self._of_one(self.bare.force.of(order)), self._of_one(self.bare.moment.of(order))
         first, second = self.planes
@@ -507,15 +522,15 @@ class MachineBalance(Results):
 
     @cached_property
     def best_in_planes(self) -> tuple[Weight, ...]:
-        """The counterweights in two planes that take away all that turns with the crank, force and moment."""
+        """The counterweights in two planes that cancel the vectors of force and moment that rotate with the crank."""
         return self._in_planes(1)
 
     @cached_property
     def best_shafts(self) -> tuple[Weight, ...]:
-        """The weights on shafts that take away what no counterweight can: order 1 against, order 2 either way.
+        """The weights on balance shafts that cancel what counterweights cannot: orders −1, 2 and −2.
 
-        Two of order 2 are those of Lanchester. Weights of zero are left out. One that can cancel the moment as well is
-        placed so that it does; where none can, as where there is a moment and no force, a shaft has two.
+        The pair of orders 2 and −2 is the Lanchester balancer. Weights of zero are left out. Where one weight at the
+        right position cancels the moment as well, it is placed there; otherwise a shaft has two, in the two planes.
         """
         force, moment = self.bare.force, self.bare.moment
         found: list[Weight] = []
@@ -527,14 +542,14 @@ class MachineBalance(Results):
             if couple and not at_a_place and self.planes:
                 found += self._in_planes(order)
             elif circle:
-                place = self.z_0 + arm.real if at_a_place else None
+                place = self.z_0 + arm.real if at_a_place and self.z_0 is not None else None
                 found.append(Weight(-circle / order**2, order, place))
         return tuple(found)
 
     # the wheels of a locomotive
 
     def in_wheels(self, of: str = "all") -> tuple[Any, Any]:
-        """Return the rotating unbalance in each wheel in kg m, shared by the lever law.
+        """Return the rotating unbalance in each of the two wheels in kg m, distributed by the lever law.
 
         of: `all`, counterweights and rotating masses; `counterweights`, these alone; `reciprocating`, the reciprocating
         masses as if they turned with the crank.
@@ -542,20 +557,20 @@ class MachineBalance(Results):
         weights = [(one.name, one.weight(one.mass if of == "reciprocating" else one.rotating)) for one in self.throws]
         added = [] if of == "reciprocating" else [("counterweights", one) for one in self.counterweights]
         each = added if of == "counterweights" else [*weights, *added]
-        pairs = [levered(one, self.wheels, owner) for owner, one in each]
+        pairs = [split_by_lever(one, self.wheels, owner) for owner, one in each]
         return sum(near.product for near, _ in pairs), sum(far.product for _, far in pairs)
 
     @cached_property
     def answers(self) -> dict[str, Any]:
-        """The key values of a locomotive by id, those that there are; {} of another machine.
+        """Key values of a locomotive by id; {} for another machine.
 
-        The counterweights balance all rotating masses. Their excess, which balances a share of the reciprocating ones,
-        alternately loads and lifts its wheel: the hammer blow.
+        The counterweights balance all rotating masses. Their excess, for a share of the reciprocating
+        masses, alternately loads and unloads its wheel: the hammer blow.
         """
         given, omega = self.machine.locomotive, self.omega
         if given is None:
             return {}
-        found = {
+        found: dict[str, Any] = {
             "traction_variation": self.farthest["force along"],
             "swaying_couple": self.farthest.get("moment along"),
         }
@@ -577,7 +592,7 @@ class MachineBalance(Results):
         return found
 
 
-def swirls(cylinder: CylinderForces) -> bool:
-    """Return whether the moment of momentum of its masses about the shaft changes."""
+def changes_angular_momentum(cylinder: CylinderForces) -> bool:
+    """Return whether the angular momentum of its reciprocating masses and rod about the shaft varies."""
     drive = cylinder.drive
     return drive.has_inertia and (some(drive.mechanism.offset != 0) or drive.rod is not None)

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray, Indices, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
@@ -52,6 +52,12 @@ _EQUAL = 1e-6
 """Degrees by which rounding may move the ends of an arc that nearly vanishing loads determine."""
 
 
+Size = tuple[float | None, float | None]
+"""Diameter and length in m; None where they are not given."""
+Sliding = tuple[Extreme, Number, Number | None]
+"""Relative rotation of two surfaces over that of the crank, largest and mean, and the friction work in J."""
+
+
 class Follower(NamedTuple):
     """A cylinder at the angles φ of crank 1: its own crank is at φ − position, in degrees.
 
@@ -60,13 +66,13 @@ class Follower(NamedTuple):
 
     forces: CylinderForces
     cylinder: Cylinder
-    position: Any
+    position: Number
 
     def at(self, degrees: Array, within: Array) -> State:
         """Return the state at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
         return State.at(self.forces.drive, degrees - self.position, within - self.position)
 
-    def carried(self, pieces: Pieces, *values: Any) -> Array:
+    def carried(self, pieces: Pieces, *values: Number) -> Array:
         """Return quantities sampled on the pieces of the cylinder at the nodes of common ones, (q, nodes, pieces)."""
         source = self.forces.pieces
         samples = np.stack([np.broadcast_to(one, source.degrees.shape) for one in values])
@@ -133,9 +139,7 @@ class Bearing(Results):
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value("A_f,L", "energy", "Friction work per cycle")
 
-    def __init__(
-        self, name: str, followed: Sequence[Follower], size: tuple[Any, Any], surfaces: tuple[str, str]
-    ) -> None:
+    def __init__(self, name: str, followed: Sequence[Follower], size: Size, surfaces: tuple[str, str]) -> None:
         self.name, self.followed, self.size = name, tuple(followed), size
         self.journal, self.shell = surfaces
         drive = followed[0].forces.drive
@@ -152,7 +156,7 @@ class Bearing(Results):
         """Return the load on the common pieces of journal and of shell, two parts each, (4, nodes, pieces)."""
 
     @abstractmethod
-    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+    def _rubbing(self) -> Sliding:
         """Return the relative rotation of its surfaces over that of the crank, largest and mean, and the friction work.
 
         The work is in J per cycle of the machine, None without a coefficient of friction.
@@ -213,7 +217,7 @@ class RodPin(Bearing):
 
     of_rod = True
 
-    def __init__(self, name: str, own: Follower, size: tuple[Any, Any], pin: str) -> None:
+    def __init__(self, name: str, own: Follower, size: Size, pin: str) -> None:
         super().__init__(name, (own,), size, ("throw" if pin == "crank_pin" else "engine", "rod"))
         self._own, self._pin = own, pin
 
@@ -239,7 +243,7 @@ class RodPin(Bearing):
         journal, shell = frames[self.journal], frames[self.shell]
         return self._own.carried(self._common, journal.real, journal.imag, shell.real, shell.imag)
 
-    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+    def _rubbing(self) -> Sliding:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
         forces = self._own.forces
         state, work = forces.samples, forces.friction_works.get(self._pin)
@@ -259,9 +263,7 @@ class MainBearing(Bearing):
 
     contact = 0.0
 
-    def __init__(
-        self, name: str, number: int, line: SupportedShaft, every: Sequence[Follower], size: tuple[Any, Any]
-    ) -> None:
+    def __init__(self, name: str, number: int, line: SupportedShaft, every: Sequence[Follower], size: Size) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
         self._members = {index: every[index] for throw in throws for index in throw.cylinders}
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
@@ -292,7 +294,7 @@ class MainBearing(Bearing):
         """Return the force in N on the common pieces; rubbed: with the friction of the pins."""
         pieces, pins = self._common, {}
         for number, own in self._members.items():
-            state = own.forces.samples if rubbed else own.forces.samples.unrubbed
+            state = own.forces.samples if rubbed else own.forces.samples.without_pin_friction
             pins[number] = Vector(*own.carried(pieces, *_pin_load(state)))
         line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
         return self._force(line, pins, pieces.degrees)
@@ -302,7 +304,7 @@ class MainBearing(Bearing):
         engine = force * (angle.cos + 1j * angle.sin)
         return np.stack((force.real, force.imag, engine.real, engine.imag))
 
-    def _rubbing(self) -> tuple[Extreme, Any, Any]:
+    def _rubbing(self) -> Sliding:
         fastest = Extreme(1.0, self._result(np.zeros(self.count or 1)))
         given = [one.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
@@ -337,7 +339,7 @@ def with_magnitude(pieces: Pieces, parts: Array) -> tuple[Pieces, Array, Array]:
     return fine, values[0], parts
 
 
-def _directed(load: ComplexArray, largest: Any) -> ComplexArray:
+def _directed(load: ComplexArray, largest: Array) -> ComplexArray:
     """Return the directions of a load as unit vectors; where it vanishes at an end, that to which the inner nodes lead.
 
     load: in N, complex, (nodes, pieces); largest: of the machine of each piece.
@@ -448,7 +450,7 @@ class ShaftBearings:
         for number, (one, loads) in enumerate(zip(every, self._loading)):
             if loads:
                 friction, of = one.cylinder.friction, f" of {one.cylinder.name}" if len(every) > 1 else ""
-                pin: tuple[Any, Any] = friction.crank_pin_diameter if friction else None, None
+                pin: Size = friction.crank_pin_diameter if friction else None, None
                 if shaft:  # rods on one pin have equal parts of its length
                     pin = shaft.pin_diameter, shaft.pin_length / (len(line.throw_of(number).cylinders) if line else 1)
                 crosshead = (

@@ -1,4 +1,4 @@
-"""The machine as a whole, solved: results depend on each other and are computed on first use."""
+"""All results of a machine, each computed on first use."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Case(Shown):
 
     @cached_property
     def balance(self) -> MachineBalance:
-        """Free forces and moments of the whole machine. Raises UsageError where no masses move."""
+        """Unbalanced forces and moments of the whole machine. Raises UsageError where no masses move."""
         return MachineBalance(self.effort)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""An elastic coupling between the crank shaft and a driven inertia: two masses that turn nearly uniformly.
+"""An elastic coupling between the crankshaft and a driven inertia: two inertias and a spring with damping.
 
         M →  [J₁]──k, d──[J₂]  ← M_load        T = k (θ₁ − θ₂) + d (ω₁ − ω₂)  the torque in the coupling
 
@@ -26,11 +26,11 @@ from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.speed import SpeedLaw, SpeedLine
 
 _NEAR, _WORTH, _AMPLIFIED = 0.1, 1e-3, 1.5
-"""A harmonic whose order is so near the natural one, relatively, is worth a warning if its amplitude is at least so
-much of one that swings as the whole torque does in the mean, and if it is amplified at least so many times."""
+"""A harmonic causes a warning if its order is within _NEAR of the natural one (relatively), its amplitude at least
+_WORTH of that of a sine with the root mean square of the varying torque, its amplification at least _AMPLIFIED."""
 _ENDLESS, _MEETS = 1e9, 1e-6
-"""Amplification from which on nothing but rounding keeps a resonance from being endless, at an order that is so near
-the natural one, relatively."""
+"""Amplification above which a resonance counts as undamped, since only rounding limits it, where the order is within
+_MEETS of the natural one (relatively)."""
 
 
 class Harmonic(NamedTuple):

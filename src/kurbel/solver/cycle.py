@@ -1,7 +1,7 @@
-"""The cycle of one cylinder, or of that cylinder of many machines, in smooth pieces, and what is sampled on them.
+"""The cycle of one cylinder (of one or many machines) in smooth pieces, and the columns sampled on them.
 
-The cycle is cut where something bends or jumps, and halved until all forces are polynomials on every piece. Where the
-crosshead rubs, it is cut also where the guide force changes sides; where pins or a yoke rub, where their loads turn.
+The cycle is cut where a column has a kink or a jump, and halved until all forces are polynomials on every piece. With
+friction it is also cut where the force on the guide, on a pin or on the block of a yoke changes sign.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from kurbel.solver.figures import result
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 _SURE = 4.0
-"""Standard deviations: the noise of thousands of samples stays below."""
+"""Number of standard deviations that the noise of thousands of samples does not exceed."""
 
 
 class Where(NamedTuple):
@@ -64,11 +64,11 @@ class SampledCylinder:
 
     @cached_property
     def _cut(self) -> tuple[Pieces, State]:
-        """The cycle cut only where something bends or jumps, and at multiples of 45°, and the state there."""
+        """The cycle cut at kinks, jumps and multiples of 45° only, and the state there."""
         drive, pieces = self.drive, self.drive.pieces
         state = State.on(drive, pieces)
         if drive.has_force and some(drive.ring_surface != 0):
-            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.across_piston,))
+            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.pressure_difference,))
             pieces, state = _split(drive, pieces, state, pieces.zeros(across))
         by_load = drive.rubs or drive.yoke_rubs or drive.pin_friction
         return _cut_at_sides(drive, pieces, state) if drive.has_force and by_load else (pieces, state)
@@ -81,7 +81,7 @@ class SampledCylinder:
 
     @property
     def tail(self) -> float:
-        """Largest tail of the Chebyshev series on a piece that could be halved, relative to the largest value."""
+        """Largest last coefficients of the Chebyshev series on pieces that could be halved, over the largest value."""
         values = np.stack(_known(self.pieces, _smooth(self.samples)))
         size = np.maximum(np.abs(values).max(axis=(1, 2)), np.finfo(float).tiny)
         tails = np.abs(self.pieces.rule.series[-2:] @ values).max(axis=1)[:, self.pieces.half > NARROWEST]
@@ -95,7 +95,7 @@ class SampledCylinder:
         return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
 
     def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
-        """Return the extremes in SI of these columns, as far as there are any."""
+        """Return the extremes in SI of those of the columns that the machine has, by id."""
         found = {name: values for name in columns if (values := self.sampled(name)) is not None}
         if not found:
             return {}
@@ -110,7 +110,7 @@ class SampledCylinder:
 def _smoothed(
     drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Any]]
 ) -> tuple[Pieces, State, Samples]:
-    """Return the pieces halved until columns are polynomials there, the state and the columns on them."""
+    """Return the pieces, halved until these columns are polynomials, with the state and the columns on them."""
 
     judged = _known(pieces, columns(state))
 
@@ -126,7 +126,7 @@ def _smoothed(
 
 
 def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Pieces, State]:
-    """Return the pieces cut at more angles, and the state there: most pieces and what is known of them stay."""
+    """Return the pieces cut at more angles, and the state there; values on pieces that are not cut are kept."""
     cut = pieces.split(at)
     if cut is pieces:
         return pieces, state
@@ -138,13 +138,13 @@ def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Piec
 
 
 def _before_friction(state: State) -> list[Array]:
-    """Return motion and gas forces, which no side of a force changes: what `_restored` makes a state of."""
+    """Return motion and gas forces, which are independent of friction and from which `_restored` makes a state."""
     motion = [state.angle.sin, state.angle.cos, state.slope, state.curvature, *(state.rod_angle or ())]
     return [np.broadcast_to(one, state.phi.shape) for one in (*motion, *state.piston_forces)]
 
 
 def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
-    """Return the state on pieces of which `_before_friction` is known, each (nodes, pieces)."""
+    """Return the state on pieces from the values of `_before_friction` there, each (nodes, pieces)."""
     sin, cos, slope, curvature, *rest = known
     pistons = len(rest) - len(drive.gas)
     angle = CrankAngle(pieces.degrees, sin, cos, (rest[0], rest[1]) if pistons else None)
@@ -154,10 +154,10 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
 
 
 def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, State]:
-    """Return the pieces cut where the guide force changes sides, with and without friction in pins, and the state."""
+    """Return the pieces cut where the guide force, with or without pin friction, changes sign, and the state."""
 
     def before(some: State) -> tuple[Any, ...]:
-        free = some.unrubbed
+        free = some.without_pin_friction
         return _sense(free), free.curvature, free.P_gas, free.P
 
     pieces, state, (sense, *_) = _smoothed(drive, pieces, state, before)
@@ -167,24 +167,24 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
         return pieces, state
     _refuse_locking(state, pieces)
     # where the load of a pin passes through zero, its magnitude has a kink
-    free = state.unrubbed
+    free = state.without_pin_friction
     loads = [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
-    passed = [pieces.zeros(load) for load in loads]
+    passed = [pieces.zeros(np.asarray(load)) for load in loads]
     pieces, state = _split(drive, pieces, state, Angles(*(np.concatenate(columns) for columns in zip(*passed))))
     pieces, state, (sense, *_) = _smoothed(drive, pieces, state, lambda one: (_sense(one), *(one.rubbing or ())))
     return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)
 
 
 def _sense(state: State) -> Any:
-    """Return the force in N whose sign decides on which side a guide, or the block of a Scotch yoke, is pressed."""
+    """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     return state.guide_sense if state.rod_angle else state.after_steady_friction
 
 
 def _refuse_locking(state: State, pieces: Pieces) -> None:
-    """Raise NoSolutionError with the exact angle from which on the crosshead of the only machine locks."""
+    """Raise NoSolutionError, with the exact angle, if the crosshead of the only machine is self-locking."""
     drive = state.drive
     if drive.count is None and drive.has_force and may_lock(drive.cylinder):
-        below = state.unrubbed.below
+        below = state.without_pin_friction.guide_denominator
         if (below <= 0).any():
             at = pieces.zeros(below).degrees
             first = float(at[0]) if len(at) else float(pieces.degrees.T[(below <= 0).T][0])
@@ -192,19 +192,19 @@ def _refuse_locking(state: State, pieces: Pieces) -> None:
 
 
 def _smooth(state: State) -> list[Any]:
-    """Return what is to be a polynomial on every piece."""
+    """Return the quantities that decide how often pieces are halved: they must be polynomials on every piece."""
     offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
     forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ())) if state.drive.has_force else ()
     return [state.curvature, *forces, *offered]
 
 
 def _known(pieces: Pieces, values: Iterable[Any]) -> list[Array]:
-    """Return what there is of columns at the nodes of pieces, each (nodes, pieces)."""
+    """Return those of the columns that are not None, at the nodes of pieces, each (nodes, pieces)."""
     return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
 
 
 def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:
-    """Return the crank angles in degrees at which a force changes sign, not counting the noise of a trace.
+    """Return the crank angles in degrees at which a force changes sign, without those due to the noise of a trace.
 
     values: samples in N (nodes, pieces). For many machines one tuple each.
     """

@@ -29,7 +29,7 @@ from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.ideal_cards import Compressor
-from kurbel.machine.indicator import Card, Rectangle
+from kurbel.machine.indicator import Card, Chamber, Rectangle
 from kurbel.machine.pumped import Pipe, Pump, Vessel
 from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
@@ -79,7 +79,7 @@ def _agreed(condition: Truth) -> bool:
     return bool(every(condition))
 
 
-def _is_level(chamber: Any) -> bool:
+def _is_level(chamber: Chamber | None) -> bool:
     """Return whether a chamber has one pressure on each stroke, as a pump's has."""
     if isinstance(chamber, Card):
         return all(np.array_equal(one, line.pressures[0]) for line in chamber.lines for one in line.pressures)
@@ -306,7 +306,7 @@ def _friction(pipe: Pipe) -> Number:
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: Any, place: str) -> tuple[Number, Number]:
+def _vessel(vessel: Vessel, swing: float, place: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing

@@ -57,20 +57,24 @@ class Drive:
     """A cylinder of a machine: its numbers as the state at crank angles needs them, in SI.
 
     count: number of machines, whose numbers are then arrays (machines,); None for one machine. index: in a copy made by
-    `taken`, the machine of every angle or piece (n,), to which its numbers belong.
+    `taken`, the machine of every angle or piece (n,).
 
-    revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None; mass:
-    reciprocating, 0 without masses; rod: a connecting rod described by centre of gravity and moment of inertia, else
-    None; rod_pull: m R ω² of the part that turns with the pin of another rod: the D of an exact one contains it, that
-    of R 302 does not; pin_inertia: m R² of what turns with the crank pin; has_inertia: there are masses and a speed;
-    down: cos of the inclination as the throw sees it, None where weights are left out: where it is positive, N > 0
-    rests on the lower guide; weight: of the reciprocating masses along the stroke line and on the guide, None where it
-    is left out; resistance: what the output works against, a force or, on what only swings, a moment; resistance_work:
-    what it takes out in a cycle, negative; path: of what slides, there and back, per cycle; crosshead_friction: f,
-    0 without one; rubs: whether the crosshead rubs on its guide; guide_area: of its shoe, None where it is not given;
-    yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether any of them
-    is not 0; ring_force: n π d h p_r f (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
-    presses; steady_friction: that and what is given as a force.
+    revolutions, cycle: turns and degrees of crank angle per working cycle of this cylinder; omega: rad/s or None.
+
+    mass: reciprocating, 0 without masses; rod: a connecting rod given by centre of gravity and moment of inertia, else
+    None; rod_centrifugal_force: m R ω² of the rotating part of another rod, which D of R 302 excludes (that of an exact
+    rod is included); pin_inertia: m R² of what rotates with the crank pin; has_inertia: masses and a speed are given.
+
+    weight: of the reciprocating masses along the stroke line and on the guide, None where it is left out; down: cos of
+    the inclination i (180° − i if the machine turns under), None without one: if positive, N > 0 loads the lower guide.
+
+    resistance: load on the output, a force, or a moment on what only swings; resistance_work: its work per cycle,
+    negative; path: distance per cycle of what slides, there and back.
+
+    crosshead_friction: f, 0 without one; rubs: whether it is not 0; guide_area: of the shoe, None where not given;
+    yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether either is
+    not 0; ring_force: n π d h p_r f in N (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
+    presses; steady_friction: ring_force and the friction given as a force.
     """
 
     def __init__(
@@ -80,7 +84,7 @@ class Drive:
         self.name, self.mechanism = cylinder.name, cylinder.mechanism
         self.revolutions = CYCLES[machine.cycle_of(cylinder)]
         self.cycle = 360.0 * self.revolutions
-        self.omega: Number | None = None if machine.speed is None else 2 * math.pi * machine.speed
+        self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
 
         masses, mechanism = cylinder.masses, self.mechanism
         length, rod = mechanism.rod_length, masses.connecting_rod if masses else None
@@ -92,10 +96,10 @@ class Drive:
             if rod and exact
             else None
         )
-        self.rod_pull: Number = self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
+        self.rod_centrifugal_force: Number = self.centrifugal(rod.mass * (1 - rod.share)) if rod and not exact else 0.0
         self.has_inertia = masses is not None and self.omega is not None
 
-        inclination = machine.lean_of(cylinder)
+        inclination = machine.inclination_of(cylinder)
         self._incline = None if inclination is None else CrankAngle.of(inclination)
         self.down: Any = self._incline and self._incline.cos
         self.weight = self.weight_of(self.mass) if self._incline and masses else None

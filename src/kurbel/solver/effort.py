@@ -1,11 +1,12 @@
-"""Turning effort of the whole machine over the angle φ of crank 1, what it works against, and the excess work.
+"""Turning effort M of the whole machine over the angle φ of crank 1, its load, and the excess work.
 
-    M(φ) = Σ share_k M_k(φ − φ_k)        cylinder k with its crank φ_k behind crank 1 (R p. 612); M_k = R T (R 303)
-    E(φ) = ∫₀^φ (M − M_load) dφ          excess work; ΔE = E_max − E_min (R p. 608)
-    J(φ) = Σ m x′² + …                   what the moving masses add to the inertia of the shaft
+    M(φ) = Σ share_k M_k(φ − φ_k)        M_k = R T (R 303) of cylinder k, whose dead centre follows by φ_k (R p. 612);
+                                         share: factor for the efficiency
+    E(φ) = ∫₀^φ (M − M_load) dφ          excess work; ΔE = E_max − E_min (R p. 612)
+    J(φ) = Σ m x′² + …                   reduced moment of inertia of the moving masses
 
-The pieces of the whole machine lie within those of every cylinder. Each cylinder is sampled on its own pieces, and the
-polynomials there are evaluated on the common ones. Of cylinders that work alike only one is sampled.
+The common pieces of the machine are cut at the ends of the pieces of all cylinders. Each cylinder is sampled on its own
+pieces, and its polynomials are evaluated on the common ones. Of identical cylinders only one is sampled.
 """
 
 from __future__ import annotations
@@ -56,18 +57,18 @@ def torque_of_inertia(state: State) -> Any:
 
 
 def position(forces: CylinderForces) -> Any:
-    """Return by how many degrees the crank of a cylinder lags crank 1, without whole cycles: that keeps all digits."""
+    """Return the degrees by which a cylinder follows cylinder 1, without whole cycles, which would cost digits."""
     return np.fmod(forces.drive.cylinder.crank_position, forces.drive.cycle)
 
 
 def moves(group: Sequence[CylinderForces]) -> bool:
-    """Return whether masses of cylinders that work alike move at a known speed."""
+    """Return whether identical cylinders have moving masses and a speed."""
     drive = group[0].drive
     return bool(drive.has_inertia and (some(drive.mass != 0) or some(drive.pin_inertia != 0)))
 
 
 class Term(NamedTuple):
-    """A quantity of cylinders that work alike, as a torque; factor: a number, or one of every machine (machines,)."""
+    """A torque of each of several identical cylinders; factor: a number, or (machines,), by which it is multiplied."""
 
     factor: Any
     cylinders: Sequence[CylinderForces]
@@ -78,10 +79,10 @@ class TurningEffort:
     """The turning effort of a machine, or of `count` machines of one kind, over their common cycle in degrees.
 
     Samples are (nodes, pieces) at the nodes of `pieces`, numbers are (machines,), of one machine (1,).
-    swing: ΔE in J without losses where nothing but that is known of the effort, else None.
-    refused: which of many machines (machines,) have no result, complete once `pieces` and `excess` have been asked for.
-    With one machine they raise an error instead: `pieces` where nothing turns it and where its speed is beyond floats,
-    `excess` where it cannot run.
+    swing: ΔE in J without losses, for an effort given by this fluctuation of energy alone, else None.
+    refused: True for those of many machines (machines,) that have no result, complete once `pieces` and `excess` are
+    computed. For one machine these raise errors instead: `pieces` where no torque acts and where the speed is beyond
+    floats, `excess` where the machine cannot run.
     """
 
     def __init__(self, machine: Machine, cylinders: Sequence[CylinderForces], count: int | None = None) -> None:
@@ -91,10 +92,10 @@ class TurningEffort:
         self.diagram = machine.load.diagram if machine.load else None
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
-        # the cylinders in which a force acts, those together that work alike
+        # cylinders in which a force acts, identical ones in one group
         acting = [forces for forces in cylinders if forces.drive.has_force]
         self.groups = gathered(acting, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
-        # those whose masses move at a known speed
+        # groups with moving masses and a speed
         self._moving = [group for group in self.groups if moves(group)]
 
     def result(self, values: Array) -> Any:

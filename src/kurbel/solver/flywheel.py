@@ -1,15 +1,18 @@
 """Flywheel of the whole machine: key values and columns of `kurbel flywheel`, of one machine or of many.
 
-    J_δ = ΔE/(δ ω²)           the flywheel of the books for the wanted δ (R p. 613)
-    GD² = 4 J                 A_K = 4 J/(π ρ D (D² + h²))     section of the rim that has it
+    ΔE = E_max − E_min              fluctuation of the excess work E of torque over load (R p. 612)
+    J_δ = ΔE/(δ ω²)                 flywheel required for the coefficient of speed fluctuation δ, by the textbook
+    GD² = 4 J                       flywheel effect as mass times diameter squared
+    A_K = 4 J/(π ρ D (D² + h²))     section of a rim of height h and mean diameter D that has J
 
-The books take J as constant and the load as independent of the speed; the speed line of `speed` or `coupling` does not.
+The textbook formula takes the moment of inertia as constant and the load as independent of the speed. The speed line
+(`kurbel.solver.speed`, with an elastic coupling `kurbel.solver.coupling`) assumes neither.
 """
 
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -33,24 +36,24 @@ from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 
 RIGID_ABOVE = 100.0
-"""Natural order from which on a coupling counts as rigid: it transmits what a rigid one would but for 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: its torque differs from that of a rigid one by 1 in 10⁴."""
 _MISSED = 1e-3
-"""By what δ may miss the wanted one, relatively, before a warning."""
+"""Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
-"""Its power of e is all but the largest float."""
+"""exp of it is just below the largest float."""
 _DOUBLINGS, _TRIALS = 30, 20
-"""How many doublings of the flywheel are tried for one that turns, and how many flywheels for one that gives a δ."""
+"""Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
-"""By what δ may miss the wanted one, relatively, with the flywheel that gives it."""
+"""Relative tolerance of δ in the search for the flywheel that gives it."""
 
 
 def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Computed[Any]:
-    """Return a column whose samples `MachineTurning.samples_of` has."""
+    """Return a column whose samples are those of `MachineTurning.samples_of`."""
     return value(symbol, kind, text, lambda state: state.course(id), **words)
 
 
 class TurningState(AtAngles):
-    """The columns of the whole machine at crank angles φ (n,) in degrees, on the sides of jumps that hold `within`."""
+    """Columns of the whole machine at crank angles φ (n,) in degrees; at a jump, on the side of the angles `within`."""
 
     commands = ("flywheel",)
     T = _over_the_angle(
@@ -82,21 +85,21 @@ class TurningState(AtAngles):
         self._turning, self.phi, self._within = turning, phi, within
 
     def __getitem__(self, id: str) -> Any:
-        """Return a column by its id, the load M_load in N m at the nominal speed among them; None for no column."""
+        """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
         return self.course(id) if id == "M_load" else super().__getitem__(id)
 
     def course(self, id: str) -> Array | None:
-        """Return the values (n,) of what `MachineTurning.samples_of` has; None for what is left out."""
+        """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
         found = self._turning.samples_of(id)
         return None if found is None else self._turning.effort.at(*found, self.phi, self._within)
 
 
 class MachineTurning(Results):
-    """The key values of the whole machine over its common cycle; `at(degrees)` gives the columns.
+    """Key values of torque, flywheel and speed of the whole machine; `at(degrees)` gives the columns.
 
-    Attributes are named by the ids of the key values, in SI; one that the machine does not have is None. Forces T are
-    referred to the radius of crank 1. The key values of many machines are (machines,), nan for a machine that has none.
-    Raises UsageError where nothing turns the machine, NoSolutionError where it cannot run.
+    Attributes are named by the ids of the key values, in SI; None where the machine does not have one. Forces T are
+    referred to the radius of crank 1. Key values of many machines are arrays (machines,), nan where a machine has none.
+    Raises UsageError where no torque acts, NoSolutionError where the machine cannot run.
     """
 
     command, state = "flywheel", TurningState
@@ -138,7 +141,7 @@ class MachineTurning(Results):
 
     @property
     def breaks(self) -> Array:
-        """The crank angles in degrees of the only machine between which every quantity is smooth."""
+        """Crank angles in degrees of the only machine between which every quantity is smooth."""
         return np.append(self.effort.pieces.low, self.effort.cycle)
 
     def angles_where(self, column: str, value: float) -> Where | None:
@@ -192,12 +195,12 @@ class MachineTurning(Results):
 
     @property
     def knows_mean(self) -> bool:
-        """Whether the mean of the effort is known, which a swing of energy may not have beside it."""
+        """Whether the mean torque is known: of an effort given by its fluctuation of energy alone it is not."""
         return not isinstance(self.machine.effort, Swing) or self.machine.effort.mean is not None
 
     @property
     def deficit(self) -> Any:
-        """Mean effort less the mean of a resistance given by points, in N m; None where they agree."""
+        """Mean torque less the mean of a load torque given by points, in N m; None where they agree."""
         found = self.effort.deficit
         return self.effort.result(np.where(found == 0, np.nan, found)) if found.any() else None
 
@@ -242,14 +245,14 @@ class MachineTurning(Results):
         return self.dE / where(work > 0, work, math.nan) if some(work > 0) else None
 
     def of_crossings(self, values: Array) -> Any:
-        """Return numbers of the crossings as a tuple, of many machines one each; None where they are not known."""
+        """Return one value per crossing of torque and load as a tuple, or a tuple per machine; None where not known."""
         if self.effort.swing is not None:
             return None
         return self.excess.crossings._replace(degrees=values).listed(self.effort.count)
 
     @cached_property
     def summits(self) -> Extremes | None:
-        """Largest and smallest E with their angles; None where the only machine has no excess."""
+        """Largest and smallest excess work with their angles; None where the only machine has none."""
         return self.excess.summits.each(self.effort.result)[0] if self.excess.torque.any() else None
 
     # flywheel
@@ -272,7 +275,7 @@ class MachineTurning(Results):
         "J_δ",
         "inertia",
         "Moment of inertia required for δ, ΔE/(δ ω²)",
-        lambda one: one.flywheel_of_the_books(),
+        lambda one: one.textbook_inertia(),
         unless=lambda one: one.is_the_needed,
     )
     GD2_needed = value(
@@ -305,11 +308,11 @@ class MachineTurning(Results):
 
     @property
     def is_the_needed(self) -> bool:
-        """Whether the flywheel is the one for the wanted δ."""
+        """Whether J is J_δ: no other moment of inertia is given."""
         return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
 
-    def flywheel_of_the_books(self) -> Any:
-        """Return ΔE/(δ ω²) in kg m², less what a rigid coupling adds; None without a wanted δ or a speed."""
+    def textbook_inertia(self) -> Any:
+        """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
         if self._wanted is None or not self.turns:
             return None
         driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
@@ -321,7 +324,7 @@ class MachineTurning(Results):
 
     @part(SpeedLine)
     def speed(self) -> SpeedLine | None:
-        """The speed of the crank shaft over the turn; None without a flywheel or a speed.
+        """Speed of the crankshaft over the cycle; None without a flywheel or a speed.
 
         Raises NoSolutionError where the machine stalls.
         """
@@ -330,7 +333,7 @@ class MachineTurning(Results):
         try:
             return self._line(1.0 if self._needs_no_inertia else self.J)
         except Unsettled as stop:
-            raise NoSolutionError(self._why_it_stalls(self.J, stop)) from None
+            raise self._stalled(self.J, stop) from None
 
     @key_value("δ_0", "ratio", after="delta")
     def delta_book(self) -> Any:
@@ -354,13 +357,13 @@ class MachineTurning(Results):
 
     @property
     def load_ignored(self) -> bool:
-        """Whether the load depends on the speed, but is in proportion to a mean torque of zero."""
+        """Whether a load that depends on the speed has no effect, being proportional to a mean torque of zero."""
         load = self.machine.load
         return load is not None and (load.slip is not None or bool(load.power)) and self.law is None
 
     @property
     def _needs_no_inertia(self) -> bool:
-        """Whether the wanted δ is met by no flywheel at all, the effort being uniform; any inertia then turns alike."""
+        """Whether the torque is uniform, so that the required δ needs no flywheel: the speed is then constant."""
         uniform = not self.effort.inertia_terms and not self.excess.dE.any()
         return self._wanted is not None and uniform and not some(self.J != 0)
 
@@ -379,33 +382,33 @@ class MachineTurning(Results):
         return RigidLine(effort, self.law, np.broadcast_to(whole, effort.mean.shape))
 
     def _delta_with(self, flywheel: float) -> float:
-        """Return δ of the speed line with a flywheel in kg m²; inf where it stalls."""
+        """Return δ of the speed line with a flywheel in kg m²; inf where the machine stalls."""
         try:
             return float(self._line(flywheel).delta)
         except (Unsettled, NoSolutionError, UsageError):
             return math.inf
 
-    def _why_it_stalls(self, flywheel: float, stop: Unsettled) -> str:
-        """Return where the machine stands still, if it does, and the flywheel with which it was found to turn."""
+    def _stalled(self, flywheel: float, stop: Unsettled) -> NoSolutionError:
+        """Return a message: at which angle the machine stalls, and the smallest flywheel found with which it runs."""
         elastic = self.natural_order is not None and not self.rigid
         with_this = f"with J = {show(flywheel, 'inertia')}{' and the elastic coupling' if elastic else ''}"
-        message = f"{with_this} no speed line is found that repeats under this load"
+        message = f"{with_this} no periodic motion is found under this load"
         if stop.degrees is not None:
-            message = (
-                f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy does not carry it over"
-            )
-        enough = self._enough(flywheel, stop.enough)
-        if enough is None:
-            return f"{message}, nor is one with any other flywheel: look at its effort, load and speed"
-        return (
-            f"{message}; it turns with a flywheel from J = {show(enough, 'inertia')} "
-            f"(GD2 = {show(4 * enough, 'gd2')}) on"
-        )
+            message = f"the machine stops near φ = {stop.degrees:.0f}°: {with_this} its kinetic energy is used up"
+
+        def remedy() -> str:
+            enough = self._enough(flywheel, stop.enough)
+            if enough is None:
+                return "; no flywheel is found with which it runs: check effort, load and speed"
+            inertia, gd2 = show(enough, "inertia"), show(4 * enough, "gd2")
+            return f"; it runs with a flywheel from J = {inertia} (GD2 = {gd2}) upward"
+
+        return NoSolutionError(message, cache(remedy))
 
     def _enough(self, flywheel: float, more: float | None) -> float | None:
-        """Return the least flywheel of three digits, within a fiftieth, with which a machine turns; None without any.
+        """Return the smallest flywheel in kg m² with which the machine runs, to 2 %, in three digits; None without any.
 
-        flywheel: one with which it does not; more: kinetic energy in J that is known to be just enough besides.
+        flywheel: one with which it stalls; more: additional kinetic energy in J that is just enough, if known.
         """
 
         def rounded_up(inertia: float) -> float:
@@ -445,24 +448,24 @@ class MachineTurning(Results):
 
     @property
     def rigid(self) -> bool:
-        """Whether the coupling is so stiff that it counts as rigid; that of many machines, whether all do."""
+        """Whether the coupling counts as rigid, n_e > 100; of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
 
     @part(ElasticCoupling)
     def elastic(self) -> ElasticCoupling | None:
-        """The elastic coupling; None where there is none, one as good as rigid, or nothing to compute it with.
+        """The elastic coupling; None for a rigid one, and without a speed line.
 
-        Raises NoSolutionError where no motion of it repeats.
+        Raises NoSolutionError where no periodic motion is found.
         """
         if self.machine.coupling is None or self.rigid:
             return None
         return self.speed if isinstance(self.speed, ElasticCoupling) else None
 
-    # the wanted δ, held against the speed line
+    # the required δ, compared with the speed line
 
     @cached_property
     def delta_needed(self) -> Any:
-        """δ of the speed line with the flywheel of the books for the wanted δ; None where it stalls."""
+        """δ of the speed line with the flywheel J_δ; None where the machine stalls with it."""
         if self.J_needed is None or not self.turns or self._needs_no_inertia:
             return None
         if self.is_the_needed:
@@ -473,8 +476,8 @@ class MachineTurning(Results):
         return delta if math.isfinite(delta) else None
 
     @property
-    def misses_the_wish(self) -> bool:
-        """Whether that differs from the wanted δ by what one would notice; of many machines, that of any."""
+    def misses_wanted_delta(self) -> bool:
+        """Whether δ with the flywheel J_δ differs noticeably from the required one; of many machines, for any."""
         if self._wanted is None or self.delta_needed is None:
             return False
         return some((self.delta_needed != 0) & (abs(self.delta_needed / self._wanted - 1) > _MISSED))
@@ -483,13 +486,13 @@ class MachineTurning(Results):
     def J_exact(self) -> Any:
         """Moment of inertia with which the computed speed has the required δ.
 
-        None where that of the books does, and where none is found; of many machines nan: each is searched by itself.
+        None where J_δ has it, and where none is found; nan for many machines, as each would need a search of its own.
         """
-        if not self.misses_the_wish or self._wanted is None or not some(self.J_needed != 0):
+        if not self.misses_wanted_delta or self._wanted is None or not some(self.J_needed != 0):
             return None
         if self.effort.count is not None:
             return np.full(self.effort.count, np.nan)
-        # wanted/δ − 1 all but rises with J, by 1 over its own size: secants
+        # secant method: required δ/δ − 1 is nearly J/J_δ − 1
         inertia, missed = self.J_needed, self._wanted / self.delta_needed - 1
         slope = 1 / inertia
         for _ in range(_TRIALS):
@@ -507,7 +510,7 @@ class MachineTurning(Results):
 
 
 class DeadCentre(Results):
-    """What `kurbel flywheel` has of a cylinder that drives a pump; cycle: of the machine in degrees."""
+    """Key value of `kurbel flywheel` for a cylinder that drives a pump; cycle: of the machine in degrees."""
 
     command = "flywheel"
 

@@ -37,14 +37,14 @@ RUBBING = {
     "journals": ("J", "in the journals of the throw"),
     "block": ("B", "at the block in the yoke"),
 }
-"""Key of a coefficient of friction -> index of the symbols, and where it rubs."""
+"""Key of a coefficient of friction -> index of the symbols, and the place of the friction."""
 
 
 class Brake(Results):
-    """What the brake has measured against what the indicator shows; None without a brake or an indicated power.
+    """Brake power compared with indicated power; None without one of them.
 
-    A machine that is driven takes more at the shaft than its pistons give to the gas: there p_r is p_e less |p_i|, and
-    the efficiency indicated over brake power. indicated: power in W of all cylinders, negative where they are driven;
+    A driven machine takes more power at the shaft than its pistons give to the gas: there p_r = p_e − |p_i|, and the
+    efficiency is indicated over brake power. indicated: power in W of all cylinders, negative where they are driven;
     None where one has none.
     """
 
@@ -78,7 +78,7 @@ class Brake(Results):
 
 
 def share_of_driving(forces: CylinderForces, name: str) -> Any:
-    """Return a work of friction over that of the driving pistons; nan for those of many machines without any."""
+    """Return a work of friction over the work of the driving pistons; nan for machines of many without such pistons."""
     lost, driving = forces.friction_works.get(name), forces.work_driving
     if lost is None or driving is None or every(driving == 0):
         return None
@@ -86,7 +86,7 @@ def share_of_driving(forces: CylinderForces, name: str) -> Any:
 
 
 class PistonWork(Results):
-    """What one of several pistons of a rod gives or takes."""
+    """Work and power of one of several pistons of a rod."""
 
     command = "forces"
     work = value("A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work)
@@ -295,7 +295,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def answers(self) -> dict[str, Any]:
-        """The key values that follow from the numbers and the pressures alone, without samples of forces."""
+        """The key values that follow from dimensions and pressures alone, without samples of forces."""
         drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, Any]()
         found["m"] = drive.mass if drive.cylinder.masses else None
         found["resistance_work"] = drive.resistance_work
@@ -334,7 +334,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @property
     def no_compressor(self) -> bool:
-        """Whether the rod load is of no interest: an engine, also a motored four-stroke one, or no connecting rod."""
+        """Whether rod loads are not shown: for engines, also motored four-stroke ones, and without a connecting rod."""
         return self.work is None or self.work >= 0 or self.drive.revolutions > 1 or not self.mechanism.has_rod
 
     # extremes of the columns
@@ -352,7 +352,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
-        """Those of every column that is declared to have extremes, as far as there is one."""
+        """Extremes of the columns that are declared to have them, by id."""
         declared = column_rows(State, self.mechanism.OFFERS)
         return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
 
@@ -413,7 +413,7 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def work_left(self) -> Any:
-        """Work in J per cycle that reaches the shaft: indicated, less friction and what the output works against."""
+        """Work in J per cycle that reaches the shaft: indicated, less friction and that of the load on the output."""
         if not self.drive.has_force:
             return None
         terms = (self.work, self.friction_work, self.resistance_work)
@@ -422,9 +422,9 @@ class CylinderForces(SampledCylinder, Results):
 
     @cached_property
     def friction_works(self) -> dict[str, Any]:
-        """Works of friction in J per cycle, by the names in `friction` of what is given; ∮ f |N| |dx| at the crosshead.
+        """Works of friction in J per cycle, by the keys given in `friction`; ∮ f |N| |dx| at the crosshead.
 
-        Rings, and what is given as a force, act over all of the path.
+        Constant forces act over the whole path.
         """
         drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
         if friction is None:
@@ -439,7 +439,7 @@ class CylinderForces(SampledCylinder, Results):
         if friction.rings is not None:
             found["rings"] = drive.ring_force * drive.path
             if some(drive.ring_surface != 0):
-                drag = np.abs(self.samples.across_piston) * self.pieces.of(drive.ring_surface)
+                drag = np.abs(self.samples.pressure_difference) * self.pieces.of(drive.ring_surface)
                 found["rings"] = over_cycle(drag * self.samples.slope * self.samples.direction)
         if friction.constant is not None:
             found["constant"] = friction.constant * drive.path
@@ -452,10 +452,10 @@ class CylinderForces(SampledCylinder, Results):
         return found
 
     def energy_left(self) -> Any:
-        """Return (∮ T R dφ − indicated work + other work) over ∮ |T| R dφ: quadrature against closed work.
+        """Return the energy balance (∮ T R dφ − `work_left`) over ∮ |T| R dφ: quadrature against work in closed form.
 
         With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
-        indicated work the trapezoid rule: the residual then shows what the spacing of the samples leaves open.
+        indicated work the trapezoid rule: the residual then shows the error of the spacing of the samples.
         """
         if self.work_left is None:
             return None

@@ -1,11 +1,12 @@
-"""The pressures in the chambers and the force and work of gas, steam or water on the pistons.
+"""Pressures in the chambers of a cylinder, and force and work of gas, steam or water on the pistons.
 
-A card is a process over the stroke z, counted from the chamber's smallest volume: segments that are straight, or p V^n
-= const. Ideal cards are drawn from the few numbers of a theoretical cycle. Segments are found by crank angle, not by
-displacement, so that each side of a vertical jump is exact. The indicated work is closed, A s ∮ p dz:
+An indicator card is a process over the stroke fraction z, from the chamber's smallest volume on, of segments that are
+straight or p V^n = const. Ideal cards follow from the parameters of a theoretical cycle. Segments are selected by crank
+angle, not by displacement, so that each side of a vertical jump is exact. The work A s ∮ p dz has closed form:
 
     straight      (p + p′)/2 · (z′ − z)
-    p V^n         P V ln(V′/V) (e^u − 1)/u,  u = (1 − n) ln(V′/V), P absolute, less what makes it absolute
+    p V^n         P V ln(V′/V) (e^u − 1)/u − p_a (z′ − z),  u = (1 − n) ln(V′/V),  P = p + p_a absolute,
+                  V = z + clearance, p_a: 0 for absolute pressures, else the ambient pressure
 
 A measured trace is in `kurbel.solver.trace`. The force is P = p_H A_H − p_C A_C (R 296), gauge pressures.
 """
@@ -21,7 +22,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import within_cycle
 from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
@@ -38,9 +39,9 @@ from kurbel.solver.trace import TracePressure, spread
 from kurbel.traces.correct import Setting, Trace
 
 _NO_WIDTH = 1e-10
-"""Degrees of crank angle; over less a line cannot be followed, and its segment is a jump."""
+"""Degrees of crank angle: a segment over less is a jump."""
 _STEEP = 1e-3
-"""Of the stroke: a line over less is so steep that the rounding of z counts."""
+"""Fraction of the stroke: a segment over less is so steep that the rounding of z matters."""
 _ROUNDING = 3e-13
 """Degrees of crank angle by which the angle of a corner may be off: a few units in the last place of 720."""
 
@@ -49,12 +50,12 @@ _ROUNDING = 3e-13
 
 @dataclass(frozen=True, eq=False)
 class Process:
-    """What happens in a chamber during one cycle, from the (firing) dead centre on.
+    """The pressure in a chamber over one cycle, from the (firing) dead centre on.
 
     lines: (n, 6), in the order of the process without vertical jumps: number of the stroke, stroke fraction z and
     pressure p in Pa where a line begins, both where it ends, and n of p V^n = const between them with absolute
-    pressures, 0 for a straight line. lift: what makes the pressures absolute, in Pa; clearance: smallest volume over
-    the stroke volume.
+    pressures, 0 for a straight line. lift: pressure in Pa to be added for absolute pressures; clearance: clearance
+    volume over stroke volume.
     """
 
     lines: Array
@@ -63,7 +64,7 @@ class Process:
 
     @property
     def area(self) -> float:
-        """∮ p dz in Pa, closed: straight lines exactly, so that nearly cancelling cards lose nothing."""
+        """∮ p dz in Pa in closed form; straight lines in fractions, so that cards of nearly no area lose no digits."""
         straight, curved = Fraction(0), list[float]()
         for _, z, p, next_z, next_p, exponent in self.lines.tolist():
             if not exponent:
@@ -76,10 +77,10 @@ class Process:
         return math.fsum((float(straight), *curved))
 
 
-def growth(z: Any, distance: Any, clearance: Any) -> Any:
+def growth(z: Number, distance: Number, clearance: Number) -> Number:
     """Return ln(V′/V) between stroke fractions z and z + distance.
 
-    Only ln(1 + what is more than the smaller volume) has its digits both for steep lines and for small clearances.
+    As ±ln(1 + |V′ − V|/min(V, V′)), which is accurate both for steep lines and for small clearances.
 
     >>> round(float(growth(1.0, -1.0, 1.0)), 9)
     -0.693147181
@@ -91,10 +92,12 @@ Line = tuple[int, float, float, float, float, float]
 """One of the lines of a `Process`."""
 
 
-def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0) -> Process:
+def process_in(
+    chamber: Card | Rectangle | IdealCard, lift: float = 0.0, cycle: float = 360.0, base: float = 0.0
+) -> Process:
     """Return the process of a card.
 
-    lift: what makes its pressures absolute, base: what they less this are gauge pressures, both in Pa; cycle: degrees.
+    lift: to be added to its pressures for absolute, base: to be subtracted for gauge pressures, in Pa; cycle: degrees.
     """
     clearance, lines = math.inf, list[Line]()
     if isinstance(chamber, Card):
@@ -128,7 +131,7 @@ def process_in(chamber: Any, lift: float = 0.0, cycle: float = 360.0, base: floa
 def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
     """Return the lines of an ideal card; those of an engine with exhaust and intake in four strokes.
 
-    lift: what makes its pressures absolute, in Pa.
+    lift: pressure in Pa to be added for absolute pressures.
     """
     clearance, lines = card.clearance, list[Line]()
 
@@ -182,7 +185,7 @@ class CardPressure:
     cycle, closed; starts: where lines begin.
     """
 
-    def __init__(self, chamber: Any, setting: Setting, count: int | None) -> None:
+    def __init__(self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None) -> None:
         self.setting, self._count = setting, count
         which, each = np.zeros(count or 1, int), [chamber]
         if varies(chamber):
@@ -211,11 +214,11 @@ class CardPressure:
         )
 
     @cached_property
-    def area(self) -> Any:
+    def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
         return self._of_machines([one.area for one in self._processes])
 
-    def _of_machines(self, values: list[float]) -> Any:
+    def _of_machines(self, values: list[float]) -> Number:
         """Return numbers of the processes as those of the machines: one if there is one process."""
         return values[0] if len(values) == 1 else np.array(values)[self._which]
 
@@ -314,7 +317,7 @@ class PistonGas:
 
     head, crank: of the two ends, None for an end that is open to the ambient; ends: those that have pressures, with
     their areas in m². cycle: degrees of its own cycle, which is run through `repeats` times in that of the cylinder.
-    count: of machines, None for one. base: what the figures of the file less this are gauge pressures, in Pa;
+    count: of machines, None for one. base: in Pa, to be subtracted from those of the file for gauge pressures;
     swept_volume: in m³, in the chambers that have pressures; starts: where each pressure bends or jumps in the
     cylinder's cycle; areas: at head end and crank end in m², of a piston by a lever reduced to the crosshead, turned:
     whether it moves against that; clearance_volumes: smallest volumes in m³ of head end and crank end, 0 where one is
@@ -336,11 +339,11 @@ class PistonGas:
         self.head = _pressure_in(indicator.head_end, at_head, count)
         self.crank = _pressure_in(indicator.crank_end, at_crank, count)
 
-        self.areas: tuple[Any, Any] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
+        self.areas: tuple[Number, Number] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
         both = zip((self.head, self.crank), self.areas)
         self.ends = [(end, area) for end, area in both if end is not None]
         self._traces = [(end, area) for end, area in self.ends if isinstance(end, TracePressure)]
-        self.swept_volume: Any = sum(area for _, area in self.ends) * self.stroke
+        self.swept_volume: Number = sum(area for _, area in self.ends) * self.stroke
         turns = cycle * np.arange(repeats)
         self.starts = [Angles(one.starts.machine, one.starts.degrees + turn) for turn in turns for one, _ in self.ends]
         chambers = zip((indicator.head_end, indicator.crank_end), self.areas)
@@ -348,12 +351,12 @@ class PistonGas:
         self.clearance_volumes = [0.0 if one is None else one * area * self.stroke for one, area in clearances]
 
     @cached_property
-    def works(self) -> tuple[Any, ...]:
+    def works(self) -> tuple[Number, ...]:
         """Indicated work in J per cycle of the cylinder of head end and crank end: A s ∮ p dz."""
         return tuple(area * self.stroke * self.repeats * end.area for end, area in self.ends)
 
     @cached_property
-    def work(self) -> Any:
+    def work(self) -> Number:
         """Indicated work in J per cycle."""
         return total(*self.works)
 

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine.batch import taken
 from kurbel.machine.parts import RodPoint
@@ -98,9 +98,14 @@ class MotionColumns(AtAngles):
     )
 
     def __init__(
-        self, mechanism: Mechanism, angle: CrankAngle, within: Array, omega: Any, of_point: RodPoint | None = None
+        self,
+        mechanism: Mechanism,
+        angle: CrankAngle,
+        within: Array,
+        omega: Number | None,
+        of_point: RodPoint | None = None,
     ) -> None:
-        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, angle.degrees
+        self.mechanism, self.within, self.omega, self.phi = mechanism, within, omega, np.asarray(angle.degrees)
         self.rod_angle: Any = mechanism.rod_angle(angle)
         self.angle, self.posed = angle, angle._replace(rod=self.rod_angle)
         self._of_point = of_point
@@ -108,27 +113,28 @@ class MotionColumns(AtAngles):
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
     @cached_property
-    def coordinate(self) -> Any:
+    def coordinate(self) -> Number:
         """Coordinate of the output in m, of what only swings in radians."""
         return self.mechanism.coordinate(self.posed)
 
     @cached_property
-    def displacement(self) -> Any:
+    def displacement(self) -> Number:
         """Displacement from the inner dead centre in m, of what only swings in radians."""
-        return self.coordinate - self.mechanism.start
+        passed: Number = self.coordinate - self.mechanism.start
+        return passed
 
     @cached_property
-    def slope(self) -> Any:
+    def slope(self) -> Number:
         """Slope dx/dφ in m per radian."""
         return self.mechanism.slope(self.posed)
 
     @cached_property
-    def curvature(self) -> Any:
+    def curvature(self) -> Number:
         """Curvature d²x/dφ² in m per radian squared."""
         return self.mechanism.curvature(self.posed)
 
     @cached_property
-    def rod_slope(self) -> Any:
+    def rod_slope(self) -> Number:
         """Slope dψ/dφ of the rod."""
         cos_psi = self.rod_angle[1] if self.rod_angle else 1.0
         return formulas.rod_slope(self.angle.cos, cos_psi, self.mechanism.lam)
@@ -196,7 +202,7 @@ class Motion(Results):
     )
     of_the_mechanism = Searched()
 
-    def __init__(self, mechanism: Mechanism, speed: Any, count: int | None = None) -> None:
+    def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:
         self.mechanism, self.speed, self._count = mechanism, speed, count
         self.omega: Any = None if speed is None else 2 * math.pi * speed
 
@@ -298,6 +304,6 @@ def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     return turns.reshape(count, -1)
 
 
-def _within_turn(degrees: Any) -> Any:
+def _within_turn(degrees: Number) -> Number:
     """Return an angle between −360° and 720° as one from 0 to 360."""
     return where(degrees < 0, degrees + 360.0, where(degrees >= 360.0, degrees - 360.0, degrees))

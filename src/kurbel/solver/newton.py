@@ -1,17 +1,17 @@
-"""A check of the forces of one cylinder that shares no formula with them: Newton's law for every body.
+"""An independent check of the forces of one cylinder: Newton's law for each body, without their formulas.
 
 Plane of motion, from the shaft O: real toward the cylinder along the stroke line, imaginary where φ = 90° lies.
 
           k              k  crank pin, R e^{iφ};  c  crosshead pin, R cos φ + L cos ψ + i e
-         ╱ ╲             the rod turns at −ψ̇, its centre of gravity stands at a from c
+         ╱ ╲             the rod turns at −ψ̇, its centre of gravity is at a from c
         O ─── c ── P ←   P counts toward the shaft, N from the crosshead onto the guide, toward −i
 
 The crosshead gives F to the rod at c, the rod gives K to the crank pin at k:
 
     F − K + W = m z̈_G        (k − c) × (−K) + (z_G − c) × (W − m z̈_G) + M = −I ψ̈
 
-At a few angles the accelerations follow from these places. What is left open, of moments over their arm, is relative to
-the largest force of the cycle.
+Accelerations at a few crank angles are derivatives of these positions. Residuals, of moments divided by their arm, are
+relative to the largest force of the cycle.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from kurbel.solver.drive import Drive
 from kurbel.solver.state import State, on_crosshead_pin, on_pin, reduced_inertia
 
 _ANGLES: Array = np.mod(np.arange(1.0, 8.0) * 0.6180339887, 1.0)
-"""Shares of the cycle, by the golden section: in no simple ratio to dead centres and corners of cards."""
+"""Angles as fractions of the cycle, by the golden section, so that they avoid dead centres and corners of cards."""
 
 
 class _Places(NamedTuple):
-    """Derivatives of the places of both pins over φ, complex, in m, of ψ, and ω² in 1/s², 0 without masses or speed."""
+    """Positions of both pins and ψ, derived by φ, complex, in m; and ω² in 1/s², 0 without masses or speed."""
 
     crosshead_speed: ComplexArray
     pin_speed: ComplexArray
@@ -43,9 +43,9 @@ class _Places(NamedTuple):
 
 
 def residual(cylinder: SampledCylinder) -> float | None:
-    """Return what Newton's law leaves open of the forces, or the tail of their series if that is more, of one machine.
+    """Return the residual of Newton's law for one machine, or the tail of the series of the forces if that is larger.
 
-    Both over the largest value of the quantity; None where no force acts, or there is no connecting rod.
+    Both relative to the largest force; None where no force acts, or there is no connecting rod.
     """
     drive = cylinder.drive
     if not drive.has_force or drive.count is not None or not (drive.mechanism.has_rod and drive.mechanism.slides):
@@ -76,23 +76,24 @@ def residual(cylinder: SampledCylinder) -> float | None:
 
 
 def _places(state: State) -> _Places:
-    """Return how the pins and the rod move, from the places of the pins."""
+    """Return the motion of pins and rod, from the positions of the pins."""
     drive, angle = state.drive, state.angle
     R, L = drive.mechanism.crank, drive.mechanism.rod_length
     square = float(drive.omega**2) if drive.has_inertia and drive.omega else 0.0
-    pin_speed, pin = R * (-angle.sin + 1j * angle.cos), -R * (angle.cos + 1j * angle.sin)
+    sin, cos = np.asarray(angle.sin), np.asarray(angle.cos)
+    pin_speed, pin = R * (-sin + 1j * cos), -R * (cos + 1j * sin)
     if not math.isfinite(L):
-        still = np.zeros_like(angle.sin)
-        return _Places(pin_speed.real + 0j, pin_speed, still, pin.real + 0j, pin, still, square)
+        still = np.zeros_like(sin)
+        return _Places(pin_speed.real.astype(complex), pin_speed, still, pin.real.astype(complex), pin, still, square)
     sin_psi, cos_psi = state.rod_angle
-    turn = R * angle.cos / (L * cos_psi)
-    bend = (turn * turn * sin_psi - R / L * angle.sin) / cos_psi
+    turn = R * cos / (L * cos_psi)
+    bend = (turn * turn * sin_psi - R / L * sin) / cos_psi
     crosshead = pin.real - L * (cos_psi * turn * turn + sin_psi * bend)
     return _Places(pin_speed.real - L * sin_psi * turn + 0j, pin_speed, turn, crosshead + 0j, pin, bend, square)
 
 
 def _energy(drive: Drive, state: State, places: _Places) -> float:
-    """Return what is left of J less 2E/ω² of the moving bodies, over J: their speeds are dz/dφ of their places."""
+    """Return the relative residual of J = 2E/ω² of the moving bodies, with speeds dz/dφ from their positions."""
     masses, R, L = drive.cylinder.masses, drive.mechanism.crank, drive.mechanism.rod_length
     assert masses is not None
     rod, crosshead = masses.connecting_rod, places.crosshead_speed
@@ -108,7 +109,7 @@ def _energy(drive: Drive, state: State, places: _Places) -> float:
 
 
 def _rod(drive: Drive, state: State, places: _Places, gravity: complex) -> list[Array]:
-    """Return what is left of the forces on the rod, of their moments over L, and of S along it."""
+    """Return the residuals of the forces on the rod, of their moments over L, and of S along it."""
     masses, angle, L = drive.cylinder.masses, state.angle, drive.mechanism.rod_length
     rod = masses.connecting_rod if masses else None
     sin_psi, cos_psi = state.rod_angle

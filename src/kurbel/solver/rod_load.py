@@ -1,7 +1,7 @@
-"""Rod loads after API 618: unless crosshead pin and bush part once in every turn, no oil comes to the loaded side.
+"""Rod loads after API 618: the load on the crosshead pin must reverse in every revolution, to admit oil to both sides.
 
-The standard asks for 15° of crank angle and 3 % of the larger load in the other direction; it takes both every 5°,
-kurbel at the roots.
+The standard requires 15° of crank angle and 3 % of the larger load in the opposite direction, evaluated every 5°;
+kurbel finds the angles of reversal exactly.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ _LOADS = {
 class RodLoads(Results):
     """Key values of the load on piston rod and crosshead pin of a cylinder, in SI; None without a gas force.
 
-    loads: the columns P_gas, P_rod and P_piston_rod in N, as far as there are any, at the nodes of pieces. In tension
-    the largest load is its size; 0, where it comes nearest, if the rod is never loaded so.
+    loads: the columns P_gas, P_rod and P_piston_rod in N, as far as there are any, at the nodes of pieces. Loads are
+    magnitudes; 0, at the angle that comes nearest, if the rod is never in tension, or compression.
     """
 
     rod_load_max = values_for(_LOADS, "*_max", "*", "force", "Largest *", group=lambda load: load.rpartition("_")[0])

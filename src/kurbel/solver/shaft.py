@@ -1,4 +1,4 @@
-"""The throws of a crankshaft on their bearings, cut free: bearing forces, and the forces and moments in its sections.
+"""Free bodies of the throws of a crankshaft: bearing forces, and internal forces and moments.
 
                       F = (D, T)
                           │
@@ -8,9 +8,9 @@
     ──A─────────────┘           └─────────────B──────── G    flywheel, f outside of B
       |←────── a ──────→|←─────── b ─────────→|←── f ──→|
 
-Everything counts in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation,
-u along the shaft from the middle of the pin. Forces on bearings count as loads do: between the bearings a load D on the
-pin gives A_D and B_D of its own sign. An overhung crank has nothing before its pin: bearing A is at u = +a, between
+Components are in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation; u is
+the coordinate along the shaft from the middle of the pin. A and B are the forces of the shaft on the bearings, so that
+a load D on a pin between them gives A_D and B_D of the same sign. In an overhung crank bearing A is at u = +a, between
 its only web and bearing B.
 
     between bearings    1──┐ ┌──2──┐ ┌──3            a, b from every pin to its bearings; the flywheel by the last one
@@ -18,9 +18,8 @@ its only web and bearing B.
     overhung            ┌──1────────2──┐             at most two throws, at the ends of a shaft with two bearings
                         ┘              └
 
-Several throws are statically determinate one by one: the shaft counts as hinged in every bearing between two throws,
-which carries what both of them leave on it. A real shaft is continuous over its bearings; what each of them carries
-then depends on how stiff shaft and frame are.
+Several throws are made statically determinate by a hinge in each bearing between two throws, which carries the forces
+of both. A real shaft is continuous over its bearings; their loads then depend on the stiffness of shaft and frame.
 """
 
 from __future__ import annotations
@@ -32,13 +31,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number, Truth
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.numerics.arithmetic import some, where
+from kurbel.numerics.arithmetic import magnitude, some, where
 from kurbel.solver.weights import counterweights_of, throws_with_masses
 
 _ALIKE = 1e-9
@@ -48,8 +47,8 @@ _ALIKE = 1e-9
 class Vector(NamedTuple):
     """A force in N along D and along T, or the moments in N m of forces along them."""
 
-    D: Any
-    T: Any
+    D: Number
+    T: Number
 
 
 # one throw
@@ -80,7 +79,7 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
     angle: crank angles φ (n,) of that cylinder; the inclination given is that of the stroke line of cylinder 1.
     """
     shaft, first = machine.crankshaft, machine.cylinders[0]
-    lean = machine.lean_of(first)
+    lean = machine.inclination_of(first)
     if shaft is None or lean is None or not some(shaft.flywheel_mass != 0):
         return Vector(0.0, 0.0)
     inclination = lean + cylinder.bank_angle - first.bank_angle
@@ -91,15 +90,15 @@ class FreeBody:
     """One throw under the force on its pin and the weight of the flywheel.
 
     shaft: lengths in m; crank: r in m; pin: whole force on the pin in N; weight: of the flywheel in N, in one frame.
-    The torque T r in N m leaves the shaft at the flywheel; nothing is taken off at A.
+    The torque T r in N m leaves the shaft at the flywheel; end A has no torque.
 
     A, B: forces on the bearings in N, A = (F b − G f)/(b − u_A), u_A = −a, overhung a; G: A_p = P b/(a + b).
-    before_pin: what is carried through the pin from the shaft before it in N, the force of bearing A, nothing overhung.
-    along_web: force along the web toward B, compression positive: D − A_D, which is B_D less the flywheel beyond; D
-    alone in the web of an overhung crank.
+    before_pin: shear force in N in the shaft before the pin, the force on bearing A; 0 for an overhung crank.
+    along_web: force along the web toward B, compression positive: D − A_D, that is B_D less the flywheel weight;
+    D in the web of an overhung crank.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: Any, pin: Vector, weight: Vector) -> None:
+    def __init__(self, shaft: Crankshaft, crank: Number, pin: Vector, weight: Vector) -> None:
         self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
         b, f, span, both = shaft.b, shaft.flywheel_position, shaft.span, list(zip(pin, weight))
         self.A = Vector(*((F * b - G * f) / span for F, G in both))
@@ -107,21 +106,20 @@ class FreeBody:
         self.before_pin = Vector(self.A.D * 0.0, self.A.T * 0.0) if shaft.overhung else self.A
         self.along_web, self.torque = pin.D - self.before_pin.D, pin.T * crank
 
-    def moments_at(self, u: Any) -> Vector:
-        """Return the moments in N m about the section at u beyond the pin, of what acts before it.
+    def moments_at(self, u: Number) -> Vector:
+        """Return the bending moments in N m at the section u, of the forces before it.
 
-        A (u − u_A) beyond bearing A, less F u beyond the pin; up to B, or to the flywheel where that is before B.
-        G: P e − A_p (a + e), with the other sign.
+        A (u − u_A) from bearing A on, less F u from the pin on; valid up to B, or to a flywheel before B. The opposite
+        sign of G, P e − A_p (a + e).
         """
         from_A, from_pin = (where(arm > 0, arm, 0.0) for arm in (u - self.shaft.place_A, u))
         return Vector(*(A * from_A - F * from_pin for A, F in zip(self.A, self.pin)))
 
     def equilibrium_residual(self, torque: Array) -> Array:
-        """Return what is left of the sums of forces and of moments over the sizes of their terms, the larger of both.
+        """Return the relative residual of the equilibrium of forces and of moments, the larger of both.
 
-        torque: M on the shaft in N m, shaped as the forces (…), found from the work of the piston force and not from T.
-        The sums are those of the forces at the points where they act, along the shaft and r from the pin, about the
-        middle of the pin: nothing of the formulas above is used.
+        torque: M on the shaft in N m, shaped as the forces (…), from the work of the piston force and not from T.
+        Moments are about the middle of the pin, of the forces where they act; the formulas above are not used.
         """
         shaft = self.shaft
         acting = (
@@ -152,8 +150,8 @@ class Throw(NamedTuple):
     """
 
     cylinders: tuple[int, ...]
-    angle: Any
-    place: Any
+    angle: Number
+    place: Number
     A: int = 0
     B: int = 1
     flywheel: bool = False
@@ -161,8 +159,12 @@ class Throw(NamedTuple):
     at_B: Any = 0.0
 
 
+Turned = tuple[Any, Number]
+"""Mass times radius in kg m of what turns with the shaft, complex, and its place u in m from a pin."""
+
+
 def _of_first(condition: Any) -> Any:
-    """Return what holds for the first of the machines."""
+    """Return a condition as it holds for the first of many machines."""
     return np.ravel(condition)[0]
 
 
@@ -175,7 +177,7 @@ class SupportedShaft:
     def __init__(self, machine: Machine) -> None:
         assert machine.crankshaft is not None
         self.machine, self.shaft = machine, machine.crankshaft
-        like_first: Any = True
+        like_first: Truth = True
 
         def decided(condition: Any) -> Any:
             """Return what holds for the first machine; others for which something else does have other throws."""
@@ -188,15 +190,17 @@ class SupportedShaft:
         for one, following in pairwise(found):
             decided(one.place <= following.place)
 
-        between: list[list[tuple[Any, Any]]] = [[] for _ in found]
+        between: list[list[Turned]] = [[] for _ in found]
         for number, product, u in self._turning(found, decided):
             between[number].append((product * unit_vector(-found[number].angle), u))
         known = where(like_first, 0.0, math.nan)
         self.throws = tuple(self._supported(found, number, own, known) for number, own in enumerate(between))
         self.bearings = 2 if self.shaft.overhung else len(found) + 1
 
-    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[tuple[Any, Any]], known: Any) -> Throw:
-        """Return a throw with its bearings, and with what turns between them: masses times radii, and u from its pin.
+    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[Turned], known: Number) -> Throw:
+        """Return a throw with its bearings and the weights that turn between them.
+
+        own: mass times radius in kg m, complex, and u in m from the pin, of each weight.
 
         known: nan for machines with other throws. The second throw of an overhung shaft is at its other end.
         """
@@ -211,11 +215,11 @@ class SupportedShaft:
         )
 
     def _turning(self, throws: Sequence[Throw], decided: Callable[[Any], Any]) -> Iterator[tuple[int, Any, Any]]:
-        """Yield all that turns: the throw between whose bearings it is, mass times radius, and u in m from its pin.
+        """Yield of each rotating weight the index of the throw whose bearings carry it, mass times radius, and u in m.
 
         The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
-        throw that is nearest to its place; where that is not known, of the throw that it belongs to. What of a rod
-        turns pulls at its pin.
+        throw that is nearest to it; where its place is not known, of the throw that it belongs to. The rotating part of
+        a rod is not included: its force acts on the pin.
         """
         cranks = throws_with_masses(self.machine)
         of_cylinders = {cylinder: number for number, throw in enumerate(throws) for cylinder in throw.cylinders}
@@ -277,9 +281,9 @@ def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of
         place = 0.0 if place is None else place
         for index, throw in enumerate(found):
             lines = [cylinders[other].bank_angle - one.bank_angle for other in throw.cylinders]
-            same = (abs(_remainder(throw.angle - angle)) <= _ALIKE) & (abs(throw.place - place) <= _ALIKE)
+            same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (magnitude(throw.place - place) <= _ALIKE)
             for line in lines:
-                same = same & (abs(_remainder(line)) > _ALIKE)
+                same = same & (magnitude(_remainder(line)) > _ALIKE)
             if decided(same):
                 found[index] = throw._replace(cylinders=(*throw.cylinders, number))
                 break
@@ -288,6 +292,6 @@ def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of
     return found
 
 
-def _remainder(degrees: Any) -> Any:
+def _remainder(degrees: Number) -> Number:
     """Return an angle in degrees without whole turns, from −180 to 180."""
     return degrees - 360.0 * np.rint(degrees / 360.0)

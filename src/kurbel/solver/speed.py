@@ -1,14 +1,15 @@
-"""The speed of the shaft over the turn, of a machine with a flywheel or of many.
+"""The angular velocity of the shaft over the cycle, of a machine with a flywheel or of many.
 
 With the reduced inertia J(φ) = J + Σ m x′² the kinetic energy is ½ J(φ) ω² = ½ J(φ) ω_n² + z, and hence
 
     r = (ω/ω_n)² − 1 = z/(½ J(φ) ω_n²)        z′ = M − M_load(r)        u = ω/ω_n − 1 = r/(1 + √(1 + r))
 
-with M at uniform rotation, inertia forces included: z is the energy beyond that of uniform rotation. Nothing cancels,
-whether the flywheel is heavy or the load stiff.
+z is the kinetic energy beyond that of uniform rotation; M is the torque at uniform rotation, inertia forces included,
+whose part −½ ω_n² dJ/dφ makes up for the varying J(φ) in z. These forms lose no digits by cancellation, with a heavy
+flywheel or a load that depends strongly on the speed.
 
-A load that does not depend on the speed lets the machine run at any speed: z = E + C is closed, and C makes the mean
-speed over time the nominal one. Under a load that depends on it z is the periodic solution, found by collocation.
+Under a load that does not depend on the speed z = E + C, with the excess work E; the constant C is chosen so that the
+mean speed over time is the nominal one. Under a load that does, z is the periodic solution, found by collocation.
 """
 
 from __future__ import annotations
@@ -29,19 +30,19 @@ from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Results
 
 _SLOWEST = 0.01
-"""Of the nominal speed: a machine under a constant load that falls below it stands still."""
+"""Relative to the nominal speed: below it, a machine under a constant load counts as stalled."""
 _FASTEST = 3e5
 """Largest ω/ω_n that leaves a digit of the smallest energy."""
 _STILL = 1e-12 - 1
-"""Least (ω/ω_n)² − 1 of which a speed is taken."""
+"""Smallest (ω/ω_n)² − 1 for which a speed is computed."""
 _NO_INERTIA = 1e-12
-"""Of the largest inertia over the turn: what is smaller is none."""
+"""Relative to the largest inertia over the cycle: a smaller one counts as none."""
 
 
 class SpeedLaw(NamedTuple):
-    """How the load rises with the speed: as a power, mean · (ω/ω_n)^k, or by the slip, mean ± |mean| (ω/ω_n − 1)/s.
+    """Load torque as a function of speed: a power, mean · (ω/ω_n)^k, or by slip, mean + |mean| (ω/ω_n − 1)/s.
 
-    mean: M at the nominal speed in N m, (n,); power or slip: a number, or (n,), the other one None.
+    mean: at the nominal speed in N m, (n,); power k or slip s: a number, or (n,), the other one None.
     """
 
     mean: Array
@@ -50,7 +51,7 @@ class SpeedLaw(NamedTuple):
 
     @classmethod
     def of(cls, effort: TurningEffort) -> SpeedLaw | None:
-        """Return that of a machine; None where its load does not depend on the speed, or is nothing on the mean."""
+        """Return the law of a machine; None where its load does not depend on the speed, or has a mean of zero."""
         load = effort.machine.load
         if load is None or not effort.mean.any() or load.diagram or (load.slip is None and every(load.power == 0)):
             return None
@@ -71,11 +72,11 @@ class SpeedLaw(NamedTuple):
 
 
 class SpeedLine(Results):
-    """The speed of the crank shaft over the turn, by u = ω/ω_n − 1 on pieces (nodes, pieces) of the cycle.
+    """Speed of the crankshaft over the cycle: samples of u = ω/ω_n − 1 (nodes, pieces).
 
-    mean (n,): mean speed over ω_n. failed (n,): which of a batch have none; the only machine raises UsageError, or
-    Unsettled where u falls to `least`. alpha: samples of dω/dt in rad/s² with their pieces. growth: logarithm of what
-    is left of a small disturbance after a cycle.
+    mean (n,): mean speed over ω_n. failed (n,): True for machines of a batch without a speed line; one machine alone
+    raises UsageError instead, or Unsettled where u falls to `least`. alpha: pieces and samples of dω/dt in rad/s².
+    growth: logarithm of the factor by which a small disturbance of the speed changes in one cycle.
     """
 
     delta = value("δ", "ratio", "Coefficient of speed fluctuation, (ω_max − ω_min)/ω_m", lambda one: one.fluctuation)
@@ -110,7 +111,7 @@ class SpeedLine(Results):
 
     @property
     def fluctuation(self) -> Any:
-        """δ, from the extremes of u: of a heavy flywheel those of ω have no digit of it left."""
+        """δ, from the extremes of u; for a heavy flywheel the difference of those of ω would lose all digits."""
         return self.result((self._ends[0] - self._ends[2]) / self.mean)
 
     def extreme(self, end: int) -> Any:
@@ -125,9 +126,9 @@ class SpeedLine(Results):
 
 
 class SwingLine(SpeedLine):
-    """What is known of the speed where the swing ΔE in J, (n,), alone is known of the effort: no line over the turn.
+    """Extremes of the speed for an effort of which only ΔE in J, (n,), is known; ω over the angle is not.
 
-    With ω_m = (ω_max + ω_min)/2 it is exact that ΔE = ½ J (ω_max² − ω_min²) = δ J ω_m². flywheel in kg m².
+    With ω_m = (ω_max + ω_min)/2 exactly ΔE = ½ J (ω_max² − ω_min²) = δ J ω_m². flywheel in kg m².
     """
 
     alpha = None
@@ -154,7 +155,7 @@ class SwingLine(SpeedLine):
 
     @property
     def omega(self) -> None:
-        """Not known over the angle."""
+        """None: the speed is not known over the angle."""
         return None
 
 
@@ -172,7 +173,7 @@ class SpeedEquation:
         self.noise = 1e-16 * np.minimum(effort.pieces.largest(effort.M), energy)
 
     def known(self, pieces: Pieces) -> Array:
-        """Return M − M_load at uniform rotation in N m, and ½ J(φ) ω_n² in J: less by so much, it stands still."""
+        """Return M − M_load at uniform rotation in N m, and the kinetic energy ½ J(φ) ω_n² in J."""
         excess, moving = pieces.carried(self._course, self._effort.pieces)
         return np.stack((excess, (moving + pieces.of(self.flywheel)) * pieces.of(self._effort.omega**2 / 2)))
 
@@ -198,13 +199,14 @@ class RigidLine(SpeedLine):
             angle = float(effort.pieces.degrees.T.ravel()[np.argmin(moving.T)])
             raise UsageError(f"no rotating part has inertia at φ = {angle:.4g}°: give 'flywheel' an inertia")
         self.law = law
-        self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))  # none of a batch stops the others
+        # any inertia for the failed ones of a batch, so that the others are computed
+        self._equation = SpeedEquation(effort, law, np.where(failed, 1.0, flywheel))
 
         if law:
             found = periodic(self._equation, effort.pieces)
             if effort.count is None:
                 found.refuse()
-            failed = failed | found.failed | (law.mean == 0)  # of a batch: its load is nothing on the mean
+            failed = failed | found.failed | (law.mean == 0)  # in a batch: a load with a mean of zero
             sample = self._speeds(found.pieces, found.samples[0], np.zeros(len(failed)))
             pieces, (u, lag) = refined(found.pieces, sample)
         else:
@@ -213,7 +215,10 @@ class RigidLine(SpeedLine):
         super().__init__(effort, pieces, u, 1 / (1 + pieces.mean(lag)), failed, least_u)
 
     def _speeds(self, source: Pieces, energy: Array, constant: Array) -> Sample:
-        """Return what samples u and ω_n/ω − 1, of which the mean over time is made; energy: z less a constant in J."""
+        """Return a function that samples u and ω_n/ω − 1; z = energy + constant in J.
+
+        The mean of ω_n/ω − 1 over φ gives the mean speed over time.
+        """
 
         def sample(pieces: Pieces) -> Array:
             z = pieces.carried(energy, source) + pieces.of(constant)
@@ -226,8 +231,8 @@ class RigidLine(SpeedLine):
     def _under_constant_load(self, effort: TurningEffort) -> tuple[Pieces, Array, Array]:
         """Return pieces, u and ω_n/ω − 1 for z = E + C, with C that makes the mean of the latter 0.
 
-        That mean falls with C and is convex: Newton's method from below, where the machine all but stands still. One
-        that turns too fast even there stays there.
+        That mean decreases with C and is convex, so Newton's method starts at the smallest C, where the machine almost
+        stalls. A machine whose mean speed is too high even there keeps this C.
         """
         pieces, E = effort.pieces, effort.true_excess.E
         while True:
@@ -247,7 +252,7 @@ class RigidLine(SpeedLine):
 
     @cached_property
     def growth(self) -> Any:
-        """Logarithm of what is left of a small disturbance after a cycle: −∮ ∂M_load/∂ω/(J ω) dφ."""
+        """Logarithm of the factor by which a small disturbance changes in a cycle: −∮ ∂M_load/∂ω/(J ω) dφ."""
         if self.law is None:
             return self.result(np.zeros(self.pieces.count))
         slope = self.law.rise(self.u * (2 + self.u), self.pieces)[1]

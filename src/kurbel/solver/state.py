@@ -1,54 +1,55 @@
 """A cylinder at crank angles: every column of `kurbel forces` and `kurbel motion`, computed on first use.
 
-What acts on the crosshead, drawn for a stroke line to the left, the shaft on the right, 0 < φ < 180°:
+Forces on the crosshead on the outstroke, 0 < φ < 180°; cylinder on the left, shaft on the right, crank pin above the
+stroke line:
 
-          N ↓ (on the upper guide here; positive as ψ is)
-    P → ──O── S cos ψ ←     P  gas, inertia, weight, what the ram works against
-        f|N|, rings →       along the rod S cos ψ = P less friction;  N = S sin ψ + weight on the guide
+            ↓ G, S sin ψ        P  gas, inertia, weight, load on a ram;  G  weight across the stroke line
+    P →  ───O───  ← S cos ψ     along it   S cos ψ = P − friction of crosshead, f |N|, and rings
+            ↑ N   ← friction    across it  N = S sin ψ + G, from the lower guide, positive as drawn
 
     N (cos ψ + f sin ψ sgn c sgn N) = P sin ψ + G cos ψ        D 3 with signs; f = 0: N = P tan ψ + G (R 301)
-    S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by its work: T R dφ = P dx
+    S = P/cos ψ (R 300)   D = P cos(φ+ψ)/cos ψ (R 302)   T = P sin(φ+ψ)/cos ψ (R 303), by virtual work: T R dφ = P dx
 
-P here is what friction leaves. An exact rod adds the side force of its couple, and so do pins that rub.
+The P of N is less the friction of the rings, that of S, D and T less all friction along the stroke line. The couple of
+an exact rod and the friction in the pins of a rod are balanced by side forces on guide and crank pin.
 
-In a Scotch yoke P presses the block against the yoke and, R sin φ beside the stroke line, the yoke against two guides:
+In a Scotch yoke P presses the block on the yoke, at R sin φ from the stroke line; two guides l_g apart take the couple.
+Friction, to first order in f:
 
-    guides 2 f_g |P R sin φ|/l_g along the stroke, against the motion
-    block  f_b |P| across it, against R ω cos φ: on the pin −f_b |P| sgn cos φ, on the guides the same
+    of the guides  2 f_g |P R sin φ|/l_g along the stroke line, against c
+    of the block   f_b |P| along the slot, against R ω cos φ: it drags the crank pin, and N = −f_b |P| sgn cos φ
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from kurbel import crank_formulas as formulas
-from kurbel.arrays import Array, Indices, Number, Truth
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.numerics.arithmetic import some, total
 from kurbel.numerics.lobatto import rule
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import Row, column, value, values_for
+from kurbel.quantity import Row, column, value
+from kurbel.solver.chambers import Chambers
 from kurbel.solver.drive import Drive, any_of
 from kurbel.solver.figures import column_rows
-from kurbel.solver.gas import PistonGas, Pressure
-from kurbel.solver.motion import MotionColumns
 from kurbel.solver.shaft import Vector
-from kurbel.solver.trace import TracePressure, spread
 
 
-class Rubbing(NamedTuple):
-    """Moments of friction in N m: of both pins on the rod, in the sense of rotation, and of the journals.
+class FrictionMoments(NamedTuple):
+    """Friction moments f r |F| in N m, with the radius r of a pin or journal and its load F.
 
-    Each moment is f r |F|, with the radius r and the load F; over a rotation dα it does the work f r |F| dα. The
-    journals turn by dφ, the rod on the crank pin by dφ + dψ, on the crosshead pin by dψ. The moment in a pin also acts
-    on the rod, as a couple that guide and crank pin carry. F is computed without this friction, which neglects terms
-    of second order in f, as the friction circles of the books do.
+    A relative rotation dα dissipates f r |F| dα: dφ in the journals, dφ + dψ in the crank pin, dψ in the crosshead pin.
+    The moments in the pins also act on the rod (positive in the sense of rotation), as a couple that guide and crank
+    pin carry. F is computed without this friction, which neglects terms of second order in f, as the friction circles
+    of the books do.
     """
 
     at_crank: Number
@@ -56,68 +57,37 @@ class Rubbing(NamedTuple):
     journals: Number
 
 
-_ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
-"""End of the cylinder's own piston -> index of its symbols, and its name."""
+class State(Chambers):
+    """Motion and forces of a cylinder at crank angles; see `MotionColumns`. What a machine does not have is None.
 
-
-def _own_end(state: State, end: str) -> Pressure | None:
-    """Return the pressure at an end of the cylinder's own piston; None where it has no indicator."""
-    gas = state.drive.own_gas
-    return None if gas is None else gas.head if end == "head" else gas.crank
-
-
-def _own_pressure(state: State, end: str) -> Array | None:
-    gas, chamber = state.drive.own_gas, _own_end(state, end)
-    return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
-
-
-def _own_volume(state: State, end: str) -> Any:
-    gas, passed = state.drive.own_gas, state.displacement
-    if gas is None or _own_end(state, end) is None:
-        return None
-    if end == "head":
-        return gas.piston.head_area * passed + gas.clearance_volumes[0]
-    return gas.piston.crank_area * (state.mechanism.stroke - passed) + gas.clearance_volumes[1]
-
-
-def _own_rise(state: State, end: str) -> Array | None:
-    chamber = _own_end(state, end)
-    return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
-
-
-class State(MotionColumns):
-    """A cylinder at crank angles: motion and forces; see `MotionColumns`.
-
-    rubs: whether pins and journals rub. A quantity that the machine does not have is None.
+    pin_friction: whether friction in pins and journals is included.
     """
 
-    commands = ("forces",)
-
-    def __init__(self, drive: Drive, angle: CrankAngle, within: Array, rubs: bool = True) -> None:
-        super().__init__(drive.mechanism, angle, within, drive.omega, drive.cylinder.point)
-        self.drive, self.rubs = drive, rubs
+    def __init__(self, drive: Drive, angle: CrankAngle, within: Array, pin_friction: bool = True) -> None:
+        super().__init__(drive, angle, within)
+        self.pin_friction = pin_friction
 
     @classmethod
     def at(cls, drive: Drive, degrees: Array, within: Array | None = None, machine: Indices | None = None) -> State:
         """Return the state at crank angles (n,) in degrees.
 
-        within: angles (n,) on that side of a jump from which values are taken; without it they are those just after a
-        jump. machine: of many machines, the number of the one to which each angle belongs.
+        within: at a jump the value is taken on the side of these angles (n,), by default just after it. machine: index
+        of the machine to which each angle belongs, where there are many.
         """
         drive = drive if machine is None else drive.taken(machine)
         return cls(drive, CrankAngle.of(degrees), degrees if within is None else within)
 
     @classmethod
     def on(cls, drive: Drive, pieces: Pieces) -> State:
-        """Return the state at the nodes of pieces, (nodes, pieces), each on its side of every jump."""
+        """Return the state at the nodes of pieces, (nodes, pieces); at a jump each piece has the value on its side."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
     @cached_property
-    def unrubbed(self) -> State:
-        """The same state without friction in pins and journals; this friction is computed from its loads."""
-        if not (self.rubs and self.drive.pin_friction):
+    def without_pin_friction(self) -> State:
+        """The same state without friction in pins and journals, whose friction is computed from these loads."""
+        if not (self.pin_friction and self.drive.pin_friction):
             return self
-        state = State(self.drive, self.posed, self.within, rubs=False)
+        state = State(self.drive, self.posed, self.within, pin_friction=False)
         state.slope, state.curvature, state.piston_forces = self.slope, self.curvature, self.piston_forces
         return state
 
@@ -129,104 +99,6 @@ class State(MotionColumns):
     def filled(self, number: Number) -> Array:
         """Return a number as an array of the shape of the angles."""
         return np.broadcast_to(np.asarray(number, dtype=float), self.phi.shape)
-
-    # the chambers
-
-    own_pressures = values_for(
-        _ENDS,
-        "p_*",
-        "p_*",
-        "pressure",
-        "Gauge pressure in the * chamber, just after a jump",
-        of=_own_pressure,
-        gauge=True,
-    )
-    V = value(
-        "V",
-        "volume",
-        "Volume of the head-end chamber, including clearance if given",
-        lambda state: _own_volume(state, "head"),
-        on_request=("forces",),
-    )
-    V_crank = value(
-        "V_C",
-        "volume",
-        "Volume of the crank-end chamber, including clearance if given",
-        lambda state: _own_volume(state, "crank"),
-        on_request=("forces",),
-    )
-    dV = value(
-        "dV/dφ",
-        "volume_rise",
-        "Rate of change of the head-end volume with the crank angle",
-        lambda state: (
-            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
-        ),
-        on_request=("forces",),
-    )
-    own_rises = values_for(
-        _ENDS,
-        "dp_*",
-        "dp_*/dφ",
-        "pressure_rise",
-        "Rise of the * pressure, over 1 deg",
-        of=_own_rise,
-        on_request=("forces",),
-    )
-    P_gas = value(
-        "P_gas",
-        "force",
-        "Force of gas, steam or water on all pistons of the rod",
-        lambda state: _total(state.piston_forces),
-    )
-    P_gas_book = value(
-        "P_297",
-        "force",
-        "The same with the mean of both piston areas (R 297)",
-        lambda state: _total([state.force_on(gas, alike=True) for gas in state.drive.gas]),
-        on_request=("forces",),
-    )
-
-    def pressure(self, end: Pressure) -> Array:
-        """Return the gauge pressure in Pa at an end of a piston."""
-        if isinstance(end, TracePressure):
-            return end.at(self.phi, self.within)
-        left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
-        return end.at(self.z, self.phi, self.within, self.drive.index, left)
-
-    def force_on(self, gas: PistonGas, alike: bool = False) -> Any:
-        """Return p_H A_H − p_C A_C in N on a piston, R 296; alike: with the mean of both areas, R 297."""
-        head, crank = (spread(one, self.drive.index) for one in gas.areas)
-        if alike:
-            head = crank = (head + crank) / 2
-        sense = -1.0 if gas.turned else 1.0
-        return sum(self.pressure(end) * (area * sense) for end, area in ((gas.head, head), (gas.crank, -crank)) if end)
-
-    @cached_property
-    def piston_forces(self) -> list[Array]:
-        """Force in N on each piston that has an indicator."""
-        return [self.force_on(gas) for gas in self.drive.gas]
-
-    def force_of(self, shares: Sequence[Truth]) -> Array | None:
-        """Return the force in N on the pistons of which these shares count; None where none counts."""
-        each = zip(self.piston_forces, shares)
-        counted = [force * spread(share, self.drive.index) for force, share in each if share is not False]
-        return sum(counted) if counted else None
-
-    P_driving = value(
-        "P_gas+",
-        "force",
-        "Force of gas or steam on the pistons that drive",
-        lambda state: state.force_of(state.drive.driving),
-        unless=lambda forces: forces.works_one_way,
-    )
-    P_driven = value(
-        "P_gas−",
-        "force",
-        "Force of gas or water on the pistons that are driven",
-        lambda state: state.force_of(state.drive.pumping),
-        unless=lambda forces: forces.works_one_way,
-    )
 
     @column("P_zw", "force", extremes=("forces",), called="force in the rod between the pistons")
     def P_between(self) -> Any:
@@ -309,8 +181,8 @@ class State(MotionColumns):
     def rod_load(self, crosshead: bool = True) -> Any:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
 
-        The connecting rod's share is left out; crosshead: with that, whose mass must be known. None without a gas
-        force, and without a connecting rod, where it would be P.
+        The connecting rod is left out. crosshead: whether the crosshead is included; without it its mass must be known.
+        None without a gas force, and in a mechanism without a connecting rod, where it would be P.
         """
         masses = self.drive.cylinder.masses
         unknown = not crosshead and (masses is None or masses.crosshead is None)
@@ -338,7 +210,7 @@ class State(MotionColumns):
     def S_crosshead(self) -> Any:
         """Force along an exact rod at the crosshead pin, compression positive.
 
-        The rod's own mass at this pin, which the pin does not act on, is taken off.
+        Inertia and weight of the rod's own mass at this end are excluded: they do not pass through the pin.
         """
         if self.P is None or self.drive.rod is None:
             return None
@@ -366,18 +238,18 @@ class State(MotionColumns):
         return bend * (rod.excess_inertia * self.omega * self.omega)
 
     def _side(self, couple: Number) -> Any:
-        """Return the force in N, square to the stroke line, by which a couple on the rod relieves the guide."""
+        """Return the reduction of the guide force in N by a couple in N m on the rod: couple/(L cos ψ)."""
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
     @cached_property
     def _forward(self) -> Array:
-        """+1 where the crank pin moves up across the stroke line, 270° … 90°, else −1."""
+        """Sign of cos φ, +1 from 270° to 90°: there the pin moves toward its side of the outstroke."""
         turned = np.mod(self.within, 360.0)
         return np.where((turned < 90.0) | (turned >= 270.0), 1.0, -1.0)
 
     @cached_property
     def _friction_side(self) -> Number:
-        """Side force in N of the friction in both pins on the rod, or of the block in a Scotch yoke; 0 without it."""
+        """Side force in N by friction in both pins of the rod, or of the block in a Scotch yoke; 0 without friction."""
         block, _ = self.drive.yoke_friction
         if self.rod_angle is None:
             return np.abs(self.along_rod) * self._forward * block if self.drive.yoke_rubs else 0.0
@@ -386,20 +258,20 @@ class State(MotionColumns):
 
     @cached_property
     def _rod_side(self) -> Number:
-        """Side force in N of all couples on the rod: of an exact one, and of the friction in its pins."""
+        """Side force in N of all couples on the rod: inertia couple of an exact rod, and friction in its pins."""
         return self._friction_side if self.drive.rod is None else self._side(self.rod_couple) + self._friction_side
 
     @cached_property
-    def rubbing(self) -> Rubbing | None:
+    def rubbing(self) -> FrictionMoments | None:
         """Moments of friction in pins and journals; None where there is none.
 
-        The journals carry the force on the pin as the crankshaft does, without one all of it. Of several cylinders each
-        counts by itself, with an equal part of what else loads the bearings of its throw.
+        The journals carry the force on the crank pin, distributed by the statics of the crankshaft if its lengths are
+        given. Where several cylinders share a throw, each is assigned an equal part of its bearing loads.
         """
-        drive, friction = self.drive, self.drive.pin_friction if self.rubs else None
+        drive, friction = self.drive, self.drive.pin_friction if self.pin_friction else None
         if friction is None or self.P is None:
             return None
-        pin = on_pin(self.unrubbed)
+        pin = on_pin(self.without_pin_friction)
         bearings: Number = np.hypot(*pin)
         if friction.line is not None and some(friction.journals != 0):
             names = [one.name for one in drive.machine.cylinders]
@@ -408,57 +280,59 @@ class State(MotionColumns):
             carried = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
             bearings = sum(np.hypot(*force) for force in carried) / count
         at_crosshead: Number = 0.0
-        if self.rod_angle is not None:  # the rod turns by −dψ: forward where it swings back
-            at_crosshead = np.hypot(*on_crosshead_pin(self.unrubbed)) * (self._forward * friction.crosshead_pin)
-        return Rubbing(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
+        if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
+            at_crosshead = np.hypot(*on_crosshead_pin(self.without_pin_friction)) * (
+                self._forward * friction.crosshead_pin
+            )
+        return FrictionMoments(np.hypot(*pin) * friction.crank_pin, at_crosshead, bearings * friction.journals)
 
     # the guide
 
     @cached_property
-    def across_piston(self) -> Number:
-        """Pressure in Pa at the head end of the cylinder's own piston over that at its crank end."""
+    def pressure_difference(self) -> Number:
+        """Pressure difference in Pa across the cylinder's own piston, head end less crank end."""
         gas = self.drive.own_gas
         head, crank = (self.pressure(end) if end else 0.0 for end in ((gas.head, gas.crank) if gas else (None, None)))
         return head - crank
 
     @cached_property
     def steady_friction(self) -> Number:
-        """Friction in N of rings, and what is given as a force."""
+        """Friction force in N of the piston rings and of `friction: constant`, which are independent of N."""
         drive = self.drive
-        by_gas = np.abs(self.across_piston) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
+        by_gas = np.abs(self.pressure_difference) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
         return drive.steady_friction + by_gas
 
     @cached_property
     def after_steady_friction(self) -> Any:
-        """Piston force in N less the friction of rings and what is given as a force; acts on crosshead and rod."""
+        """Piston force P in N less the steady friction; acts on the crosshead."""
         steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
     def guide_sense(self) -> Any:
-        """The force whose sign is that of N: P sin ψ + G cos ψ with the load G on the guide, in N."""
+        """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return self.after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
 
     @cached_property
     def guide_side(self) -> Array:
-        """+1 where N ≥ 0, else −1, of the shape of the angles; at the nodes of pieces, one sign for each piece."""
+        """Sign of N, +1 for N = 0: one for each angle, or for each piece at the nodes of pieces."""
         sense = self.guide_sense
         if np.ndim(self.angle.sin) > 1:
             sense = rule(len(self.phi)).weights @ sense
         elif self.within is not self.phi:
-            sense = State(self.drive, CrankAngle.of(self.within), self.within, self.rubs).guide_sense
+            sense = State(self.drive, CrankAngle.of(self.within), self.within, self.pin_friction).guide_sense
         return np.where(sense >= 0, 1.0, -1.0)
 
     @cached_property
-    def below(self) -> Any:
-        """cos ψ + f sin ψ sgn c sgn N, the denominator of N; not positive where the crosshead locks itself."""
+    def guide_denominator(self) -> Any:
+        """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
 
     @cached_property
     def drag_of_guides(self) -> Any:
-        """Friction in N of the two guides of a Scotch yoke, against the motion; 0 without it."""
+        """Friction 2 f_g |P R sin φ|/l_g in N of the guides of a Scotch yoke, magnitude; 0 for another mechanism."""
         yoke, (_, f) = self.mechanism, self.drive.yoke_friction
         if not isinstance(yoke, ScotchYoke) or not some(f != 0):
             return 0.0
@@ -469,8 +343,7 @@ class State(MotionColumns):
     def N(self) -> Any:
         """Force on the guide (yoke frame: on the piston rod), positive on the side loaded while an engine drives.
 
-        D 3 with signs. Raises NoSolutionError where the crosshead locks itself; of many machines those that lock have
-        nan.
+        D 3 with signs. Raises NoSolutionError where the crosshead is self-locking; one of many machines then has nan.
         """
         drive = self.drive
         if self.P is None:
@@ -481,14 +354,14 @@ class State(MotionColumns):
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
             return self.after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
-        locked = self.below <= 0
+        locked = self.guide_denominator <= 0
         if locked.any() and drive.index is None:
             raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
-        return self.guide_sense / np.where(locked, np.nan, self.below)
+        return self.guide_sense / np.where(locked, np.nan, self.guide_denominator)
 
     @cached_property
     def crosshead_drag(self) -> Any:
-        """Crosshead friction f |N| in N, against the motion."""
+        """Crosshead friction f |N| in N, magnitude."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
 
     p_guide = value(
@@ -514,7 +387,7 @@ class State(MotionColumns):
     def D(self) -> Any:
         """Radial force at the crank pin, positive toward the shaft.
 
-        R 302; an exact rod adds its couple, centrifugal force and weight.
+        R 302; for an exact rod less the centrifugal force of its mass at the crank pin, with its couple and weight.
         """
         radial, rod = None if self.P is None else self.mechanism.radial(self.posed), self.drive.rod
         if radial is None:
@@ -534,12 +407,12 @@ class State(MotionColumns):
 
     @property
     def _output(self) -> Any:
-        """Force in N, or moment in N m, at the output, less friction, from which T and M are computed by work."""
+        """Force in N (moment in N m) at the output, less friction, from which virtual work gives T and M."""
         return self.along_rod if self.mechanism.slides else self.M_out
 
     @cached_property
     def _rod_tangential(self) -> Any:
-        """Part of T in N from the couple and the weight of an exact rod; 0 without one."""
+        """Contribution to T in N of the couple and the weight at the crank pin of an exact rod; 0 for another."""
         if self.drive.rod is None:
             return 0.0
         along, across = self.drive.weight_of(self.drive.rod.pin_mass)
@@ -569,17 +442,17 @@ class State(MotionColumns):
 
     @cached_property
     def along_rod(self) -> Any:
-        """The part of the rod force along the stroke line in N: the piston force less all friction."""
+        """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
         return _sum(self.P, self.F_friction)
 
     @cached_property
     def _free_torque(self) -> Any:
-        """Torque in N m before friction in pins and journals, from the work of the force at the output."""
+        """Torque in N m before friction in pins, journals and yoke block, by virtual work of the output force."""
         return self._output * self.slope + self._rod_tangential * self.mechanism.crank
 
     @property
     def torque(self) -> Any:
-        """Torque T R in N m at the crank pin, from work as M is, but before friction in crank pin and journals."""
+        """Torque T R in N m at the crank pin: M before the friction in crank pin and journals."""
         return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 
     @cached_property
@@ -603,13 +476,13 @@ class State(MotionColumns):
 
 def on_pin(state: State) -> Vector:
     """Return the force of the rod on the crank pin in N, in the frame of the throw."""
-    return Vector(state.D - state.drive.rod_pull, state.T)
+    return Vector(state.D - state.drive.rod_centrifugal_force, state.T)
 
 
 def on_crosshead_pin(state: State) -> Vector:
-    """Return the force of the crosshead on its pin in N, its parts with the signs of P and N.
+    """Return the force of the crosshead on its pin in N: components along P and along N, with their signs.
 
-    Inertia and weight of the rod are left out: along the stroke line it is the rod load less friction.
+    Inertia and weight of the rod are excluded: along the stroke line it is the rod load less friction.
     """
     drive, masses = state.drive, state.drive.cylinder.masses
     of_rod = drive.mass - masses.parts if masses else 0.0
@@ -619,14 +492,10 @@ def on_crosshead_pin(state: State) -> Vector:
 
 
 def reduced_inertia(state: State) -> Any:
-    """Return m x′² + … in kg m²: what the moving masses of a cylinder, connecting rod included, add to the shaft."""
+    """Return the reduced moment of inertia of a cylinder's moving masses in kg m²: m x′² + m_pin R² + I_excess ψ′²."""
     drive, rod = state.drive, state.drive.rod
     inertia = state.slope * state.slope * drive.mass + drive.pin_inertia
     return inertia if rod is None else inertia + state.rod_slope * state.rod_slope * rod.excess_inertia
-
-
-def _total(forces: Sequence[Any]) -> Any:
-    return sum(forces) if forces else None
 
 
 def _sum(first: Any, second: Any) -> Any:

@@ -31,13 +31,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import taken
 from kurbel.machine.crankshaft import Crankshaft
-from kurbel.numerics.arithmetic import every, some, where
+from kurbel.numerics.arithmetic import every, magnitude, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.quantity import Heading, value, values_for
@@ -61,12 +61,12 @@ _BEARINGS = {part: PARTS[part] for part in ("pin", "journal_A", "journal_B")}
 # three tiny ones would be zero.
 
 
-def round_bending(moment: Any, diameter: Any) -> Any:
+def round_bending(moment: Number, diameter: Number) -> Number:
     """Return σ = 32 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_b/Z)."""
     return 32 / math.pi * moment / diameter / diameter / diameter
 
 
-def round_torsion(moment: Any, diameter: Any) -> Any:
+def round_torsion(moment: Number, diameter: Number) -> Number:
     """Return τ = 16 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_d/Z_p)."""
     return 16 / math.pi * moment / diameter / diameter / diameter
 
@@ -80,19 +80,19 @@ class Place(NamedTuple):
 
     part: str
     name: str
-    alpha: Any
-    compression: Any
-    bending_in_plane: Any
-    bending_out_of_plane: Any
-    torsion: Any
-    normal: Any
+    alpha: Number
+    compression: Number | None
+    bending_in_plane: Number | None
+    bending_out_of_plane: Number | None
+    torsion: Number | None
+    normal: Number
     degrees: Any = None
 
     @property
     def combined(self) -> Any:
         """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
         torsion = 0.0 if self.torsion is None else self.torsion
-        return 0.35 * abs(self.normal) + 0.65 * np.hypot(self.normal, 2 * self.alpha * torsion)
+        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(self.normal, 2 * self.alpha * torsion)
 
     @property
     def von_mises(self) -> Any:
@@ -118,7 +118,7 @@ def places(body: FreeBody) -> Iterator[Place]:
     for name, u in sections.items():
         yield _round("pin", name, body.moments_at(u), before, shaft.pin_diameter)
 
-    at_pin, at_shaft = abs(before), abs(body.torque)
+    at_pin, at_shaft = magnitude(before), magnitude(body.torque)
     worse = where(at_pin >= at_shaft, at_pin, at_shaft)  # of the ends of the web between pin and shaft
     beyond = (shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
     if shaft.overhung:
@@ -149,14 +149,14 @@ def _flywheel_beyond(shaft: Crankshaft) -> bool:
     return bool(np.ravel(shaft.b + shaft.flywheel_position >= shaft.b)[0])
 
 
-def _round(part: str, name: str, moments: Vector, torque: Any, diameter: Any) -> Place:
+def _round(part: str, name: str, moments: Vector, torque: Number | None, diameter: Number) -> Place:
     """Stresses at the surface of a round section, whose bendings add up as vectors."""
-    in_plane, out_of_plane = (abs(round_bending(moment, diameter)) for moment in moments)
-    torsion = None if torque is None else abs(round_torsion(torque, diameter))
+    in_plane, out_of_plane = (magnitude(round_bending(moment, diameter)) for moment in moments)
+    torsion = None if torque is None else magnitude(round_torsion(torque, diameter))
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
-def _web(part: str, shaft: Crankshaft, force: Any, moments: Vector, out_of_plane: Any) -> Iterator[Place]:
+def _web(part: str, shaft: Crankshaft, force: Number, moments: Vector, out_of_plane: Number) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
 
     force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
@@ -168,11 +168,11 @@ def _web(part: str, shaft: Crankshaft, force: Any, moments: Vector, out_of_plane
     t, w, allowed, twisting = shaft.web_thickness, shaft.web_width, shaft.allowable_bending, shaft.allowable_torsion
     alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
     direct = force / t / w
-    wide, narrow = abs(6 * moments.D / w / t / t), 6 * out_of_plane / t / w / w
-    twist = 4.5 * abs(moments.T)
-    yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, abs(direct) + wide)
-    yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, abs(direct) + narrow)
-    yield Place(part, "corner", alpha, direct, wide, narrow, None, abs(direct) + wide + narrow)
+    wide, narrow = magnitude(6 * moments.D / w / t / t), 6 * out_of_plane / t / w / w
+    twist = 4.5 * magnitude(moments.T)
+    yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide)
+    yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, magnitude(direct) + narrow)
+    yield Place(part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow)
 
 
 class StressColumns(AtAngles):
@@ -360,7 +360,7 @@ class CrankshaftStrength(Results):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values of the stresses by id, of the parts that are examined; the safety where k_b is given."""
-        shaft, pull, allowable = self.shaft, self.forces.drive.rod_pull, self.shaft.allowable_bending
+        shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
         found: dict[str, Any] = {
             "C_rod": pull if some(pull != 0) else None,
             "p_pin_dc": abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length,  # G: P_max/(d_z l_z)

@@ -26,7 +26,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
 from kurbel.machine.turning import MOST_TURNS
-from kurbel.numerics.arithmetic import is_whole, unless_cancelled
+from kurbel.numerics.arithmetic import every, is_whole, unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.numerics.waves import crests
@@ -173,7 +173,7 @@ class Vibration:
         """Largest and smallest torque in the segments less their mean in N m, (segments, s) each."""
         orders = self.acting.orders
         # turns in which all of them are whole waves
-        cycle = next(turns for turns in range(1, 2 * MOST_TURNS + 1) if is_whole(turns * orders).all())
+        cycle = next(turns for turns in range(1, 2 * MOST_TURNS + 1) if every(is_whole(turns * orders)))
         high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
         return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
 

@@ -15,23 +15,23 @@ from kurbel.traces.correct import Setting, Trace, corrected, noise_of
 
 
 def spread(number: Any, machine: Indices | None) -> Any:
-    """Return numbers of machines (machines,) for those of an index; one number stays one."""
+    """Return the numbers (machines,) of the machines in an index; a single number is returned as it is."""
     return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number
 
 
 _CHORD = 1.0
-"""Degrees over which a rise of pressure is measured: between two samples it would be their noise."""
+"""Degrees over which a rate of pressure rise is measured: between two samples noise would dominate."""
 _DENSE = 600
-"""Breaks of a cycle from which on its pieces are short enough for few nodes."""
+"""Number of breaks in a cycle above which its pieces are short enough for few nodes."""
 
 
 class TracePressure:
     """Gauge pressure in one chamber from a trace.
 
     The angle 0 of the trace, after its `angle_zero`, is the inner dead centre for both ends; a mirrored trace at the
-    crank end follows one stroke later. each: pressures (m, n) in Pa of every measured cycle, levelled and pegged, as
-    the trace counts them, gauge or absolute; pressures: their mean (n,); starts: where the straight lines between the
-    samples begin; noise: standard deviation in Pa of that of the samples, 0 where they are not at equal angles.
+    crank end follows one stroke later. each: pressures (m, n) in Pa of every measured cycle, levelled and pegged, gauge
+    or absolute as in the trace; pressures: their mean (n,); starts: where the straight lines between the samples
+    begin; noise: standard deviation in Pa of the samples, 0 where they are not at equal angles.
     """
 
     def __init__(self, trace: Trace, setting: Setting) -> None:
@@ -77,7 +77,7 @@ class TracePressure:
     def rises(self, cycles: Array) -> tuple[Array, Array]:
         """Return the rises (m, k) in Pa per degree of cycles (m, n), and the angles (k,) in the middle of their chords.
 
-        The chords are those that begin or end at a sample: only there a rise over one degree bends.
+        Of chords that begin or end at a sample: between these the rise over one degree is linear.
         """
         angles = self.trace.angles
         middles = np.concatenate((angles - _CHORD / 2, angles + _CHORD / 2))
@@ -97,12 +97,12 @@ class TracePressure:
 
     @property
     def area(self) -> float:
-        """∮ p dz in Pa, per cycle: of the mean of the measured ones."""
+        """∮ p dz in Pa per cycle, of the mean of the measured cycles."""
         return math.fsum((self.weights * self.pressures).tolist())
 
     @property
     def area_by_angle(self) -> float:
-        """Change of the area in Pa per radian by which the trace is put later: ∮ p z″ dφ."""
+        """Derivative of the area in Pa by a delay of the trace in radians: ∮ p z″ dφ."""
         return math.fsum((self._trapezoid(self.setting.mechanism.curvature) * self.pressures).tolist())
 
     @cached_property
@@ -123,7 +123,7 @@ class TracePressure:
         return self.straight_weights(outer if self.setting.head_end else inner + 360.0, 360.0)
 
     def _trapezoid(self, derivative: Callable[[CrankAngle], Any]) -> Array:
-        """Return the weights of the samples by the trapezoid rule; derivative: of the piston's place by φ."""
+        """Return the weights of the samples by the trapezoid rule; derivative: dx/dφ or d²x/dφ²."""
         steps = np.radians(np.diff(self.trace.angles)) / 2
         widths = np.append(steps, 0.0) + np.append(0.0, steps)
         return np.asarray(widths * self._fraction(derivative, self.trace.angles + self.shift))
@@ -131,7 +131,7 @@ class TracePressure:
     def straight_weights(self, begin: float = 0.0, turn: float = 720.0) -> Array:
         """Return the weights (n,) of the samples in ∫ p dz along straight lines, by a Gauss rule exact to rounding.
 
-        From a dead centre on over so many degrees, at most over the cycle.
+        begin: a dead centre from which it is taken over `turn` degrees, at most over the cycle.
         """
         mechanism, cycle = self.setting.mechanism, self.setting.cycle
         turns = np.add.outer(mechanism.dead_centres(), np.arange(0.0, cycle, 360.0)).ravel()

@@ -29,7 +29,7 @@ from kurbel.traces.correct import (
 )
 
 _LOW = 0.15
-"""Share of the cycle below the low level: a noisy sample, or a few, are no level."""
+"""Share of the cycle that is below the low level, so that a few noisy samples do not define it."""
 _PARABOLA = 6.0
 """Degrees on either side of the top sample through which a parabola goes."""
 _ENGINE = 8.0
@@ -41,7 +41,7 @@ _FEW_SAMPLES = 600
 
 
 _CANCELLED = 1e-13
-"""Share of the terms of a sum below which nothing but rounding is left of it."""
+"""Share of the terms of a sum below which the sum is only rounding error."""
 
 
 class TraceReading:
@@ -127,7 +127,7 @@ def doubt(trace: Trace, setting: Setting, each: Array) -> str:
 # the samples
 
 _PULSE = 0.02, 0.9
-"""Share of the swing, and of the samples that are within it of one level where only pulses stand out."""
+"""Share of the swing, and of the samples that are within it of one level if there are only pulses."""
 _FEWEST = 36
 _TURNS_DIFFER = 0.2
 """Share of the range by which the turns of a two-stroke cycle never differ in pairs."""
@@ -142,7 +142,7 @@ _RANGE = 0.06
 _LEAST = 0.2
 """Share of the ambient by which the ends of a cycle differ from one to the next in any gas exchange."""
 _WORTH_IT = 0.01
-"""Share of p_i below which a drift is not worth a word."""
+"""Share of p_i below which a drift is not reported."""
 _SURE_OF_NOISE = 6.0
 """Standard deviations of the noise that a drift must exceed."""
 
@@ -251,20 +251,20 @@ def _drift(reading: TraceReading) -> str:
 # sign and unit
 
 _LEAST_SWING = 1e3
-"""Pa; what varies less is flat."""
+"""Range in Pa below which a trace is flat."""
 _SMALLEST_PEAK, _USUAL_PEAK, _LARGEST_PEAK = 1e5, 60e5, 300e5
 """Absolute pressures in Pa at which cylinders peak, where no clearance gives more."""
 _TO_COMPRESSION = 0.25, 8.0
 """Peak over what the compression from the ambient gives: throttled by three quarters, or supercharged and fired."""
 _AIR = 1.32
 _NEAR_VACUUM = 0.1
-"""Share of the ambient below which an absolute low level is none."""
+"""Share of the ambient below which a low level cannot be an absolute pressure."""
 _UNITS = {"Pa": 1.0, "mbar": 1e2, "kPa": 1e3, "psi": 6894.757293168, "at": 98066.5, "bar": 1e5, "MPa": 1e6}
 _POWERS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)
 _SAME_UNIT = 0.05
-"""Share by which units differ at most that cannot be told apart, as at and bar."""
+"""Largest relative difference of units that cannot be distinguished, such as at and bar."""
 _NO_UNIT = 0.5
-"""What a power of ten that makes no unit of another must fit better, in logarithms."""
+"""How much better, in logarithms, a power of ten must fit that does not convert one unit into another."""
 _ROUNDED = 1e-6
 
 
@@ -408,7 +408,7 @@ _SLACK = 0.02
 _APART = 0.08
 """By which the exponents of compression and expansion differ, in engines as they are: the loss angle is worth 0.03."""
 _LATEST = 10.0
-"""Degrees by which a dead centre is found wrong; beyond, other notes speak."""
+"""Largest error of a dead centre in degrees that is found here; other notes report larger ones."""
 
 
 def _level(reading: TraceReading) -> str:
@@ -430,7 +430,7 @@ def _level(reading: TraceReading) -> str:
 
 
 def _is_sensible(found: Exponent | None) -> bool:
-    """Whether there is an exponent, and one that a compression can have."""
+    """Return whether there is an exponent, and one that a compression can have."""
     slack = _SLACK + (2 * found.error if found else 0.0)
     return found is not None and _SENSIBLE[0] - slack <= found.value <= _SENSIBLE[1] + slack
 

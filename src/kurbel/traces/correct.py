@@ -87,7 +87,7 @@ class Trace(Indivisible):
         return np.asarray(self.samples.mean(axis=0))
 
     def as_written(self, angle: float) -> float:
-        """Return an angle as the file counts it."""
+        """Return an angle of the trace with the sign that it has in the file."""
         return 0.0 - angle if self.against else angle
 
     @property
@@ -136,7 +136,7 @@ def joined_in_pairs(laps: Array) -> Array:
 
 
 class Setting(NamedTuple):
-    """The chamber, and what its pressures count from.
+    """The chamber, and the reference of its pressures.
 
     cycle: degrees of crank angle, 360 or 720; ambient: absolute pressure in Pa; absolute: whether the chamber's own
     figures are; mirrored: the crank end repeats the head end's figures one stroke later. For many machines numbers are
@@ -152,12 +152,12 @@ class Setting(NamedTuple):
 
     @property
     def base(self) -> float:
-        """What the chamber's figures less this are gauge pressures, in Pa."""
+        """Pressure in Pa that is subtracted from figures of the chamber to get gauge pressures."""
         return self.ambient if self.absolute else 0.0
 
     @property
     def lift(self) -> float:
-        """What the chamber's figures plus this are absolute pressures, in Pa."""
+        """Pressure in Pa that is added to figures of the chamber to get absolute pressures."""
         return 0.0 if self.absolute else self.ambient
 
     @property
@@ -167,7 +167,7 @@ class Setting(NamedTuple):
         return inner if self.head_end else outer
 
     def shift(self, trace: Trace) -> float:
-        """Return what is added to an angle of a trace to make it a crank angle, in degrees."""
+        """Return the angle in degrees that is added to an angle of a trace to get the crank angle."""
         inner, outer = self.mechanism.dead_centres()
         return float((outer if self.mirrored else inner) - trace.angle_zero)
 

@@ -1,7 +1,7 @@
-"""Samples of one or many cycles, as a logger wrote them, to laps of whole cycles over the same angles.
+"""From samples of one or many cycles, as a logger wrote them, to laps of whole cycles over the same angles.
 
-A lap is as long as the angle counts before it begins anew: a turn, or a cycle of four strokes. Of an angle that counts
-on and on it is one turn, of which two make a four-stroke cycle. What is no whole cycle is refused with its row.
+A lap is the range after which the angle restarts: a turn, or a four-stroke cycle. If the angle increases without
+restart, a lap is one turn, and two make a four-stroke cycle. Incomplete cycles are rejected, with the row.
 """
 
 import math
@@ -19,10 +19,10 @@ from kurbel.traces.read import LIMITS, Layout, read_table
 
 
 class Samples(NamedTuple):
-    """Laps of a trace, one after the other: of one cycle each, or of one turn each where only the machine can tell.
+    """Laps of a trace in order: of one cycle each, or of one turn each if only the machine file decides the cycle.
 
-    angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was tidied up; completed: the
-    last sample is the first one again, the file had none there; headed: the unit in the heading of the values, or ''.
+    angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was corrected; completed: the
+    closing sample is a copy of the first, as the file has none; headed: the unit in the heading of the values, or ''.
     """
 
     angles: Array
@@ -44,7 +44,7 @@ class Recording(NamedTuple):
     place: Callable[[int], Fault]
 
     def taken(self, which: Any) -> "Recording":
-        """Return these samples of it."""
+        """Return the recording with only these samples."""
         return Recording(self.angles[which], self.values[:, which], self.rows[which], self.place)
 
     def refuse(self, index: int, message: str) -> NoReturn:
@@ -70,8 +70,8 @@ def samples_of_file(
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
             raise
-        asked = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
-        raise RuleError(fault._replace(message=asked)) from None
+        message = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
+        raise RuleError(fault._replace(message=message)) from None
     return found._replace(headed=table.headed)
 
 
@@ -147,11 +147,11 @@ def _in_order(recording: Recording) -> tuple[Recording, list[str]]:
 # many laps, one below the other
 
 _SAME_ANGLE = 1e-3
-"""Of a step: what the angles of two laps may differ by and still be the same, rounded."""
+"""Share of a step by which equal angles of two laps may differ through rounding."""
 _LEAST_ALIKE = 0.2
-"""Likeness below which laps are none, even where a wrong speed lets them wander."""
+"""Correlation of laps below which they are not repetitions, even if a wrong speed shifts them."""
 _REST = 0.05
-"""Share of a lap from which on a note says that what follows the last whole one is left out."""
+"""Share of a lap above which a note reports that the incomplete last lap is left out."""
 
 
 def _laid_over_one_lap(recording: Recording) -> tuple[Recording, list[str]]:
@@ -219,14 +219,14 @@ def _counting_on(recording: Recording) -> tuple[Recording, float]:
 _ROUNDED = 0.25
 """Share of samples at the angle of the one before from which on the angles are rounded: of those none is left out."""
 _LARGE_HOLES = ((20.0, 10.0), (45.0, 3.0))
-"""(degrees, times the median step) beyond both of which no straight line stands for what was not measured."""
+"""(degrees, times the median step): a gap beyond both is not bridged by a straight line."""
 _WIDE = 3.0
-"""Times the usual step beyond which samples are missing, and a note says so."""
+"""Times the usual step: a wider one is reported as missing samples."""
 _HOLE = "no samples from {:.10g} to {:.10g} deg; a trace covers a whole cycle of 360 or 720 deg"
 
 
 def _without_twins(recording: Recording) -> tuple[Recording, list[str]]:
-    """Return it with samples that are given twice only once, and notes; raises RuleError for three at one angle."""
+    """Return the recording without duplicate samples, and notes; raises RuleError for three at one angle."""
     angles = recording.angles
     thrice = np.flatnonzero(angles[2:] == angles[:-2])
     if len(thrice):
@@ -241,7 +241,7 @@ def _without_twins(recording: Recording) -> tuple[Recording, list[str]]:
 
 
 def _closed(recording: Recording) -> Samples:
-    """Close the cycle with the first sample where only the last one is missing; raises RuleError for large holes."""
+    """Close the cycle with the first sample if only the last one is missing; raises RuleError for large gaps."""
     angles, values, *_ = recording
     span = float(np.ptp(angles))
     period = period_of(span)

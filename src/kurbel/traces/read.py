@@ -1,4 +1,4 @@
-"""Files of columns, as data loggers write them: to columns of figures, or the first line that has none.
+"""Reading files of columns, as data loggers write them; errors point at the first line that is no row of figures.
 
 A file is decoded, its columns are read by a `Layout`, and what cannot be read is refused with its line and with what
 to write, tried out on the first lines of the file.
@@ -23,20 +23,20 @@ from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError, refused
 
 LARGEST_FILE = 64 * 2**20
-"""Bytes; a million samples have about twenty million."""
+"""Most bytes of a file; a million samples take about twenty million."""
 MOST_NUMBERS = 5_000_000
-"""Numbers that are read from one file."""
+"""Most numbers that are read from one file."""
 LIMITS = (
     f"; a file has at most {LARGEST_FILE // 2**20} MiB and {MOST_NUMBERS} numbers that are read, one cycle at most "
     f"{MOST_POINTS} samples"
 )
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
-"""Word in the machine file -> what is between two columns."""
+"""Word in the machine file -> separator of columns."""
 DECIMALS = {"point": ".", "comma": ","}
 SECONDS = {"s": 1.0, "ms": 1e-3}
 """Unit of time in the column of angles -> seconds."""
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
-"""What could be the figures of a file: nothing else of it is shown, since any other file may hold secrets."""
+"""A possible figure: messages show nothing else of a file, since it may be a different file with secrets."""
 _NUMBER = re.compile(r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII)
 _THOUSANDS = re.compile(r"[-+]?[0-9]{1,3}([.,][0-9]{3})+([.,][0-9]+)?")
 _SPLIT_DECIMALS = re.compile(r"^[^#\n]*,[0-9]+,0[0-9][^#\n]*", re.MULTILINE)
@@ -189,7 +189,7 @@ _FOREIGN = {
     b"PAR1": ("a Parquet file", "export its columns as CSV"),
     b"%PDF": ("a PDF", "name the file of figures itself"),
 }
-"""First bytes of files that people name for a table -> what they are, and the way out."""
+"""First bytes of files that are mistaken for tables -> what they are, and the fix."""
 
 
 def text_of(file: str) -> str:
@@ -228,7 +228,7 @@ def text_of(file: str) -> str:
 _PLAIN = "; figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
 _NO_FIGURES = "; is it a file of figures?"
 _TRIED = 200
-"""Lines that are looked at: headings are no longer."""
+"""Lines that are examined; no heading is longer."""
 
 
 def _first_fault(text: str, layout: Layout) -> Fault:

@@ -1,1 +1,1 @@
-"""What may stand under a key of the machine file; each form reads and describes itself."""
+"""Forms of the values of keys in the machine file; each form reads and describes its values."""

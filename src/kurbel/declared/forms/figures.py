@@ -1,4 +1,4 @@
-"""Forms of what is put on key values, or on keys by their dotted names: bounds, expected figures, uncertainties."""
+"""Forms of limits and expectations of key values, and of uncertainties and settings of keys by their dotted names."""
 
 import re
 from collections.abc import Mapping
@@ -11,11 +11,11 @@ from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
-from kurbel.quantity import Quantity, ambiguity, called
+from kurbel.quantity import Quantity, ambiguity, called, in_sentences
 
 
 class Bound(float):
-    """A bound in the base of its kind, which keeps the unit, and the name of its key value, as they were written."""
+    """A bound in the base of its kind, with its unit and the name of its key value as written in the file."""
 
     __slots__ = ("name", "unit")
     unit: str
@@ -39,11 +39,11 @@ class Expected:
 
 
 MACHINE = "machine"
-"""What stands before the id of a key value of the whole machine, as the name of a cylinder before one of its own."""
+"""Prefix of a key value of the whole machine, as the name of a cylinder is of its own: `machine.T_max`."""
 
 
 def scoped(name: str) -> tuple[str, str]:
-    """Return whose key value a name is, '' where it is not said, and its id.
+    """Return the prefix of the name of a key value, '' if it has none, and its id.
 
     >>> scoped("machine.T_max"), scoped("No. 1.c_max"), scoped("c_max")
     (('machine', 'T_max'), ('No. 1', 'c_max'), ('', 'c_max'))
@@ -55,7 +55,7 @@ def scoped(name: str) -> tuple[str, str]:
 class Figures(Form):
     """A mapping from key values, by id or printed symbol, to a figure each; becomes pairs of id and Bound or Expected.
 
-    Before the id may stand whose it is: `machine.T_max`, or the name of a cylinder. what: is put on a key value;
+    The id may have a prefix: `machine.T_max`, or the name of a cylinder. what: the word for such a figure in messages;
     tolerated: figures with a tolerance.
     """
 
@@ -90,14 +90,15 @@ class Figures(Form):
         return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
 
     def _meant(self, name: str, known: Mapping[str, Quantity]) -> tuple[str, str]:
-        """Return the id that a name stands for, with whose it is before it, and what is wrong with it."""
+        """Return the id that a name means, with its prefix, and what is wrong with it."""
         found = called(name, known.values())
         scope, own = scoped(name)
         if scope and not found and called(own, known.values()):
             id, wrong = self._meant(own, known)
             return f"{scope}.{id}", wrong
         if not found:
-            hint = did_you_mean(name, tuple(id for id, one in known.items() if not one.listed))
+            single = {id: one for id, one in known.items() if not one.listed}
+            hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
             some = f"; known are {', '.join([*known][:6])}, …"
             return "", f"unknown key value '{shown(name)}'{hint or some}"
         wrong = f"'{name}' is a list of values; no {self.what} can be put on it" if known[found[0]].listed else ""
@@ -167,7 +168,7 @@ class ByKey(Form):
         self.spreads = spreads
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Read uncertainties; values that stand instead of others are read with their load case."""
+        """Read uncertainties; the values of a load case are read when they replace those of the file."""
         if not isinstance(value, dict) or not value:
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         if not self.spreads:

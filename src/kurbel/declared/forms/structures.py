@@ -1,7 +1,7 @@
-"""Forms of mappings and lists: records, lists, alternatives, words that choose further keys, records inline.
+"""Forms of mappings and lists: records (also inline), lists, alternatives, words that choose further keys.
 
-A file is read in two passes: forms turn texts into numbers, words and lists, one `Given` for each mapping; then `Maker`
-makes records of them.
+A file is read in two passes: first, forms turn texts into numbers, words and lists, and each mapping into a `Given`;
+then `Maker` makes records of these.
 """
 
 import functools
@@ -36,7 +36,7 @@ from kurbel.numerics.arithmetic import is_number
 
 
 class RecordForm(Form):
-    """A mapping that becomes a record. inline_too: another record also has its keys inline, so `places` skips it."""
+    """A mapping that becomes a record. inline_too: the outer mapping may have its keys, too, so `places` skips it."""
 
     shape = dict
 
@@ -47,7 +47,7 @@ class RecordForm(Form):
         self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
 
     def every_key(self) -> Iterator[tuple[str, Key]]:
-        """Yield all keys that such a mapping can have, with those of inline records after the key that brings them."""
+        """Yield all keys that such a mapping can have; inline ones follow the key that adds them."""
         for name, key in self.keys.items():
             yield name, key
             for record in key.form.inline:
@@ -73,7 +73,7 @@ class RecordForm(Form):
         return self.build(reading, value | meant, path)
 
     def build(self, reading: Reading, mapping: Tree, path: Path, inline: bool = False) -> "Given":
-        """Read the keys of the record out of a mapping that may hold those of others."""
+        """Read the keys of this record from a mapping that may also have keys of other records."""
         own = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
         rest = {name: value for name, value in mapping.items() if name not in own}
         missing = required(self.keys)
@@ -89,43 +89,43 @@ class RecordForm(Form):
             elif name in mapping:
                 values[name] = form.read(reading, mapping[name], (*path, name))
             elif name in missing:
-                # a fault of an inline record points at one of its keys that is given
-                beside = next((given for given in own if given in mapping), "") if inline else ""
+                # the error of an inline record points at one of its keys that is given
+                present = next((given for given in own if given in mapping), "") if inline else ""
                 meaning = key.text[:1].lower() + key.text[1:]
-                message = f"'{name}' is missing{' as well' if beside else ''}: {meaning}; {key.write(name)}"
-                values[name] = reading.fault((*path, beside) if beside else path, message, bool(beside))
+                message = f"'{name}' is missing{' as well' if present else ''}: {meaning}; {key.write(name)}"
+                values[name] = reading.fault((*path, present) if present else path, message, bool(present))
         return Given(self, mapping, path, values)
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
-        """Note a fault for each unknown key and yield the known ones that were probably meant."""
+        """Report each unknown key, and yield the known keys that were probably meant."""
         known = self.names(mapping)
-        elsewhere = self._moved(mapping)
+        misplaced = self._misplaced(mapping)
         other_words = {word: name for name, key in self.every_key() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
-            home = self._as_here(reading.where_it_belongs(name, path), mapping)
+            place = self._as_here(reading.where_it_belongs(name, path), mapping)
             word = other_words.get(name, "")
             meant = word if word in known else near(name, tuple(known))
-            if name in elsewhere:
-                message, meant = elsewhere[name], ""
+            if name in misplaced:
+                message, meant = misplaced[name], ""
             elif name == "<<":
                 message = (
                     "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
                 )
             elif meant:
                 message = f"unknown key; did you mean '{meant}'?"
-                if home and meant == word:  # another name for one key, and the name of one elsewhere
-                    message, meant = f"{message} Or {home}", ""
-            elif home:
-                message = f"does not belong here; {home}"
+                if place and meant == word:  # a synonym of a key here, and the name of a key elsewhere
+                    message, meant = f"{message} Or {place}", ""
+            elif place:
+                message = f"does not belong here; {place}"
             else:
                 message, others = f"unknown key{others}", ""
             reading.fault((*path, name), message, at_key=True)
             if meant and meant not in mapping:
                 yield meant
 
-    def _moved(self, mapping: Tree) -> dict[str, str]:
-        """Return the keys that belong below another key of this mapping, each with the words where to move it."""
+    def _misplaced(self, mapping: Tree) -> dict[str, str]:
+        """Return the keys that belong below another key of this mapping, each with the message where to move it."""
         moved = {
             inner: f"move it below '{name}'"
             for name, form in self.parts
@@ -139,7 +139,7 @@ class RecordForm(Form):
         return moved
 
     def _as_here(self, words: str, mapping: Tree) -> str:
-        """Return words for a place as seen from this mapping: that of a cylinder's key is in an item of 'cylinders'."""
+        """Return the words for a place as seen from this mapping: a key of a cylinder is in an item of 'cylinders'."""
         if self.listed and self.listed.unless in mapping:
             own, listed = self.listed.names(mapping), mapping[self.listed.unless]
             item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
@@ -148,7 +148,7 @@ class RecordForm(Form):
         return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
-        """Return the faults of a record with the paths of its mapping, where keys of a list's items may be inline."""
+        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
         faults = list(error.faults)
         for place, fault in enumerate(faults):
             if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
@@ -158,20 +158,20 @@ class RecordForm(Form):
                 faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
         return RuleError(*faults)
 
-    def born(self, values: Tree) -> Any:
+    def made(self, values: Tree) -> Any:
         """Return the record of these values of its keys; raises RuleError."""
         try:
-            born = self.record.from_keys(**values)
+            record = self.record.from_keys(**values)
         except ArithmeticError:
             refused(TOO_EXTREME)
-        return refused(TOO_EXTREME) if too_extreme(born, values) else born
+        return refused(TOO_EXTREME) if too_extreme(record, values) else record
 
 
 class Inline(RecordForm):
-    """Keys of another record that stand in the same mapping: those of the piston in its cylinder.
+    """The keys of another record, written in the same mapping: those of the piston in its cylinder.
 
-    With the key `unless`, a list of such records, they stand in its items instead, or of equal ones below its `each`;
-    rules of the outer record speak of an inline record as an item of that list.
+    unless: the key of a list of such records. If it is given, their keys are in its items instead (or below its `each`,
+    if all are equal). In both cases the rules of the outer record refer to an item of that list.
     """
 
     def __init__(self, record: type[Record], unless: str = "") -> None:
@@ -181,9 +181,10 @@ class Inline(RecordForm):
 
 @dataclass(eq=False)
 class Given:
-    """What was read of a mapping, from which a record is made: its form, the values of its keys, and what became of it.
+    """A mapping after the first pass: all that its record is made from.
 
-    values: by key, with others like it and tuples of them in place of records; mapping, path: where it was read.
+    mapping, path: what was read, and where; values: by key, with a `Given` where there will be a record; made: the
+    record, after the second pass.
     """
 
     form: RecordForm
@@ -201,7 +202,7 @@ def no_mapping(form: Form, value: Node) -> NoReturn:
 
 
 def places(form: Form, path: str = "", words: str = "at the top of the file") -> Iterator[tuple[str, str]]:
-    """Yield every key that may stand in a mapping of this form, each after the words for that mapping; path: of it."""
+    """Yield (description of the mapping, key) for every key below a mapping of this form; path: of that mapping."""
     if isinstance(form, RecordForm) and form.inline_too:
         return
     for name, inner in form.parts:
@@ -217,7 +218,7 @@ def places(form: Form, path: str = "", words: str = "at the top of the file") ->
 
 
 def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
-    """Yield the records that a key of this form leads to, each after the word that names it."""
+    """Yield (name, form) of every record that the value of a key of this form may be; word: the key."""
     if isinstance(form, RecordForm):
         yield word, form
     elif isinstance(form, Variant):
@@ -226,30 +227,33 @@ def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
         yield from records(inner, name or ("card" if isinstance(form, Keyed) else word))
 
 
-def too_extreme(born: Any, values: Tree) -> Any:
-    """Return whether, or where, a number of a record is not finite, nor infinite by a word or by default."""
+def too_extreme(record: Any, values: Tree) -> Any:
+    """Return whether a number of a record has overflowed, for many machines as an array (machines,).
+
+    values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
+    """
 
     def numbers(of: Tree) -> dict[str, Any]:
         return {name: one for name, one in of.items() if is_number(one) or isinstance(one, np.ndarray)}
 
-    meant: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
+    given_infinite: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
     broken: Any = False
-    for name, value in numbers(vars(born)).items():
-        if isinstance(value, np.ndarray) and isinstance(born, Indivisible):
+    for name, value in numbers(vars(record)).items():
+        if isinstance(value, np.ndarray) and isinstance(record, Indivisible):
             continue
-        endless = (value == math.inf) & (meant | (vars(type(born)).get(name) == math.inf))
-        broken = broken | ~np.asarray(np.isfinite(value) | endless)
+        infinite = (value == math.inf) & (given_infinite | (vars(type(record)).get(name) == math.inf))
+        broken = broken | ~np.asarray(np.isfinite(value) | infinite)
     return broken
 
 
 class Maker:
-    """The second pass: makes the records of what was read, and notes what is wrong with them."""
+    """The second pass: makes records of what was read, and reports what is wrong with them."""
 
     def __init__(self, reading: Reading) -> None:
         self.reading = reading
 
     def made(self, value: Any) -> Any:
-        """Return what a value that was read becomes; REFUSED after noting what is wrong with it."""
+        """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
         if isinstance(value, Given):
             value.made = self._record(value)
             return value.made
@@ -262,8 +266,8 @@ class Maker:
         values = {name: self.made(one) for name, one in given.values.items()}
         try:
             if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
-                return form.born(values)
-            # what is there contradicts the rest whether it could be read or not
+                return form.made(values)
+            # contradictions between keys are reported even where the value of one could not be read
             return self.reading.refuse(path, RuleError(*form.record.faults_of_keys(values)))
         except RuleError as error:
             return self.reading.refuse(path, form.flattened(error, given.mapping))
@@ -277,7 +281,7 @@ class Variant(Choice):
         self.default, self.cases, self.inline = default, cases, tuple(cases.values())
 
     def chosen(self, word: Node | None) -> Iterable[RecordForm]:
-        """Return the record that a word chooses, or the default one; all of them where the word is unknown."""
+        """Return the form that a word chooses, the default one without a word, or all forms if it is unknown."""
         known = self.cases.get(self.default if word is None else word) if isinstance(word, (str, type(None))) else None
         return [known] if known else self.cases.values()
 
@@ -285,9 +289,9 @@ class Variant(Choice):
 class Listing(Form):
     """A list of items of one form, at least one; becomes a tuple.
 
-    called: given if an item may have `like: NAME`, which copies the keys of an item above; it is the word before the
-    number of an item without a name, as in `cylinder 2`. Keys of the item itself override copied ones, also copied
-    ones that give the same thing under another name (`stroke` overrides `crank`).
+    called: given if an item may have `like: NAME`, which copies the keys of an earlier item; items without a name are
+    called by this word and their number, as in `cylinder 2`. An item's own keys replace copied ones, including those
+    that give the same quantity by another key (`stroke` replaces `crank`).
     """
 
     shape = list
@@ -311,7 +315,7 @@ class Listing(Form):
         return tuple(self.item.read(reading, item, (*path, index)) for index, item in enumerate(whole))
 
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
-        """Return items with the keys that `like` copies; a fault in a copied key is reported once, at the original."""
+        """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
         pairs = [{name, key.instead} for name, key in self.item.every_key() if key.instead]
         above: dict[str, tuple[int, Tree]] = {}
@@ -338,7 +342,7 @@ class Listing(Form):
 
 
 class OneOf(Form):
-    """Several forms, which differ in shape (text, list, mapping) or are word and number; the first that fits reads."""
+    """Several forms that differ in shape (text, list, mapping) or are word and number; the first that fits is used."""
 
     def __init__(self, *forms: Form) -> None:
         expected = ", or ".join(form.expected for form in forms)
@@ -358,7 +362,7 @@ class OneOf(Form):
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
         shape = type(value) if isinstance(value, (dict, list)) else str
         alike = [form for form in self.forms if form.shape is shape]
-        if alike:  # of a word and a number, the one that it looks like
+        if alike:  # a word or a number: by what the text looks like
             suiting = (form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value))))
             return next(suiting, alike[0]).read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
@@ -367,8 +371,8 @@ class OneOf(Form):
 class Keyed(Form):
     """A mapping with one key that decides its form, `{constant: …}` or `{trace: …}`; without one, `otherwise` reads it.
 
-    texts: meanings of those deciding keys whose value is no mapping; beside: keys of their mappings that may also stand
-    beside the deciding one.
+    texts: meanings of those deciding keys whose value is no mapping; beside: keys of their mappings that may also be
+    given next to the deciding key.
     """
 
     shape = dict
@@ -386,31 +390,31 @@ class Keyed(Form):
         if not isinstance(value, dict):
             no_mapping(self, value)
         known, cases = self.otherwise.keys, self.cases
-        telling = next((name for name in value if name in cases), "")
-        if not telling:
+        deciding = next((name for name in value if name in cases), "")
+        if not deciding:
             for name in value:
                 if name not in known and (meant := near(name, (*known, *cases))) in cases:
                     return reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
             return self.otherwise.read(reading, value, path)
-        inside = value[telling]
+        inside = value[deciding]
         if isinstance(inside, dict):
-            case = cases[telling]
+            case = cases[deciding]
             keys = case.keys if isinstance(case, RecordForm) else {}
             moved = {name: value[name] for name in self.beside if name in value and name in keys and name not in inside}
             inside, value = {**inside, **moved}, {name: one for name, one in value.items() if name not in moved}
         for name in value:
-            if name != telling:
-                home = reading.where_it_belongs(name, path) or "leave it out"
-                way_out = "leave one of them out" if name in known or name in cases else home
-                reading.fault((*path, name), f"cannot be combined with '{telling}'; {way_out}", at_key=True)
-        inner = cases[telling].read(reading, inside, (*path, telling))
+            if name != deciding:
+                place = reading.where_it_belongs(name, path) or "leave it out"
+                fix = "leave one of them out" if name in known or name in cases else place
+                reading.fault((*path, name), f"cannot be combined with '{deciding}'; {fix}", at_key=True)
+        inner = cases[deciding].read(reading, inside, (*path, deciding))
         return inner if len(value) == 1 else REFUSED
 
 
 def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
     """Return the form of a key's value: a kind of quantity with its bounds, a type, words, a record, a list of one.
 
-    bounds: `above`, `least`, `below`, `most` in SI, and `words` that stand for numbers.
+    bounds: `above`, `least`, `below`, `most` in SI, and `words` that mean numbers.
     """
     if isinstance(form, str):
         return NumberForm(form, **bounds)

@@ -35,13 +35,13 @@ Schema = dict[str, Any]
 
 
 class Form(ABC):
-    """What may stand under a key.
+    """The form of the value of a key: how it is written, and what it becomes.
 
-    expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: what
-    stands there in a few words, for pages. kind: of the number that stands there, or of each one of a list, '' where
-    none does; number: the form of the number that it becomes, which many machines have as an array; inline: records
-    whose keys stand in the same mapping. schema: the JSON Schema of a value, as far as it does not depend on parts and
-    units; parts: the forms that it is made of, each after the key that it stands under, '' for none.
+    expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: a
+    short description for pages. kind: of the number, or of each number of a list, '' for other values; number: the form
+    of the number that it becomes, which many machines have as an array; inline: records whose keys are in the same
+    mapping. schema: the JSON Schema of a value, as far as it does not depend on parts and units; parts: the forms that
+    it consists of, each after its key, '' for none.
     """
 
     shape: ClassVar[type] = str
@@ -62,15 +62,15 @@ class Form(ABC):
         self.written = written or (expected if self.shape is str else "a mapping")
 
     def kind_as_written(self, text: Node | None) -> str:
-        """Return the kind of the number that is written so, '' where it is none."""
+        """Return the kind of the number that is written in this way, '' if it is no number."""
         return self.kind
 
     @abstractmethod
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Return what a value of the tree becomes; faults are noted, or raised as RuleError."""
+        """Return what a value of the tree becomes; faults are reported, or raised as RuleError."""
 
     def read(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Return what a value of the tree becomes, or REFUSED after noting every fault."""
+        """Return what a value of the tree becomes, or REFUSED after reporting every fault."""
         if value is REFUSED:
             return REFUSED
         try:
@@ -91,7 +91,7 @@ def one_line(value: Node, expected: str) -> str:
 
 
 def out_of_size(value: Any, kind: str) -> str:
-    """Return in what way a value in the base of its kind, or any of many, is beyond what a machine file may hold.
+    """Return the message if a value in the base of its kind, or any of many, is out of the range of machine files.
 
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
@@ -107,7 +107,7 @@ def out_of_size(value: Any, kind: str) -> str:
 
 
 def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
-    """Return a fault for the first point whose value in this unit of its kind is too large; [] where there is none."""
+    """Return a fault for the first point whose value in this unit of its kind is too large; [] if there is none."""
     up, down = unit
     for index, (_, value) in enumerate(points):
         if not abs(value * up / down) <= KINDS[kind].largest:
@@ -120,10 +120,10 @@ class NumberForm(Form):
     """A number with a unit of its kind, such as `450 mm`, or a bare one; becomes a float in the base of the kind.
 
     above, below: the value must be larger or smaller; least, most: it must not be smaller or larger; zero: 0 is allowed
-    beside what is in the bounds. words: texts allowed instead, such as `infinite`, with the value they stand for;
-    or_else: what else may stand there, for messages. share_of: what a value with a unit, which people try for a share,
-    must be divided by. whole: it becomes an int. becomes: what the value, and the text that it was written as, become;
-    apart: each value by itself.
+    in addition to the bounds. words: texts allowed instead, such as `infinite`, with their values; or_else: what else
+    is allowed, for messages. share_of: the quantity of which the value is a share, for the message on a value with a
+    unit. whole: it becomes an int. becomes: a function of the value and the text as written; apart: of one value at a
+    time, not of an array.
     """
 
     kind: str = "ratio"
@@ -154,11 +154,11 @@ class NumberForm(Form):
         self.number = None if self.whole or self.apart else self
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Read the number, and hold it against its bounds."""
+        """Read the number, and compare it with its bounds."""
         text = one_line(value, self.expected)
-        for word, stands_for in self.words:
+        for word, number in self.words:
             if text == word:
-                return stands_for
+                return number
         if (self.words and text.strip()[0].isalpha()) or (self.or_else and not NUMBER.match(plain(text))):
             refused(f"expected {self.expected}{self.or_else}, got '{shown(text)}'")
         try:
@@ -187,7 +187,7 @@ class NumberForm(Form):
         return int(text)
 
     def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        """Return what texts become that are plain numbers within the bounds; None where one is not."""
+        """Return the numbers of texts that are all plain numbers within the bounds, else None."""
         found = plain_quantities(texts, self.kind)
         if found is None or self.out_of_bounds(values := np.array(found)) or out_of_size(values, self.kind):
             return None
@@ -219,9 +219,9 @@ class NumberForm(Form):
 
 
 class Choice(Form):
-    """One of these words; also: other words that people try, each with the one that is meant.
+    """One of these words.
 
-    means: what the words become, if not themselves.
+    also: other words that people try, each with the correct one; means: what the words become, if not themselves.
     """
 
     def __init__(
@@ -233,7 +233,7 @@ class Choice(Form):
         super().__init__(" or ".join(every), words[0], written, schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Take one of the words, of which one may be a blank or a tab."""
+        """Return the word, unchanged: a blank or a tab can be one."""
         if isinstance(value, str) and value in self.words:
             return self.means.get(value, str(value))
         text = one_line(value, self.expected)
@@ -243,9 +243,10 @@ class Choice(Form):
 
 
 class Text(Form):
-    """Any other text of one line; become: takes it with the folder of the file, and raises RuleError if it is none.
+    """Any other text of one line.
 
-    pattern: that the text has, as a keyboard writes it; unit_of: the kind of which it names a unit.
+    become: a function of the text and the folder of the file; it raises RuleError for an invalid text. pattern: regular
+    expression for the text in plain characters; unit_of: the kind of which it names a unit.
     """
 
     def __init__(
@@ -274,18 +275,18 @@ TEXT = Text("a text", lambda text, folder: text.strip(), schema={"type": ["strin
 
 
 def unit_name(kind: str) -> Text:
-    """Return the form of the name of a unit of this kind; becomes the factor pair that turns numbers into its base."""
+    """Return the form of the name of a unit; it becomes the pair of factors that converts to the base of the kind."""
     sample = unit_example(kind)
     expected = f"a unit of {kind}, such as '{sample}'"
     return Text(expected, lambda text, folder: unit_factor(text, kind), sample, unit_of=kind)
 
 
 def _firing_order(text: str, folder: str) -> tuple[int, ...]:
-    """Return the numbers of all cylinders from 1 on, each once; raises RuleError for others."""
+    """Return the numbers of all cylinders from 1, each once; raises RuleError for any other list."""
     order = tuple(map(int, re.findall("[0-9]+", text)))
     twice = next((number for number in order if order.count(number) > 1), None)
     if twice:
-        refused(f"cylinder {twice} stands twice in {text}")
+        refused(f"cylinder {twice} is listed twice in {text}")
     missing = next((number for number in range(1, max(order) + 1) if number not in order), None)
     if missing or len(order) > MOST_ITEMS:
         refused(f"cylinder {missing} is missing in {text}" if missing else f"more than {MOST_ITEMS} cylinders")
@@ -341,7 +342,7 @@ def _existing(text: str, folder: str) -> str:
 FILE_PATH = Text("the name of a file", _existing, schema={"type": "string", "minLength": 1})
 """The path of a file, relative to the machine file."""
 
-_FAULTS_SHOWN = 3  # of one list: the others are of the same sort, as when every pair has a decimal comma
+_FAULTS_SHOWN = 3  # of one list; the others usually have the same cause, such as decimal commas
 
 
 class Points(Form):
@@ -363,7 +364,7 @@ class Points(Form):
         super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
-        """Read the pairs, and tell the first few that are none."""
+        """Read the pairs, and report the first few wrong ones."""
         if isinstance(value, Plain) and not value:
             refused(f"a value is missing; write {self.expected}")
         if not isinstance(value, list):
@@ -383,15 +384,15 @@ class Points(Form):
         if wrong and all(isinstance(item, str) for item in value):
             refused(f"expected {self.expected}, got single values; put each {self._called} into its own brackets")
         unknown = [(index, error) for index, error in wrong if error.faults]
-        for index, told in unknown[:_FAULTS_SHOWN]:
-            reading.refuse((*path, index), told)
+        for index, reason in unknown[:_FAULTS_SHOWN]:
+            reading.refuse((*path, index), reason)
         if more := unknown[_FAULTS_SHOWN:]:
             these = f"these {len(more)} points are" if len(more) > 1 else "this point is"
             reading.fault((*path, more[0][0]), f"from here on {these} wrong as well")
         return REFUSED if wrong else pairs
 
     def _numbers(self, item: Node) -> Point:
-        """Return the numbers of a point; raises RuleError with what is wrong, without faults where that is known."""
+        """Return the numbers of a point; raises RuleError, without faults if these have been reported."""
         length = len(self.columns)
         if item is REFUSED:
             raise RuleError()

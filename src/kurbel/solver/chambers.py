@@ -1,0 +1,155 @@
+"""Pressures and volumes in the chambers of a cylinder at crank angles, and the force that they have on its pistons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kurbel.arrays import Array, Truth
+from kurbel.crank_angle import CrankAngle
+from kurbel.quantity import value, values_for
+from kurbel.solver.drive import Drive
+from kurbel.solver.gas import PistonGas, Pressure
+from kurbel.solver.motion import MotionColumns
+from kurbel.solver.trace import TracePressure, spread
+
+_ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
+"""End of the cylinder -> index of its symbols, and its name."""
+
+
+def _own_end(state: Chambers, end: str) -> Pressure | None:
+    """Return the pressure at an end of the cylinder's own piston; None where it has no indicator."""
+    gas = state.drive.own_gas
+    return None if gas is None else gas.head if end == "head" else gas.crank
+
+
+def _own_pressure(state: Chambers, end: str) -> Array | None:
+    gas, chamber = state.drive.own_gas, _own_end(state, end)
+    return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
+
+
+def _own_volume(state: Chambers, end: str) -> Any:
+    gas, passed = state.drive.own_gas, state.displacement
+    if gas is None or _own_end(state, end) is None:
+        return None
+    if end == "head":
+        return gas.piston.head_area * passed + gas.clearance_volumes[0]
+    return gas.piston.crank_area * (state.mechanism.stroke - passed) + gas.clearance_volumes[1]
+
+
+def _own_rise(state: Chambers, end: str) -> Array | None:
+    chamber = _own_end(state, end)
+    return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
+
+
+def _total(forces: Sequence[Any]) -> Any:
+    return sum(forces) if forces else None
+
+
+class Chambers(MotionColumns):
+    """Motion and gas forces of a cylinder at crank angles; see `MotionColumns`."""
+
+    commands = ("forces",)
+
+    def __init__(self, drive: Drive, angle: CrankAngle, within: Array) -> None:
+        super().__init__(drive.mechanism, angle, within, drive.omega, drive.cylinder.point)
+        self.drive = drive
+
+    own_pressures = values_for(
+        _ENDS,
+        "p_*",
+        "p_*",
+        "pressure",
+        "Gauge pressure in the * chamber, just after a jump",
+        of=_own_pressure,
+        gauge=True,
+    )
+    V = value(
+        "V",
+        "volume",
+        "Volume of the head-end chamber, including clearance if given",
+        lambda state: _own_volume(state, "head"),
+        on_request=("forces",),
+    )
+    V_crank = value(
+        "V_C",
+        "volume",
+        "Volume of the crank-end chamber, including clearance if given",
+        lambda state: _own_volume(state, "crank"),
+        on_request=("forces",),
+    )
+    dV = value(
+        "dV/dφ",
+        "volume_rise",
+        "Rate of change of the head-end volume with the crank angle",
+        lambda state: (
+            state.drive.own_gas.piston.head_area * np.radians(1.0) * state.slope if _own_end(state, "head") else None
+        ),
+        on_request=("forces",),
+    )
+    own_rises = values_for(
+        _ENDS,
+        "dp_*",
+        "dp_*/dφ",
+        "pressure_rise",
+        "Rise of the * pressure, over 1 deg",
+        of=_own_rise,
+        on_request=("forces",),
+    )
+    P_gas = value(
+        "P_gas",
+        "force",
+        "Force of gas, steam or water on all pistons of the rod",
+        lambda state: _total(state.piston_forces),
+    )
+    P_gas_book = value(
+        "P_297",
+        "force",
+        "The same with the mean of both piston areas (R 297)",
+        lambda state: _total([state.force_on(gas, mean_area=True) for gas in state.drive.gas]),
+        on_request=("forces",),
+    )
+
+    def pressure(self, end: Pressure) -> Array:
+        """Return the gauge pressure in Pa at an end of a piston."""
+        if isinstance(end, TracePressure):
+            return end.at(self.phi, self.within)
+        left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
+        return end.at(self.z, self.phi, self.within, self.drive.index, left)
+
+    def force_on(self, gas: PistonGas, mean_area: bool = False) -> Any:
+        """Return the gas force p_H A_H − p_C A_C in N on a piston (R 296); mean_area: both ½(A_H + A_C) (R 297)."""
+        head, crank = (spread(one, self.drive.index) for one in gas.areas)
+        if mean_area:
+            head = crank = (head + crank) / 2
+        sense = -1.0 if gas.turned else 1.0
+        return sum(self.pressure(end) * (area * sense) for end, area in ((gas.head, head), (gas.crank, -crank)) if end)
+
+    @cached_property
+    def piston_forces(self) -> list[Array]:
+        """Force in N on each piston that has an indicator."""
+        return [self.force_on(gas) for gas in self.drive.gas]
+
+    def force_of(self, shares: Sequence[Truth]) -> Array | None:
+        """Return the gas force in N on those pistons whose share is true, in each machine; None without any."""
+        each = zip(self.piston_forces, shares)
+        counted = [force * spread(share, self.drive.index) for force, share in each if share is not False]
+        return sum(counted) if counted else None
+
+    P_driving = value(
+        "P_gas+",
+        "force",
+        "Force of gas or steam on the pistons that drive",
+        lambda state: state.force_of(state.drive.driving),
+        unless=lambda forces: forces.works_one_way,
+    )
+    P_driven = value(
+        "P_gas−",
+        "force",
+        "Force of gas or water on the pistons that are driven",
+        lambda state: state.force_of(state.drive.pumping),
+        unless=lambda forces: forces.works_one_way,
+    )
