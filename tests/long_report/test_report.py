@@ -120,6 +120,7 @@ def test_what_a_machine_is_stands_below_its_name() -> None:
     """As configs/marine-diesel.yaml has it: L/R = 4.4, so that the rod has 1980 mm."""
     machine = "6 cylinders, two-stroke, 110 rpm, stroke 900 mm, rod 1980 mm, bore 540 mm"
     assert machine in text_in(page_of("marine-diesel"))
+    assert "Shaper 40 rpm, stroke 975 mm" in " ".join(text_in(page_of("shaper")).split())  # a ram, and no cylinder
     named = re.findall(r"<(title|h\d|caption|figcaption)>(?:<b>)?Motor ship", page_of("marine-diesel"))
     assert named == ["title", "h1"]  # of the window, and of the page
 

@@ -39,7 +39,8 @@ def effort(source: Source) -> Iterator[Panel]:
     samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
     x, line, load = samples.values
     level_load = results.machine.load is None or results.machine.load.diagram is None
-    resistance = samples.curve(Words("W" if id == "T" else "M_m" if level_load else "M_W"), x, load / radius)
+    name = Words("W" if id == "T" else "M_m" if level_load else "M_W", words="resistance")
+    resistance = samples.curve(name, x, load / radius)
     curves = samples.curve(source.words(id), x, line), resistance._replace(kind="faint" if level_load else "line")
     shades, lobes = list(between(x, load / radius, line)), results.lobes
     if 0 < len(lobes) <= _MOST_NUMBERED:
