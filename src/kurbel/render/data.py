@@ -36,12 +36,12 @@ class _Echo:
         return text
 
 
-def csv_line(look: Look) -> Callable[[Iterable[Any]], str]:
+def csv_line(look: Look) -> Callable[[Iterable[object]], str]:
     """Return a function that makes a line of texts, numbers and None; with a decimal comma the separator is `;`."""
     return csv.writer(_Echo(), delimiter=";" if look.comma else ",", lineterminator="\n").writerow
 
 
-def csv_cell(value: Any, look: Look, in_full: bool = False) -> Any:
+def csv_cell(value: Any, look: Look, in_full: bool = False) -> object:
     """Return a value for `csv_line`: an apostrophe marks a text that a spreadsheet would take for a formula.
 
     Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
@@ -63,7 +63,7 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     first column.
     """
     parts = report.all_parts
-    blocks: list[tuple[Part, dict[str, Iterable[Any]]]] = []  # the cells of a part by the heads of their columns
+    blocks: list[tuple[Part, dict[str, Iterable[object]]]] = []  # the cells of a part by the heads of their columns
     if any(part.columns for part in parts):
         blocks = [(part, _columns(part.columns, look)) for part in parts if part.columns]
         named = len(blocks) + sum(bool(part.nowhere) for part in report.parts)
@@ -103,12 +103,12 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
         yield from map(line, longest)
 
 
-def _columns(columns: Iterable[Column], look: Look) -> dict[str, Iterable[Any]]:
+def _columns(columns: Iterable[Column], look: Look) -> dict[str, Iterable[object]]:
     """Return the cells of columns by id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio.
 
     Crank angles have all digits, whole ones no decimal point.
     """
-    found: dict[str, Iterable[Any]] = {}
+    found: dict[str, Iterable[object]] = {}
     for one in columns:
         unit = one.unit.replace(" abs", "_abs").replace(" ", "")
         angle = one.id == "phi"
@@ -146,7 +146,7 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
 
 
 def findings_json(
-    machine: str | None, made_from: Provenance | None, findings: list[dict[str, Any]], look: Look
+    machine: str | None, made_from: Provenance | None, findings: list[dict[str, object]], look: Look
 ) -> Iterator[str]:
     """Yield a check as one JSON object in pieces, a line for every finding; machine: None where the file has none."""
     head = {"kurbel": __version__, "format": FORMAT, "command": "check", "machine": machine}
@@ -193,16 +193,16 @@ def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], lo
     yield "</testsuites>\n"
 
 
-def _made_from(given: Provenance | None) -> dict[str, Any]:
+def _made_from(given: Provenance | None) -> dict[str, object]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
     return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
-def _results(part: Part, look: Look) -> dict[str, Any]:
+def _results(part: Part, look: Look) -> dict[str, object]:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
-    tables, key_values, pistons = [], [], list[dict[str, Any]]()
+    tables, key_values, pistons = [], [], list[dict[str, object]]()
     for table in part.place_tables:
         if table.id == "pistons":
             for name, *values in zip((names[0] for names in table.names), *(one.values for one in table.columns)):
@@ -250,7 +250,7 @@ def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
     yield json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
 
 
-def _holds_object(node: Any) -> bool:
+def _holds_object(node: object) -> bool:
     children = node.values() if isinstance(node, dict) else node if isinstance(node, list) else ()
     return any(isinstance(child, (dict, Column)) or _holds_object(child) for child in children)
 

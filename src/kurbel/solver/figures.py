@@ -196,7 +196,7 @@ class Results(Shown):
         found = ((row.quantity, row.of(self)) for row in self.rows.key_values.values())
         return {quantity.id: _figure(quantity, value) for quantity, value in found if value is not None}
 
-    def columns(self, degrees: Any, *names: str) -> dict[str, Array]:
+    def columns(self, degrees: object, *names: str) -> dict[str, Array]:
         """Return φ and these columns (n,), or all that there are, in SI by id, at crank angles (n,) in degrees.
 
         names: ids or printed symbols. Raises UsageError for angles that are no numbers and for what is no column here.
@@ -214,7 +214,7 @@ class Results(Shown):
                 raise UsageError(f"this machine has no {row.quantity.id}: {row.quantity.text}")
         return found
 
-    def at(self, degrees: Any, within: Array | None = None) -> Any:
+    def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
@@ -271,7 +271,7 @@ def result(values: Array, count: int | None) -> Any:
     return float(values[0]) if count is None else values
 
 
-def crank_angles(degrees: Any) -> Array:
+def crank_angles(degrees: object) -> Array:
     """Return crank angles in degrees as an array; raises UsageError for what are no finite numbers."""
     try:
         angles = np.asarray(degrees, dtype=float)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.cylinder import may_lock
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
@@ -125,7 +125,7 @@ class CylinderForces(SampledCylinder, Results):
     def _of(self) -> str:
         return self.drive.name
 
-    def at(self, degrees: Any, within: Array | None = None) -> State:
+    def at(self, degrees: object, within: Array | None = None) -> State:
         """Return every quantity at crank angles (n,) in degrees: `forces.at([0, 10]).T` in N, …
 
         At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
@@ -430,7 +430,7 @@ class CylinderForces(SampledCylinder, Results):
         if friction is None:
             return found
 
-        def over_cycle(values: Array) -> Any:
+        def over_cycle(values: Number) -> Any:
             return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
 
         if friction.crosshead is not None and drive.has_force:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import is_whole, some, unless_cancelled, where
@@ -143,7 +143,7 @@ class MachineOrders(Results):
             raise UsageError(f"{effort.machine.name}: of the effort its swing of energy alone is known, and no orders")
         self.orders = every_order(effort.cycle) if orders is None else orders
 
-    def _orders_of(self, pieces: Pieces, torque: Array, inertia: Array | None, size: Any = 0.0) -> Orders:
+    def _orders_of(self, pieces: Pieces, torque: Array, inertia: Array | None, size: Number = 0.0) -> Orders:
         """Return the orders of a torque (nodes, pieces) with the part of the inertia forces, None without any.
 
         A torque of a shorter cycle has only some of the orders. What is rounding of the largest, or of the torques of

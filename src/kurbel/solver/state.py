@@ -101,7 +101,7 @@ class State(Chambers):
         return np.broadcast_to(np.asarray(number, dtype=float), self.phi.shape)
 
     @column("P_zw", "force", extremes=("forces",), called="force in the rod between the pistons")
-    def P_between(self) -> Any:
+    def P_between(self) -> Number | None:
         """Force in the rod between the cylinder's piston and those in tandem, thrust toward the shaft positive.
 
         Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
@@ -360,7 +360,7 @@ class State(Chambers):
         return self.guide_sense / np.where(locked, np.nan, self.guide_denominator)
 
     @cached_property
-    def crosshead_drag(self) -> Any:
+    def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
 
@@ -456,9 +456,9 @@ class State(Chambers):
         return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 
     @cached_property
-    def losses(self) -> dict[str, Any]:
+    def losses(self) -> dict[str, Number]:
         """Torque in N m lost by friction in pins, journals and the block of a yoke, by the keys in `friction`."""
-        found, lost = self.rubbing, dict[str, Any]()
+        found, lost = self.rubbing, dict[str, Number]()
         if found is not None:
             lost["crank_pin"] = found.at_crank * (1 + self.rod_slope)
             lost["crosshead_pin"], lost["journals"] = found.at_crosshead * self.rod_slope, found.journals

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles, Pieces, refined
@@ -122,7 +122,7 @@ class TracePressure:
         inner, outer = self.setting.mechanism.dead_centres()
         return self.straight_weights(outer if self.setting.head_end else inner + 360.0, 360.0)
 
-    def _trapezoid(self, derivative: Callable[[CrankAngle], Any]) -> Array:
+    def _trapezoid(self, derivative: Callable[[CrankAngle], Number]) -> Array:
         """Return the weights of the samples by the trapezoid rule; derivative: dx/dφ or d²x/dφ²."""
         steps = np.radians(np.diff(self.trace.angles)) / 2
         widths = np.append(steps, 0.0) + np.append(0.0, steps)
@@ -149,7 +149,7 @@ class TracePressure:
         of_start = np.bincount(sample, (by_node * (1 - share)).sum(axis=0), count)
         return np.asarray(of_start + np.bincount(sample + 1, (by_node * share).sum(axis=0), count))
 
-    def _fraction(self, derivative: Callable[[CrankAngle], Any], degrees: Array) -> Array:
+    def _fraction(self, derivative: Callable[[CrankAngle], Number], degrees: Array) -> Array:
         """Return a derivative of the stroke fraction z by φ."""
         by_angle = derivative(CrankAngle.of(degrees)) / self.setting.mechanism.stroke
         return np.asarray(by_angle if self.setting.head_end else -by_angle)
