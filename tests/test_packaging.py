@@ -36,8 +36,9 @@ def installed(folder: Path, *what: object) -> Path:
     own = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", folder=folder).strip()
     Path(own, "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
     pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check")
-    # an environment of its own for every build is fetched anew each time; .ci/run builds in one
-    run(*pip, "--no-build-isolation", "--no-deps", *what, folder=folder)
+    # an environment of its own for every build is fetched anew each time; .ci/run builds in one. A kurbel among the
+    # dependencies is not the one that is meant
+    run(*pip, "--no-build-isolation", "--no-deps", "--ignore-installed", *what, folder=folder)
     return python
 
 

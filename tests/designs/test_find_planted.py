@@ -77,8 +77,9 @@ def fault(origin: Origin, random: np.random.Generator) -> str | None:
             value, before, after = of(name, share + np.array([0.0, -1e-4, 1e-4]))
         except (KurbelError, KeyError):
             continue
-        steps = np.abs([value - before, after - value])  # on a level every place is a solution
-        if not np.isfinite(steps).all() or min(steps) <= 1e-9 * abs(value):
+        # on a level every place is a solution, and at a summit or in a valley the value is met without being crossed
+        steps = np.array([value - before, after - value])
+        if not np.isfinite(steps).all() or min(abs(steps)) <= 1e-9 * abs(value) or steps[0] * steps[1] < 0:
             continue
         scan = of(name, np.linspace(0.0, 1.0, SCANNED)) - value
         unit_of = SI[requested_answers(loads(origin.text), [name])[0].kind]

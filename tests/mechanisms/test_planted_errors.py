@@ -26,7 +26,7 @@ SLIPS = [
     ("yoke_frame", "bending_arm", "self.gland + self.coordinate", "self.gland - self.coordinate"),
     ("slotted_lever", "_lever_at", "bend = -crank", "bend = crank"),
     ("slotted_lever", "pin_force_factor", "/ lever.reach", "* lever.reach"),
-    ("slotted_lever", "radial", "-self.pin", "self.pin"),
+    ("slotted_lever", "radial", "-force", "force"),
     ("slotted_lever", "radial", "angle.sin", "angle.cos"),
     ("slotted_lever", "block_slope", "-self.crank", "self.crank"),
     ("slotted_lever", "_ram", "cos - sin *", "cos + sin *"),
