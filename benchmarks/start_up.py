@@ -29,15 +29,7 @@ COMMANDS = {
     "kurbel balance (V8)": [BIN / "kurbel", "balance", CONFIGS / "v8-cross-plane.yaml"],
     "kurbel plot": [BIN / "kurbel", "plot", CONFIGS / "waterworks.yaml"],
 }
-BUDGET = {
-    "kurbel --help": 0.6,
-    "kurbel table": 0.6,
-    "kurbel forces -f csv": 1.5,
-    "kurbel flywheel": 2.0,
-    "kurbel balance": 1.5,
-    "kurbel balance (V8)": 1.5,
-    "kurbel plot": 1.6,
-}
+BUDGET = {"kurbel --help": 1.0, "kurbel table": 1.8, "kurbel forces -f csv": 2.0, "kurbel flywheel": 2.5}
 
 
 def measure(rounds: int) -> dict[str, list[float]]:
