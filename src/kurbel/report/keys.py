@@ -85,7 +85,7 @@ def described(path: str) -> list[tuple[str, str]]:
     hint = f"; it is at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
     if not hint and (word := near(steps[-1], tuple(name.rpartition(".")[2] for name in places))):
         hint = f"; did you mean {' or '.join(name for name in places if name.rpartition('.')[2] == word)}?"
-    raise UsageError(f"no key '{shown(path)}'{hint}; 'kurbel keys' lists them")
+    raise UsageError(f"no key '{shown(path)}'{hint} ('kurbel keys' lists them)")
 
 
 def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:
