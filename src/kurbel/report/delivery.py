@@ -142,7 +142,7 @@ IN_CASES = {
     "delivery": "volumetric_efficiency capacity mass_flow discharge_temperature stage_power isentropic_efficiency "
     "flow_mean flow_max volume_fluctuation vessel_volume vessel_swing suction_lift_max",
 }
-"""Command -> the key values of its table of load cases, where none are asked for."""
+"""Command -> the key values of its table of load cases if none are requested."""
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
