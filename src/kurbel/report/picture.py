@@ -3,7 +3,7 @@
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple, Union
 
@@ -25,7 +25,7 @@ class Words(NamedTuple):
 
 
 class Axis(NamedTuple):
-    """What runs along an axis, its kind of quantity and unit; mark: text behind the unit; log: by powers of ten.
+    """What runs along an axis, its kind of quantity and unit; log: by powers of ten.
 
     low, high: how far it must reach at least; falling: large values are on the left; names: texts at 0, 1, … instead of
     numbers.
@@ -34,12 +34,16 @@ class Axis(NamedTuple):
     name: Words
     kind: str = ""
     unit: str = ""
-    mark: str = ""
     log: bool = False
     low: float | None = None
     high: float | None = None
     falling: bool = False
     names: tuple[str, ...] = ()
+
+    def shown(self, to: Callable[[float], float], unit: str) -> "Axis":
+        """Return the axis in a unit, to which a function takes numbers."""
+        low, high = (None if end is None else to(end) for end in (self.low, self.high))
+        return self._replace(unit=unit, low=low, high=high)
 
 
 class Curve(NamedTuple):
@@ -91,6 +95,10 @@ class PageFigure(NamedTuple):
     value: float | None = None
     unit: str = ""
     at_deg: float | None = None
+
+    def shown(self, to: Callable[[float], float], unit: str) -> "PageFigure":
+        """Return the figure in a unit, to which a function takes numbers."""
+        return self._replace(value=None if self.value is None else to(self.value), unit=unit)
 
 
 class Mark(NamedTuple):
@@ -217,19 +225,12 @@ class Panel(NamedTuple):
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
         """All x and all y that are drawn."""
-        across = [curve.x for curve in self.curves] + [shade.x for shade in self.shades]
-        up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
-        marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
-        drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
+        drawn = [one.x + 1j * one.y for one in self.curves]
+        drawn += [one.x + 1j * line for one in self.shades for line in (one.low, one.high)]
+        drawn += [np.array([complex(one.x, one.y)]) for one in self.marks]
+        drawn += [line for body in self.bodies for _, line in body.outlines()]
         drawn += [np.array([one.place - one.half, one.place + one.half]) for one in self.captions]
-        across += [one.real for one in drawn]
-        up += [one.imag for one in drawn]
-        return [*across, marked[:, 0]], [*up, marked[:, 1]]
-
-    def called(self, words: Mapping[str, str]) -> "Panel":
-        """Return the panel with other words for curves, by their symbols."""
-        names = [one.name._replace(words=words.get(one.name.symbol, one.name.words)) for one in self.curves]
-        return self._replace(curves=tuple(one._replace(name=name) for one, name in zip(self.curves, names)))
+        return [one.real.ravel() for one in drawn], [one.imag.ravel() for one in drawn]
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""

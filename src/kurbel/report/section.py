@@ -11,7 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.mechanisms import PIN
 from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel, Words
-from kurbel.report.picture_source import PHI, Source
+from kurbel.report.picture_source import Source
 from kurbel.report.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
 from kurbel.solver.forces import CylinderForces
 
@@ -62,7 +62,7 @@ def mechanism(source: Source) -> Iterator[Panel]:
 
 def _rest(first: CylinderForces, alone: bool) -> float:
     """Return the crank angle of the largest tangential force of the first cylinder."""
-    marks = Source(first, None).marks("T", lambda angle: angle)
+    marks = Source(first, None).marks("T")
     return marks[0].x + (0.0 if alone else first.drive.cylinder.crank_position) if marks else _STILL
 
 
@@ -259,8 +259,9 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
     ids = source.having(*acting)
     if not ids:
         return
-    largest = float(np.abs(source.samples((PHI, *ids)).values[1:]).max()) or 1.0
-    for id, force in zip(ids, source.values(ids, train.cycle)):
+    lines = [source.line(id) for id in ids]
+    largest = float(np.abs(source.samples(ids[0], lines).values).max()) or 1.0
+    for id, force in zip(ids, source.values(lines, train.cycle)):
         if np.abs(force).max() < _VANISHING * largest and len(force) > 1:
             continue
         place, direction, away = acting[id]
