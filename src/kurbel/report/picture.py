@@ -60,28 +60,24 @@ class Curve(NamedTuple):
     kind: str = "line"
     look: int | None = None
 
-    def _parted(self) -> list[tuple[Array, Array]]:
-        jumps = np.flatnonzero(np.isnan(self.x))
-        starts, ends = [0, *(jumps + 1)], [*jumps, len(self.x)]
-        return [(self.x[start:end], self.y[start:end]) for start, end in zip(starts, ends)]
-
     def pieces(self) -> list[tuple[Array, Array]]:
         """Return the points between jumps and gaps."""
-        return [piece for piece in self._parted() if len(piece[0])]
+        ends = [-1, *np.flatnonzero(np.isnan(self.x)).tolist(), len(self.x)]
+        return [(self.x[start + 1 : end], self.y[start + 1 : end]) for start, end in pairwise(ends) if end > start + 1]
 
     def jumps(self) -> list[tuple[Array, Array]]:
         """Return the two points of each jump."""
-        return [
-            (np.array([before[0][-1], after[0][0]]), np.array([before[1][-1], after[1][0]]))
-            for before, after in pairwise(self._parted())
-            if len(before[0]) and len(after[0])
-        ]
+        ends = np.flatnonzero(np.isnan(self.x[1:-1]))[:, None] + np.array([0, 2])
+        return [(self.x[pair], self.y[pair]) for pair in ends if not np.isnan(self.x[pair]).any()]
 
     def closed(self) -> "Curve":
         """Return the curve of a cycle with a jump from its end to its beginning, if these are apart."""
-        x, y = (np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y))  # a piece has two points
-        apart = [abs(one[0] - one[-1]) > _SAME * np.nanmax(np.abs(one)) for one in (self.x, self.y)]
-        return self._replace(x=x, y=y) if any(apart) else self
+        points = np.stack((self.x, self.y))
+        apart = np.abs(points[:, 0] - points[:, -1]) > _SAME * np.nanmax(np.abs(points), axis=1)
+        if not apart.any():
+            return self
+        x, y = np.concatenate((points, np.full((2, 1), np.nan), points[:, :2]), axis=1)  # a piece has two points
+        return self._replace(x=x, y=y)
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""
@@ -123,6 +119,7 @@ class Shade(NamedTuple):
     figure: PageFigure | None = None
 
 
+_CIRCLE = np.exp(2j * np.pi * np.arange(25) / 24)
 MOMENTS_PER_TURN = 48
 """Moments of one turn of the crank, through which bodies and arrows move."""
 
@@ -139,9 +136,8 @@ class Shape(NamedTuple):
 
     @property
     def outline(self) -> ComplexArray:
-        """The points of its outline, of a circle 24."""
-        around = self.radius * np.exp(2j * np.pi * np.arange(25) / 24) if self.radius else 0.0
-        return self.points + around if self.radius else np.append(self.points, self.points[:1])
+        """The points of its outline."""
+        return self.points + self.radius * _CIRCLE if self.radius else np.append(self.points, self.points[:1])
 
 
 class Body(NamedTuple):
@@ -162,8 +158,7 @@ class Body(NamedTuple):
         cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0
     ) -> "Body":
         """Return the body of numbers or arrays."""
-        place, *others = (np.atleast_1d(one) for one in (np.asarray(place, dtype=complex), turn, stretch, tint))
-        return cls(tuple(shapes), place, *(np.asarray(one, dtype=float) for one in others))
+        return cls(tuple(shapes), *(np.atleast_1d(one) for one in (place, turn, stretch, tint)))
 
     @property
     def moves(self) -> bool:
@@ -186,12 +181,10 @@ class Body(NamedTuple):
 
     def outlines(self) -> list[tuple[str, ComplexArray]]:
         """Return the look and the outline (moments, points) of each shape, wherever it moves."""
-        place, turn, stretch = np.broadcast_arrays(*(one[:, None] for one in (self.place, self.turn, self.stretch)))
-        turned, found = np.exp(1j * np.radians(turn)), []
-        for one in self.shapes:
-            line = one.outline
-            found.append((one.look, place + turned * (stretch * line.real + 1j * line.imag)))
-        return found
+        place, turn, stretch = (one[:, None] for one in (self.place, self.turn, self.stretch))
+        turned, lines = np.exp(1j * np.radians(turn)), [one.outline for one in self.shapes]
+        found = [place + turned * (stretch * line.real + 1j * line.imag) for line in lines]
+        return [(shape.look, line) for shape, line in zip(self.shapes, found)]
 
 
 class Caption(NamedTuple):
