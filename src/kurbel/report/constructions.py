@@ -14,15 +14,13 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
-from kurbel.report.picture_source import NO_NAME, Source
+from kurbel.report.picture_source import AROUND, NO_NAME, Source, curve
 from kurbel.solver.state import State
 
 _USUAL = 60.0
 """Degrees at which a construction is shown where no angle is chosen."""
 _SMALL = 0.2
 """Radius of the crank circle over the largest force: the book draws it reduced."""
-AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
-"""A circle."""
 
 
 def construction(source: Source) -> Iterator[Panel]:
@@ -186,12 +184,6 @@ def _pin_and_head(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, c
     """Return the places of crank pin and crosshead in m; φ = 0 is to the right."""
     pin = mechanism.crank * complex(angle.cos, angle.sin)
     return pin, complex(pin.real + mechanism.rod * mechanism.rod_angle(angle)[1], mechanism.offset)
-
-
-def curve(kind: str, *places: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
-    """Return a line through places x + iy."""
-    points = np.array(places)
-    return Curve(name, points.real, points.imag, kind, look)
 
 
 def _mark(symbol: str, place: complex, value: float | None = None) -> Mark:

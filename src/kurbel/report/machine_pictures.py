@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.report.picture_source import Line, Source, between, level
+from kurbel.report.picture_source import Line, Source, between, curve, level
 from kurbel.solver.bearings import BearingColumns
 from kurbel.solver.effort import Term
 from kurbel.solver.flywheel import TurningState
@@ -42,7 +42,7 @@ def effort(source: Source) -> Iterator[Panel]:
     name = Words("W" if id == "T" else "M_m" if level_load else "M_W", words="resistance")
     load: Line = name, lambda state: state["M_load"] / radius
     panel = source.panel([id, load], shaded=True, also=results.phi_crossing)
-    curve, resistance = panel.curves
+    line, resistance = panel.curves
     shades, lobes = list(panel.shades), results.lobes
     if 0 < len(lobes) <= _MOST_NUMBERED:
         owners = [np.searchsorted(results.phi_crossing, (one.x[0] + one.x[-1]) / 2) - 1 for one in shades]
@@ -53,7 +53,7 @@ def effort(source: Source) -> Iterator[Panel]:
             if widest is not None:
                 shades[widest] = shades[widest]._replace(figure=PageFigure(Words(f"A_{lobe + 1}"), work))
     resistance = resistance._replace(kind="faint" if level_load else "line")
-    yield panel._replace(curves=(curve, resistance), shades=tuple(shades))
+    yield panel._replace(curves=(line, resistance), shades=tuple(shades))
 
     yield from source.panels(["E"])
     means = ("omega", "omega_mean", results.omega_mean), ("M_coupling", "M_mean", results.M_mean)
@@ -66,9 +66,9 @@ def flow(source: Source) -> Iterator[Panel]:
     """Flow that the pumps deliver over the crank angle, and its mean; what is between them fills and empties the air
     vessel. Below it, where there is a suction pipe without a vessel, the head that accelerates the liquid."""
     for panel in source.panels(["flow"]):
-        (curve,), mean = panel.curves, source.results.flow_mean
-        shades = [shade for x, y in curve.pieces() for shade in between(x, np.full_like(x, mean), y)]
-        yield panel._replace(curves=(curve, level(curve.x, mean, source.words("flow_mean"))), shades=tuple(shades))
+        (line,), mean = panel.curves, source.results.flow_mean
+        shades = [shade for x, y in line.pieces() for shade in between(x, np.full_like(x, mean), y)]
+        yield panel._replace(curves=(line, level(line.x, mean, source.words("flow_mean"))), shades=tuple(shades))
         yield from source.panels(["acceleration_head"])
 
 
@@ -86,7 +86,7 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     for look, one in enumerate(acting if len(acting) > 1 else (), 2):
         each.append((look, _on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])]))))
     panel = source.panel([line for _, line in each], like="T")
-    curves = [curve._replace(look=look) for curve, (look, _) in zip(panel.curves, each)]
+    curves = [line._replace(look=look) for line, (look, _) in zip(panel.curves, each)]
     mean = level(curves[0].x, float(effort.mean[0]) / source.results.crank, Words("W"))
     yield panel._replace(curves=(*curves, mean), marks=source.marks("T"))
 
@@ -198,18 +198,15 @@ def campbell(source: Source) -> Iterator[Panel]:
     reached = [frequency for _, frequency in modes if frequency <= fastest * max(orders, default=0.0)]
     top = 1.15 * max(reached, default=modes[0][1])
 
-    def line(name: Words, x: float, y: float, kind: str = "faint", x0: float = 0.0, y0: float = 0.0) -> Curve:
-        return Curve(name, np.array([x0, x]), np.array([y0, y]), kind)
-
     curves = [
-        line(Words(f"f_{mode}", words=f"mode {mode}"), fastest, frequency, "line", y0=frequency)
+        curve("line", 1j * frequency, fastest + 1j * frequency, name=Words(f"f_{mode}", words=f"mode {mode}"))
         for mode, frequency in modes
         if frequency <= top
     ]
     for order in orders:
         end = min(fastest, top / order)
-        curves.append(line(Words(f"ν = {order:g}"), end, order * end))
-    curves.append(line(Words("working speed"), working, top, x0=working))
+        curves.append(curve("faint", 0j, complex(end, order * end), name=Words(f"ν = {order:g}")))
+    curves.append(curve("faint", complex(working), complex(working, top), name=Words("working speed")))
     marks = [
         Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed), of_x=True)
         for one in strongest
@@ -230,9 +227,7 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     # what is balanced is a point, which is shown only where all is
     for x, y, id, largest in [one for one in known if one[3] and one[3].value] or known[:1]:
         tip = partial(_of_components, x, y)
-        panel = source.locus(tip, x, source.words(y), cycle=360.0)
-        if largest and largest.value:
-            panel = panel._replace(marks=(source.mark(id, largest, source.point(tip, largest.degrees)), *panel.marks))
+        panel = source.locus(tip, x, source.words(y), cycle=360.0, largest=(id, largest))
         yield panel._replace(x=source.axis(x), y=source.axis(y))
 
 
@@ -250,16 +245,16 @@ def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod, unless it is
     all but a straight line."""
     largest = source.results.load_max if "load_max" in source.key_values and source.marks("load") else None
-    panels = list[Panel]()
-    for frame in source.having(*_FRAMES):
-        tip = partial(_tip_of_load, frame)
-        panel = source.locus(tip, "load", source.words("load"), _FRAMES[frame])
-        if largest and largest.value:
-            # at a jump the largest load is on one of its sides
-            sides = [source.point(tip, largest.degrees, off) for off in (-1e-6, 1e-6)]
-            place = min(sides, key=lambda one: abs(abs(one) - largest.value))
-            panel = panel._replace(marks=(source.mark("load_max", largest, place), *panel.marks))
-        panels.append(panel)
+    panels = [
+        source.locus(
+            partial(_tip_of_load, frame),
+            "load",
+            source.words("load"),
+            _FRAMES[frame],
+            largest=("load_max", largest),
+        )
+        for frame in source.having(*_FRAMES)
+    ]
     yield from [one for one in panels if _slenderness(one) < _SLENDEREST] or panels[:1]
 
 

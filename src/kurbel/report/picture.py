@@ -12,9 +12,6 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
-_SAME = 1e-9
-"""Share of its largest coordinate by which two points of a curve may differ and be one."""
-
 
 class Words(NamedTuple):
     """A symbol as it is printed, its form without Greek letters if that is not each sign by itself, and its words."""
@@ -71,12 +68,8 @@ class Curve(NamedTuple):
         return [(self.x[pair], self.y[pair]) for pair in ends if not np.isnan(self.x[pair]).any()]
 
     def closed(self) -> "Curve":
-        """Return the curve of a cycle with a jump from its end to its beginning, if these are apart."""
-        points = np.stack((self.x, self.y))
-        apart = np.abs(points[:, 0] - points[:, -1]) > _SAME * np.nanmax(np.abs(points), axis=1)
-        if not apart.any():
-            return self
-        x, y = np.concatenate((points, np.full((2, 1), np.nan), points[:, :2]), axis=1)  # a piece has two points
+        """Return the curve of a cycle with a jump from its end to its beginning."""
+        x, y = (np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y))  # a piece has two points
         return self._replace(x=x, y=y)
 
     def at_moment(self, moment: int) -> "Curve":

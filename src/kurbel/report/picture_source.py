@@ -30,6 +30,8 @@ _CROSSING = 1e-9
 _MOST_SHADES = 100
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
 NO_NAME = Words("")
+AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
+"""A circle."""
 NO_WORDS: Mapping[str, str] = {}
 
 Line = tuple[Words, Callable[[Any], Any]]
@@ -198,22 +200,41 @@ class Source:
         return complex(tip(self.results.at(at, at + off))[0])
 
     def locus(
-        self, tip: Callable[[Any], ComplexArray], id: str, name: Words, title: str = "", cycle: float = math.inf
+        self,
+        tip: Callable[[Any], ComplexArray],
+        id: str,
+        name: Words,
+        title: str = "",
+        cycle: float = math.inf,
+        largest: tuple[str, Extreme | None] = ("", None),
     ) -> Panel:
         """Return the path of a point with one scale for both axes, and crank angles along it.
 
         tip: takes the columns of the results at crank angles (n,), returns points x + iy in SI; id: of a column that is
-        like them. cycle: degrees after which it repeats, if before the end of the cycle of the machine.
+        like them. cycle: degrees after which it repeats, if before the end of the cycle of the machine. largest: its
+        largest distance from the pole, with the id of that key value.
         """
         along = (name, lambda state: tip(state).real), (name, lambda state: tip(state).imag)
         samples = self.samples(id, along)
         angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
         x, y = self.values(along, angles)
         figures = [PageFigure(NO_NAME, at_deg=one) for one in angles[::3].tolist()]
-        marks = tuple(Mark(*one) for one in zip(x[::3].tolist(), y[::3].tolist(), figures))
+        marks = [Mark(*one) for one in zip(x[::3].tolist(), y[::3].tolist(), figures)]
+        key_value, extreme = largest
+        if extreme and extreme.value:
+            # at a jump it is on one of the two sides
+            sides = [self.point(tip, extreme.degrees, off) for off in (-1e-6, 1e-6)]
+            place = min(sides, key=lambda one: abs(abs(one) - extreme.value))
+            marks.insert(0, self.mark(key_value, extreme, place))
         curves = samples.curve(name, *samples.values).closed(), Curve(NO_NAME, x, y, "beads")
         pole, axis = Curve(NO_NAME, np.zeros(1), np.zeros(1), "pole"), Axis(Words("F"), "force")
-        return Panel(axis, axis, (*curves, pole), marks=marks, equal=True, title=title)
+        return Panel(axis, axis, (*curves, pole), marks=tuple(marks), equal=True, title=title)
+
+
+def curve(kind: str, *places: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
+    """Return a line through places x + iy."""
+    points = np.array(places)
+    return Curve(name, points.real, points.imag, kind, look)
 
 
 def level(x: Array, height: float = 0.0, name: Words = NO_NAME) -> Curve:

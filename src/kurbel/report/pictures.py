@@ -15,7 +15,7 @@ from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import grouped, together
-from kurbel.report.constructions import AROUND, construction, curve, polar_force
+from kurbel.report.constructions import construction, polar_force
 from kurbel.report.crank import equal_parts
 from kurbel.report.frame import subjects_of
 from kurbel.report.machine_pictures import (
@@ -34,7 +34,17 @@ from kurbel.report.machine_pictures import (
     unbalanced_vectors,
 )
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
-from kurbel.report.picture_source import NO_NAME, PHI, Line, PictureOptions, Source, in_units, level
+from kurbel.report.picture_source import (
+    AROUND,
+    NO_NAME,
+    PHI,
+    Line,
+    PictureOptions,
+    Source,
+    curve,
+    in_units,
+    level,
+)
 from kurbel.report.section import mechanism
 from kurbel.report.tables import cylinder_meant
 from kurbel.solver.case import Case
@@ -75,11 +85,10 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
         source.panel(lines, "x", like="P", shaded=True, zero=True, breaks=breaks, title=title)
         for breaks, title in _strokes(source, reversals)
     ]
-    if any(gas.traced for gas in source.results.drive.gas):  # or the noise of the gas exchange would have its own scale
-        heights = np.concatenate([one for panel in panels for one in panel.places[1]])
-        low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
-        panels = [panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels]
-    yield from panels
+    # one scale for all, or the noise of a traced gas exchange would have its own
+    heights = np.concatenate([one for panel in panels for one in panel.places[1]])
+    low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+    yield from (panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels)
 
 
 def _strokes(source: Source, also: Sequence[float] = ()) -> Iterator[tuple[list[float], str]]:

@@ -171,16 +171,10 @@ def _with_printed(report: Report, formula: str) -> Report:
     Raises UsageError if the book prints no such table.
     """
     printed = _printed()
-    rows, ratios = ({key[place] for key in printed} for place in (0, 1))
-    wrong = [f"L/R = {one.name:g}" for one in report.parts if one.name not in ratios]
-    wrong += [f"the row {column.id}" for column in report.parts[0].columns[1:] if column.id not in rows]
-    wrong += [] if formula == "book" else [f"--formula {formula}"]
-    wrong += [] if list(report.parts[0].columns[0].values) == list(range(0, 181, 10)) else ["other angles"]
-    if wrong:
-        raise UsageError(
-            f"--compare: the book prints nothing for {', '.join(wrong)}; "
-            "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
-        )
+    wanted = {(column.id, part.name) for part in report.parts for column in part.columns[1:]}
+    if wanted - {*printed} or formula != "book" or [*report.parts[0].columns[0].values] != [*range(0, 181, 10)]:
+        only = "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
+        raise UsageError(f"--compare: the book prints {only}")
     parts = []
     notes = ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."]
     for part in report.parts:
