@@ -51,7 +51,7 @@ def effort(source: Source) -> Iterator[Panel]:
             # of a lobe that the end of the cycle cuts, the wider part has its number and work
             widest = max(own, key=lambda place: float(np.ptp(shades[place].x)), default=None)
             if widest is not None:
-                shades[widest] = shades[widest]._replace(figure=PageFigure(Words(f"A_{lobe + 1}"), work))
+                shades[widest] = shades[widest]._replace(figure=PageFigure(Words(f"A_{lobe + 1}"), work, kind="energy"))
     resistance = resistance._replace(kind="faint" if level_load else "line")
     yield panel._replace(curves=(line, resistance), shades=tuple(shades))
 
@@ -81,14 +81,13 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     if effort.given is not None or not source.having("T") or len(acting) > _MOST_CRANKS or len(acting) + lossy < 2:
         return
     whole = effort.sampled([Term(1.0, group) for group in effort.groups])
-    each = [(0, _on_crank_1(source, source.words("T"), whole))]
-    each += [(1, _on_crank_1(source, Words("T with η", "T with eta"), effort.M))] if lossy else []
-    for look, one in enumerate(acting if len(acting) > 1 else (), 2):
-        each.append((look, _on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])]))))
-    panel = source.panel([line for _, line in each], like="T")
-    curves = [line._replace(look=look) for line, (look, _) in zip(panel.curves, each)]
-    mean = level(curves[0].x, float(effort.mean[0]) / source.results.crank, Words("W"))
-    yield panel._replace(curves=(*curves, mean), marks=source.marks("T"))
+    lines = [_on_crank_1(source, source.words("T"), whole)]
+    lines += [_on_crank_1(source, Words("T with η", "T with eta"), effort.M)] if lossy else []
+    for one in acting if len(acting) > 1 else ():
+        lines.append(_on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])])))
+    panel = source.panel(lines, like="T")
+    mean = level(panel.curves[0].x, float(effort.mean[0]) / source.results.crank, Words("W"))
+    yield panel._replace(curves=(*panel.curves, mean), marks=source.marks("T"))
 
 
 def effort_of_sides(source: Source) -> Iterator[Panel]:
@@ -208,7 +207,7 @@ def campbell(source: Source) -> Iterator[Panel]:
         curves.append(curve("faint", 0j, complex(end, order * end), name=Words(f"ν = {order:g}")))
     curves.append(curve("faint", complex(working), complex(working, top), name=Words("working speed")))
     marks = [
-        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed), of_x=True)
+        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed, kind="speed"))
         for one in strongest
         if one.order in orders
     ]
@@ -244,7 +243,7 @@ def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
 def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod, unless it is
     all but a straight line."""
-    largest = source.results.load_max if "load_max" in source.key_values and source.marks("load") else None
+    largest = source.extreme("load_max")
     panels = [
         source.locus(
             partial(_tip_of_load, frame),

@@ -78,25 +78,24 @@ class Curve(NamedTuple):
 
 
 class PageFigure(NamedTuple):
-    """A figure written into a picture: symbol, value with unit, and its crank angle."""
+    """A figure written into a picture: symbol, value with unit, and its crank angle.
+
+    kind: of quantity, if that is not the one of the upright axis.
+    """
 
     name: Words
     value: float | None = None
     unit: str = ""
     at_deg: float | None = None
-
-    def shown(self, to: Callable[[float], float], unit: str) -> "PageFigure":
-        """Return the figure in a unit, to which a function takes numbers."""
-        return self._replace(value=None if self.value is None else to(self.value), unit=unit)
+    kind: str = ""
 
 
 class Mark(NamedTuple):
-    """A point with its figure, a value of the upright axis or of the other one."""
+    """A point with its figure."""
 
     x: float
     y: float
     figure: PageFigure
-    of_x: bool = False
 
 
 class Shade(NamedTuple):

@@ -144,14 +144,16 @@ class Source:
             raise too_large(self.quantities[id])
         return found
 
+    def extreme(self, id: str) -> Extreme | None:
+        """Return the key value of this id, if there is one and it is an extreme."""
+        found = self.results.rows.key_values[id].of(self.results) if id in self.key_values else None
+        return found if isinstance(found, Extreme) else None
+
     def marks(self, id: str, place: Callable[[float], float | complex] = float) -> tuple[Mark, ...]:
         """Return marks at the extremes of a column, none for a constant; place: see `mark`, at a crank angle."""
-        rows = self.results.rows.key_values
-        named = {name: rows[name].of(self.results) for name in (f"{id}_max", f"{id}_min") if name in self.key_values}
-        found = {name: one for name, one in named.items() if isinstance(one, Extreme)}
-        if len({one.value for one in found.values()}) < len(found):
-            return ()
-        return tuple(self.mark(name, one, place(one.degrees)) for name, one in found.items())
+        both = {name: found for name in (f"{id}_max", f"{id}_min") if (found := self.extreme(name))}
+        constant = len({one.value for one in both.values()}) < len(both)
+        return () if constant else tuple(self.mark(name, one, place(one.degrees)) for name, one in both.items())
 
     def mark(self, id: str, extreme: Extreme, place: float | complex) -> Mark:
         """Return an extreme, which is the key value of this id, at x, with its value for y, or at a point x + iy."""
@@ -265,27 +267,25 @@ def in_units(panel: Panel, system: str) -> Panel:
     if panel.equal:
         across = up = across + up
     works = [np.array([one.figure.value]) for one in panel.shades if one.figure]
-
-    def scale(kind: str, values: Sequence[Array]) -> tuple[str, Callable[[Any], Any]]:
+    units, kinds = dict[str, str](), {"energy": works, panel.x.kind: across, panel.y.kind: up}
+    for kind, values in kinds.items():
         largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
-        unit = shown_unit(kind, system, largest) if kind else ""
-        return unit, partial(convert, kind=kind, unit=unit)
+        units[kind] = shown_unit(kind, system, largest) if kind else ""
+    x, y = (partial(convert, kind=one.kind, unit=units[one.kind]) for one in (panel.x, panel.y))
 
-    (x_unit, x), (y_unit, y), (work_unit, work) = map(
-        scale, (panel.x.kind, panel.y.kind, "energy"), (across, up, works)
-    )
+    def figure(one: PageFigure) -> PageFigure:
+        kind = one.kind or panel.y.kind
+        return one._replace(value=one.value and convert(one.value, kind, units[kind]), unit=units[kind])
+
     return panel._replace(
-        x=panel.x.shown(x, x_unit),
-        y=panel.y.shown(y, y_unit),
+        x=panel.x.shown(x, units[panel.x.kind]),
+        y=panel.y.shown(y, units[panel.y.kind]),
         curves=tuple(one._replace(x=x(one.x), y=y(one.y)) for one in panel.curves),
         shades=tuple(
-            Shade(x(one.x), y(one.low), y(one.high), one.gain, one.figure and one.figure.shown(work, work_unit))
+            Shade(x(one.x), y(one.low), y(one.high), one.gain, one.figure and figure(one.figure))
             for one in panel.shades
         ),
-        marks=tuple(
-            Mark(x(one.x), y(one.y), one.figure.shown(x, x_unit) if one.of_x else one.figure.shown(y, y_unit), one.of_x)
-            for one in panel.marks
-        ),
+        marks=tuple(Mark(x(one.x), y(one.y), figure(one.figure)) for one in panel.marks),
         bodies=tuple(one.scaled(x(1.0)) for one in panel.bodies),
         captions=tuple(one._replace(place=x(one.place), half=x(one.half)) for one in panel.captions),
     )

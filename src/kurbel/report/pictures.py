@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.reading import shown
-from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import grouped, together
@@ -311,15 +311,14 @@ def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> l
         return []
 
 
-@np.errstate(all="ignore")
 def pictures_of(case: Case, options: PictureOptions) -> list[PictureKind]:
     """Return the pictures that a machine has, those without a solution among them: drawing reports why."""
 
     def has(kind: PictureKind) -> bool:
         try:
-            return any(True for source, _ in _sources(case, kind, options) for _ in kind.panels(source))
-        except KurbelError as error:
-            return isinstance(error, NoSolutionError)
+            return bool(pictures_if_any(case, kind, options))
+        except NoSolutionError:
+            return True
 
     return [kind for kind in PICTURES if has(kind)]
 

@@ -10,10 +10,9 @@ from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.mechanisms import PIN
-from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel, Words
-from kurbel.report.picture_source import Source
+from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel
+from kurbel.report.picture_source import NO_NAME, Source
 from kurbel.report.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
-from kurbel.solver.forces import CylinderForces
 
 _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""
@@ -23,7 +22,6 @@ _VANISHING = 0.005
 """A force that never exceeds this share of the largest force has no arrow."""
 _CLEAR = 1e-9
 """Over the crank radius: a rod that is less off the direction of a force is square to it."""
-_MOST_IN_A_ROW = 16
 _PITCH, _LEAST, _MOST = 1.35, 1.2, 4.5
 """Distance of cylinders in a row over the widest bore: the default, and the bounds for distances of the file."""
 _WHEEL = 2.2
@@ -32,15 +30,6 @@ _LEVEL = 0.1
 """Sine of the inclination below which a machine counts as horizontal."""
 _LETTERS = 50.0, 33.0
 """Width and height of a picture in letters."""
-
-
-class _Wheel(NamedTuple):
-    """Radii in m of a flywheel or driven wheel and of the inside of its rim; look: dashed if they are not given."""
-
-    outer: float
-    inner: float
-    look: str
-    note: str
 
 
 _Text = tuple[str, complex, complex]
@@ -52,18 +41,18 @@ def mechanism(source: Source) -> Iterator[Panel]:
     case, drawn = source.results
     if not drawn or any(one.drive.mechanism.sketch(CrankAngle.of(0.0)) is None for one in drawn):
         return
-    alone, turning = len(drawn) == 1, np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * 360.0 / MOMENTS_PER_TURN
-    chosen = source.angles
-    for degrees in [np.append(_rest(drawn[0], alone), turning)] if chosen is None else np.array(chosen)[:, None]:
+    alone, first = len(drawn) == 1, drawn[0]
+    moments = np.array(source.angles or ())[:, None]
+    if source.angles is None:
+        # it rests where the tangential force of the first cylinder is largest
+        largest = Source(first, None).extreme("T_max")
+        rest = largest.degrees + first.drive.cylinder.crank_position * (not alone) if largest else _STILL
+        turning = np.arange(MOMENTS_PER_TURN * case.machine.revolutions) * 360.0 / MOMENTS_PER_TURN
+        moments = np.append(rest, turning)[None]
+    for degrees in moments:
         trains = [Train(case.machine, one, degrees, alone) for one in drawn]
-        title = f"φ = {round(float(degrees[0]), 2 if chosen is None else 6):.9g}°"
+        title = f"φ = {round(float(degrees[0]), 6 if source.angles else 2):.9g}°"
         yield _panel(case.machine, trains)._replace(title=title)
-
-
-def _rest(first: CylinderForces, alone: bool) -> float:
-    """Return the crank angle of the largest tangential force of the first cylinder."""
-    marks = Source(first, None).marks("T")
-    return marks[0].x + (0.0 if alone else first.drive.cylinder.crank_position) if marks else _STILL
 
 
 # the views
@@ -74,35 +63,36 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     first, angle, mirrored = trains[0], _drawn_angle(trains), machine.rotation == "under"
     # the first cylinder of each stroke line, which is in front of those behind it; a yoke is in front of its crank
     front = list({round(one.angle % 360.0, 6): one for one in reversed(trains)}.values())
-    wheel = _wheel(machine, first.mechanism.crank)
-    bodies = [Body.of([disc("axis", first.mechanism.crank)])]
-    bodies += [Body.of([disc(wheel.look, one)]) for one in (wheel.outer, wheel.inner) if one > 0] if wheel else []
+    R, (wheel, depth, look) = first.mechanism.crank, _wheel(machine, first.mechanism.crank)
+    bodies = [Body.of([disc("axis", R), *(disc(look, one) for one in (wheel, wheel - depth) if one > 0)])]
     for parts in (cranks, cylinders, members) if first.has_slot else (cylinders, cranks, members):
         bodies += [body.seen(one.angle) for one in front for body in parts(one)]
     bodies = [body.seen(angle, mirrored) for body in bodies]
 
-    row, texts, arrows = _row(trains), list[_Text](), tuple[Curve, ...]()
-    x = y = Axis(Words(""), "length")
+    row, texts, arrows = _row(trains), list[_Text](), list[Curve]()
     if row:
         level = abs(math.sin(math.radians(angle))) < _LEVEL
-        side, texts = _from_the_side(row, None if machine.locomotive else wheel, _bounds(bodies), level)
+        side, texts = _from_the_side(row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level)
         bodies += side
     elif len(trains) > 1:
         for one in front:
             outward = np.exp(1j * np.radians(angle - one.angle if mirrored else angle + one.angle))
             texts.append((str(trains.index(one) + 1), outward * one.outer_end, 1.6 * outward))
     else:
-        arrows = tuple(_arrows(first, angle, mirrored))
-        if arrows:  # with room for their names
-            room, ends = 0.4 * first.mechanism.crank, np.array([(one.x, one.y) for one in arrows])
-            x, y = (x._replace(low=np.min(one) - room, high=np.max(one) + room) for one in (ends[:, 0], ends[:, 1]))
-    left, right, bottom, top = _bounds(bodies)
-    em = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1])
-    captions = tuple(
-        Caption(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts
+        arrows = [*_arrows(first, angle, mirrored)]
+    left, right, bottom, top = _bounds(bodies, arrows)
+    em, room = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1]), 0.4 * R if arrows else 0.0
+    captions = [Caption(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts]
+    return Panel(
+        Axis(NO_NAME, "length", low=left - room, high=right + room),  # room for the names of forces
+        Axis(NO_NAME, "length", low=bottom - room, high=top + room),
+        tuple(arrows),
+        equal=True,
+        plain=True,
+        bodies=tuple(bodies),
+        captions=tuple(captions),
+        footnote=_footnote(trains, row, look, len(trains) - len(front)),
     )
-    note = _footnote(machine, trains, row, wheel, len(trains) - len(front))
-    return Panel(x, y, arrows, equal=True, plain=True, bodies=tuple(bodies), captions=captions, footnote=note)
 
 
 def _drawn_angle(trains: Sequence[Train]) -> float:
@@ -125,8 +115,7 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
     Places are those of the file if the cylinders then neither overlap nor are far apart.
     """
     banks = {round(one.angle % 360.0, 6) for one in trains}
-    plain = all(one.is_engine and not (one.has_slot or one.has_frame) for one in trains)
-    if len(banks) == len(trains) or not plain or len(trains) > _MOST_IN_A_ROW:
+    if len(banks) == len(trains) or not all(one.is_engine and not one.has_slot for one in trains):
         return {}
     widest = max(barrel.bore for one in trains for barrel in one.barrels)
     given = {place: one for one in trains if (place := one.cylinder.axial_position) is not None}
@@ -136,75 +125,66 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
 
 
 def _from_the_side(
-    row: dict[float, Train], wheel: _Wheel | None, along: Sequence[float], level: bool
+    row: dict[float, Train], wheel: float, look: str, along: Sequence[float], level: bool
 ) -> tuple[list[Body], list[_Text]]:
     """Return the view from the side, below the view along the shaft if the machine is level, else at its right.
 
-    along: left, right, bottom and top of the view along the shaft. In the coordinates of the side view the shaft is
-    along −y, on the page downward or to the right.
+    wheel: its radius in m, or 0; along: left, right, bottom and top of the view along the shaft. In the coordinates of
+    the side view the shaft is along −y, on the page downward or to the right.
     """
     places, journal = list(row), next(iter(row.values())).journal
     half, bore = float(min(np.diff(places))) / 2, min(one.barrels[0].bore for one in row.values())
     end, turn = -places[-1] - half, 1.0 if level else 1j
-    side = [Body.of([box("metal", -journal, journal, half - places[0], end)])]
-    for place, one in row.items():
-        side += [body.seen(0.0, moved=-1j * place) for body in (*cylinders(one), *throw(one, bore))]
-    if wheel:
-        look = "metal" if wheel.look == "thin" else wheel.look
-        side.append(Body.of([box(look, -wheel.outer, wheel.outer, end, end - half / 2)]))
-    side = [body.seen(0.0 if level else 90.0) for body in side]
+    on_shaft = [box("metal", -journal, journal, half - places[0], end)]
+    on_shaft += [box(look, -wheel, wheel, end, end - half / 2)] if wheel else []
+    side, texts = [Body.of(on_shaft).seen(0.0 if level else 90.0)], list[_Text]()
+    for number, (place, one) in enumerate(row.items(), 1):
+        bodies = *cylinders(one), *throw(one, bore)
+        side += [body.seen(0.0 if level else 90.0, moved=-1j * turn * place) for body in bodies]
+        texts.append((str(number), turn * complex(one.outer_end, -place), 1.2 * turn))
+        below, lag = turn * complex(-1.5 * one.mechanism.crank, -place), one.cylinder.crank_position % 360
+        texts.append((f"{lag:.4g}°", below, -2.6 if level else -0.9j))
 
     left, right, _, top = _bounds(side)
     moved = 1j * (along[2] - top - 0.1 * (along[3] - along[2])) if level else along[1] - left + 0.06 * (right - left)
-    texts = list[_Text]()
-    for number, (place, one) in enumerate(row.items(), 1):
-        lag, below = f"{one.cylinder.crank_position % 360:.4g}°", -1.5 * one.mechanism.crank
-        texts.append((str(number), turn * complex(one.outer_end, -place) + moved, 1.2 * turn))
-        texts.append((lag, turn * complex(below, -place) + moved, -2.6 if level else -0.9j))
-    return [body.seen(0.0, moved=moved) for body in side], texts
+    return [body.seen(0.0, moved=moved) for body in side], [(text, place + moved, off) for text, place, off in texts]
 
 
-def _bounds(bodies: Sequence[Body]) -> tuple[float, float, float, float]:
-    """Return left, right, bottom and top of all positions of the bodies."""
-    every = np.concatenate([line.ravel() for body in bodies for _, line in body.outlines()])
-    return every.real.min(), every.real.max(), every.imag.min(), every.imag.max()
+def _bounds(bodies: Sequence[Body], arrows: Sequence[Curve] = ()) -> tuple[float, float, float, float]:
+    """Return left, right, bottom and top of all positions of the bodies and arrows."""
+    every = [line.ravel() for body in bodies for _, line in body.outlines()]
+    drawn = np.concatenate([*every, *((one.x + 1j * one.y).ravel() for one in arrows)])
+    return drawn.real.min(), drawn.real.max(), drawn.imag.min(), drawn.imag.max()
 
 
-def _wheel(machine: Machine, crank: float) -> _Wheel | None:
-    """Return the driven wheel of a locomotive, or the flywheel; None without."""
-    if machine.locomotive and machine.locomotive.wheel_diameter:
-        radius = machine.locomotive.wheel_diameter / 2
-        return _Wheel(radius, 0.93 * radius, "thin", "wheel")
-    if machine.flywheel and (rim := machine.flywheel.rim):
-        radius = (rim.mean_diameter + rim.depth) / 2
-        return _Wheel(radius, radius - (rim.depth or 0.08 * radius), "thin", "flywheel")
-    if machine.flywheel or (machine.crankshaft and machine.crankshaft.flywheel_mass):
-        return _Wheel(_WHEEL * crank, 0.88 * _WHEEL * crank, "guess", f"flywheel ({_WHEEL:g} cranks)")
-    return None
+def _wheel(machine: Machine, crank: float) -> tuple[float, float, str]:
+    """Return radius and depth of the rim of a flywheel or driven wheel in m, and its look; 0 without."""
+    locomotive, flywheel, shaft = machine.locomotive, machine.flywheel, machine.crankshaft
+    if locomotive and locomotive.wheel_diameter:
+        return locomotive.wheel_diameter / 2, 0.035 * locomotive.wheel_diameter, "thin"
+    if flywheel and flywheel.rim:
+        return (flywheel.rim.mean_diameter + flywheel.rim.depth) / 2, flywheel.rim.depth, "thin"
+    guessed = flywheel or (shaft and shaft.flywheel_mass)
+    return (_WHEEL * crank, 0.12 * _WHEEL * crank, "guess") if guessed else (0.0, 0.0, "")
 
 
-def _footnote(
-    machine: Machine, trains: Sequence[Train], row: dict[float, Train], wheel: _Wheel | None, behind: int
-) -> str:
+def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behind: int) -> str:
     """Return the note on what is to scale, and what is assumed; behind: number of cylinders behind others."""
-    first, shares = trains[0], list[str]()
-    scale = ["crank", "rod", "stroke", "offset"] if first.is_engine else ["all lengths between pins"]
+    first, shares, hidden = trains[0], list[str](), list[str]()
+    scale = "crank, rod, stroke, offset, bore, angles" if first.is_engine else "all lengths between pins"
     if first.is_engine:
-        barrel, one = first.barrels[0], first.mechanism
-        absent = {"rod": math.isinf(one.rod_length), "offset": not one.offset}
-        scale = [name for name in scale if not absent.get(name)]
-        (scale if barrel.piston else shares).append("bore" if barrel.piston else f"bore ({BORE:g} strokes)")
+        barrel = first.barrels[0]
+        shares += [] if barrel.piston else [f"bore ({BORE:g} strokes)"]
         shares.append(f"piston ({barrel.height / barrel.bore:.2g} bores high)")
-    if len({one.angle for one in trains}) > 1:
-        scale.append("bank angles")
-    if row:
-        given = all(one.cylinder.axial_position == place for place, one in row.items())
-        (scale if given else shares).append("distances along the shaft" if given else "distances of cylinders")
-    if wheel:
-        (scale if wheel.look == "thin" else shares).append(wheel.note)
-    hidden = [f"{behind} of {len(trains)} cylinders, behind the others"] if behind and not row else []
-    hidden += ["pistons by a lever"] if any(p.lever_ratio != 1 for one in trains for p in one.cylinder.pistons) else []
-    note = f"To scale: {', '.join(scale)}. Drawn by shares: {', '.join((*shares, 'all else'))}."
+    if any(one.cylinder.axial_position != place for place, one in row.items()):
+        shares.append("distances of cylinders")
+    if wheel == "guess":
+        shares.append(f"flywheel ({_WHEEL:g} cranks)")
+    if behind and not row:
+        hidden.append(f"{behind} of {len(trains)} cylinders, behind the others")
+    if any(piston.lever_ratio != 1 for one in trains for piston in one.cylinder.pistons):
+        hidden.append("pistons by a lever")
+    note = f"To scale: {scale}. Drawn by shares: {', '.join((*shares, 'all else'))}."
     return f"{note} Not drawn: {', '.join(hidden)}." if hidden else note
 
 

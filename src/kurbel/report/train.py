@@ -22,7 +22,8 @@ BORE = 0.9
 """Bore relative to the stroke, if none is given."""
 _CLEARANCE = 0.05  # of the stroke, between piston and cover in the dead centre
 _TRUNK, _DISC, _PLUNGER = 0.9, 0.32, 0.6  # heights of pistons over the bore
-WALL, _COVER, _GLAND, _ROD = 0.06, 0.1, 0.16, 0.08  # of the bore; the last is the radius of a piston rod
+WALL, _COVER, _ROD = 0.06, 0.1, 0.08  # of the bore; the last is the radius of a piston rod
+_GLAND = 2.6  # length of cover and stuffing box over that of the cover
 _PIN, _JOURNAL = 0.2, 0.27  # radii over the crank radius
 _WEIGHT, _LIGHT = 0.95, 0.76  # radius of a counterweight over that of the crank, if some are given, and if none are
 EYE, _HUB = 1.55, 1.45  # radii of eye and hub over those of pin and journal
@@ -30,25 +31,24 @@ SHOE = 0.36  # half the length and height of a crosshead over the crank radius
 
 
 class Barrel(NamedTuple):
-    """A cylinder with its piston; lengths in m along the stroke line from the shaft.
+    """A cylinder with its piston; lengths in m along the stroke line from the shaft, toward it and away from it.
 
-    shift: from the output of the mechanism to the middle of the piston; low, high: inner faces toward the shaft and
-    away from it; closed: whether there are covers; rods: radii of the piston rods through these ends, both 0 of a
-    trunk piston.
+    shift: from the output of the mechanism to the middle of the piston; faces: inner ends; covers: outer faces of the
+    covers, where it is open the inner end; rods: radii of the piston rods through the ends, both 0 of a trunk piston.
     """
 
     piston: Piston | None
     bore: float
     height: float
     shift: float
-    low: float
-    high: float
-    closed: tuple[bool, bool]
+    faces: tuple[float, float]
+    covers: tuple[float, float]
     rods: tuple[float, float]
 
-    def ends(self, share: float) -> tuple[float, float]:
-        """Return how far what is `share` of the bore thick reaches beyond the inner faces, 0 where it is open."""
-        return self.low - share * self.bore * self.closed[0], self.high + share * self.bore * self.closed[1]
+    @property
+    def glands(self) -> list[float]:
+        """Outer ends of the stuffing boxes."""
+        return [face + _GLAND * (cover - face) for face, cover in zip(self.faces, self.covers)]
 
 
 class Train:
@@ -97,7 +97,7 @@ class Train:
     @property
     def outer_end(self) -> float:
         """Outer end of the outermost cylinder on the stroke line, in m."""
-        return max(self.mechanism.crank, *(barrel.ends(_COVER)[1] for barrel in self.barrels))
+        return max(self.mechanism.crank, *(barrel.covers[1] for barrel in self.barrels))
 
     @property
     def head(self) -> tuple[float, float]:
@@ -117,26 +117,27 @@ class Train:
             if piston is not None and piston.lever_ratio != 1:
                 continue
             bore, chambers = (piston.bore, piston.chambers) if piston else (BORE * stroke, {})
-            closed = "crank_end" in chambers if chambers else self.crosshead, "head_end" in chambers or not chambers
-            low_gap, high_gap = (
+            below, above = (
                 (getattr(chambers.get(end), "clearance", None) or _CLEARANCE) * stroke
                 for end in ("crank_end", "head_end")
             )
+            closed, topped = "crank_end" in chambers if chambers else self.crosshead, chambers.keys() != {"crank_end"}
             trunk = not found and not self.crosshead
-            height = (_TRUNK if trunk else _DISC if closed[0] else _PLUNGER) * bore
-            room = 0.12 * self.mechanism.crank + (_COVER + _GLAND) * bore
-            below = height / 2 + low_gap if closed[0] else 0.28 * height  # a liner that is open ends above the skirt
+            height = (_TRUNK if trunk else _DISC if closed else _PLUNGER) * bore
+            below = height / 2 + below if closed else 0.28 * height  # a liner that is open ends above the skirt
+            above += height / 2
+            room = 0.12 * self.mechanism.crank + _GLAND * _COVER * bore
             rods = (piston.crank_end_rod / 2, piston.head_end_rod / 2) if piston else (0.0, 0.0)
             if trunk:
                 shift, rods = 0.08 * height, (0.0, 0.0)
             elif found and (self.has_slot or self.has_frame):
-                shift, rods = inner - room - high_gap - height / 2 - far, (0.0, max(rods) or _ROD * bore)
+                shift, rods = inner - room - above - far, (0.0, max(rods) or _ROD * bore)
             else:
                 shift, rods = outer + room + below - near, (rods[0] or _ROD * bore, rods[1])
-            low, high = near + shift - below, far + shift + height / 2 + high_gap
-            found.append(Barrel(piston, bore, height, shift, low, high, closed, rods))
-            ends = found[-1].ends(_COVER + _GLAND)
-            inner, outer = min(inner, ends[0]), max(outer, ends[1])
+            faces = near + shift - below, far + shift + above
+            covers = faces[0] - _COVER * bore * closed, faces[1] + _COVER * bore * topped
+            found.append(Barrel(piston, bore, height, shift, faces, covers, rods))
+            inner, outer = min(inner, found[-1].glands[0]), max(outer, found[-1].glands[1])
         return tuple(found)
 
     def is_crank(self, link: tuple[str, ...]) -> bool:
@@ -198,7 +199,7 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
         return
     # a picture at one angle has the tints of the moving one
     angles = np.append(train.cycle, np.arange(0.0, train.results.drive.cycle, 5.0))
-    state, ends = train.results.at(angles), ((gas.crank, barrel.low, 0.0), (gas.head, barrel.high, 180.0))
+    state, ends = train.results.at(angles), [*zip((gas.crank, gas.head), barrel.faces, (0.0, 180.0))]
     pressures = np.array([np.broadcast_to(state.pressure(end), angles.shape) for end, _, _ in ends if end])
     # a pump has one pressure on each stroke
     pumped = bool(gas.work < 0) and all(len(set(np.round(one).tolist())) <= 2 for one in pressures)
@@ -211,9 +212,9 @@ def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
 
 def _walls(barrel: Barrel) -> Iterator[Shape]:
     """Yield liner, covers and stuffing boxes of a cylinder in section; rods are in front of them."""
-    half, wall, ends = barrel.bore / 2, WALL * barrel.bore, barrel.ends(_COVER)
-    yield from _both("wall", *ends, half, half + wall)
-    for face, cover, gland, rod in zip((barrel.low, barrel.high), ends, barrel.ends(_COVER + _GLAND), barrel.rods):
+    half, wall = barrel.bore / 2, WALL * barrel.bore
+    yield from _both("wall", *barrel.covers, half, half + wall)
+    for face, cover, gland, rod in zip(barrel.faces, barrel.covers, barrel.glands, barrel.rods):
         if cover != face:
             yield box("wall", cover, face, half + 1.7 * wall)
             yield from [box("wall", cover, gland, rod + 1.6 * wall)] if rod else ()
@@ -231,7 +232,7 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
         yield from [box("rod", start, barrel.shift, inner)] if inner else ()
         start = barrel.shift
         if outer:  # out of its stuffing box
-            yield box("rod", start, barrel.ends(_COVER + 1.6 * _GLAND)[1] - near, outer)
+            yield box("rod", start, barrel.glands[1] + 0.1 * barrel.bore - near, outer)
     for barrel in train.barrels:
         yield from _piston(barrel)
     if train.has_slot or train.has_frame:
@@ -250,7 +251,7 @@ def _piston(barrel: Barrel) -> Iterator[Shape]:
     if not any(barrel.rods):
         yield box("hollow", bottom, crown - 0.24 * barrel.height, 0.8 * half)
     apart = min(0.06 * barrel.bore, barrel.height / 6)
-    first = barrel.shift + apart if barrel.closed[0] else crown - 1.3 * apart
+    first = crown - 1.3 * apart if barrel.covers[0] == barrel.faces[0] else barrel.shift + apart
     for place in (first, first - apart, first - 2 * apart):
         yield _polygon("thin", place - 1j * half, place + 1j * half)
 
