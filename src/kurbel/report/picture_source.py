@@ -52,12 +52,11 @@ class Sampled(NamedTuple):
     degrees: Array
     values: Array
 
-    def curve(self, name: Words, x: Array, y: Array, look: int | None = None) -> Curve:
+    def curve(self, name: Words, x: Array, y: Array) -> Curve:
         """Return the curve through points x, y (n,) at these angles, with a gap where either jumps."""
-        breaks = np.flatnonzero(np.diff(self.degrees) == 0)
-        jumps = [np.abs(np.diff(line)[breaks]) > _JUMP * (np.ptp(line) or 1.0) for line in (x, y)]
-        gaps = breaks[jumps[0] | jumps[1]] + 1
-        return Curve(name, np.insert(x, gaps, np.nan), np.insert(y, gaps, np.nan), look=look)
+        breaks, points = np.flatnonzero(np.diff(self.degrees) == 0), np.stack((x, y))
+        jumps = np.abs(np.diff(points)[:, breaks]) > _JUMP * np.ptp(points, axis=1, keepdims=True)
+        return Curve(name, *np.insert(points, breaks[jumps.any(axis=0)] + 1, np.nan, axis=1))
 
 
 def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:

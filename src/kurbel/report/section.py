@@ -28,12 +28,8 @@ _WHEEL = 2.2
 """Radius of a flywheel, relative to the crank radius, if only its moment of inertia is known."""
 _LEVEL = 0.1
 """Sine of the inclination below which a machine counts as horizontal."""
-_LETTERS = 50.0, 33.0
-"""Width and height of a picture in letters."""
-
-
-_Text = tuple[str, complex, complex]
-"""A text, a place in m, and the distance of the text from there in letters."""
+_LETTER = 0.35
+"""Height of the letters of captions over the bore."""
 
 
 def mechanism(source: Source) -> Iterator[Panel]:
@@ -69,20 +65,21 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
         bodies += [body.seen(one.angle) for one in front for body in parts(one)]
     bodies = [body.seen(angle, mirrored) for body in bodies]
 
-    row, texts, arrows = _row(trains), list[_Text](), list[Curve]()
+    row, captions, arrows = _row(trains), list[Caption](), list[Curve]()
     if row:
         level = abs(math.sin(math.radians(angle))) < _LEVEL
-        side, texts = _from_the_side(row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level)
+        side, captions = _from_the_side(row, 0.0 if machine.locomotive else wheel, look, _bounds(bodies), level)
         bodies += side
     elif len(trains) > 1:
         for one in front:
             outward = np.exp(1j * np.radians(angle - one.angle if mirrored else angle + one.angle))
-            texts.append((str(trains.index(one) + 1), outward * one.outer_end, 1.6 * outward))
+            em = _LETTER * one.barrels[0].bore
+            place = outward * (one.outer_end + em)
+            captions.append(Caption(str(trains.index(one) + 1), place, 0.4 * em, strong=True))
     else:
         arrows = [*_arrows(first, angle, mirrored)]
     left, right, bottom, top = _bounds(bodies, arrows)
-    em, room = max((right - left) / _LETTERS[0], (top - bottom) / _LETTERS[1]), 0.4 * R if arrows else 0.0
-    captions = [Caption(text, place + em * off, 0.4 * em * len(text), text.isdecimal()) for text, place, off in texts]
+    room = 0.4 * R if arrows else 0.0
     return Panel(
         Axis(NO_NAME, "length", low=left - room, high=right + room),  # room for the names of forces
         Axis(NO_NAME, "length", low=bottom - room, high=top + room),
@@ -126,7 +123,7 @@ def _row(trains: Sequence[Train]) -> dict[float, Train]:
 
 def _from_the_side(
     row: dict[float, Train], wheel: float, look: str, along: Sequence[float], level: bool
-) -> tuple[list[Body], list[_Text]]:
+) -> tuple[list[Body], list[Caption]]:
     """Return the view from the side, below the view along the shaft if the machine is level, else at its right.
 
     wheel: its radius in m, or 0; along: left, right, bottom and top of the view along the shaft. In the coordinates of
@@ -134,20 +131,22 @@ def _from_the_side(
     """
     places, journal = list(row), next(iter(row.values())).journal
     half, bore = float(min(np.diff(places))) / 2, min(one.barrels[0].bore for one in row.values())
-    end, turn = -places[-1] - half, 1.0 if level else 1j
+    end, em, turn = -places[-1] - half, _LETTER * bore, 1.0 if level else 1j
     on_shaft = [box("metal", -journal, journal, half - places[0], end)]
     on_shaft += [box(look, -wheel, wheel, end, end - half / 2)] if wheel else []
-    side, texts = [Body.of(on_shaft).seen(0.0 if level else 90.0)], list[_Text]()
+    side, captions = [Body.of(on_shaft).seen(0.0 if level else 90.0)], list[Caption]()
     for number, (place, one) in enumerate(row.items(), 1):
         bodies = *cylinders(one), *throw(one, bore)
         side += [body.seen(0.0 if level else 90.0, moved=-1j * turn * place) for body in bodies]
-        texts.append((str(number), turn * complex(one.outer_end, -place), 1.2 * turn))
-        below, lag = turn * complex(-1.5 * one.mechanism.crank, -place), one.cylinder.crank_position % 360
-        texts.append((f"{lag:.4g}°", below, -2.6 if level else -0.9j))
+        above, below = one.outer_end + em, -1.5 * one.mechanism.crank - (2.5 if level else 0.8) * em
+        captions.append(Caption(str(number), turn * complex(above, -place), 0.4 * em, strong=True))
+        lag = f"{one.cylinder.crank_position % 360:.4g}°"
+        captions.append(Caption(lag, turn * complex(below, -place), 0.4 * em * len(lag)))
 
     left, right, _, top = _bounds(side)
     moved = 1j * (along[2] - top - 0.1 * (along[3] - along[2])) if level else along[1] - left + 0.06 * (right - left)
-    return [body.seen(0.0, moved=moved) for body in side], [(text, place + moved, off) for text, place, off in texts]
+    captions = [one._replace(place=one.place + moved) for one in captions]
+    return [body.seen(0.0, moved=moved) for body in side], captions
 
 
 def _bounds(bodies: Sequence[Body], arrows: Sequence[Curve] = ()) -> tuple[float, float, float, float]:
@@ -171,10 +170,13 @@ def _wheel(machine: Machine, crank: float) -> tuple[float, float, str]:
 def _footnote(trains: Sequence[Train], row: dict[float, Train], wheel: str, behind: int) -> str:
     """Return the note on what is to scale, and what is assumed; behind: number of cylinders behind others."""
     first, shares, hidden = trains[0], list[str](), list[str]()
-    scale = "crank, rod, stroke, offset, bore, angles" if first.is_engine else "all lengths between pins"
+    scale = "all lengths between pins"
     if first.is_engine:
-        barrel = first.barrels[0]
-        shares += [] if barrel.piston else [f"bore ({BORE:g} strokes)"]
+        scale, barrel = "crank, rod, stroke, offset, angles", first.barrels[0]
+        if first.cylinder.pistons:
+            scale += ", bore"
+        else:
+            shares.append(f"bore ({BORE:g} strokes)")
         shares.append(f"piston ({barrel.height / barrel.bore:.2g} bores high)")
     if any(one.cylinder.axial_position != place for place, one in row.items()):
         shares.append("distances of cylinders")

@@ -17,6 +17,7 @@ from kurbel.machine.parts import Piston
 from kurbel.mechanisms import PIN, SHAFT
 from kurbel.report.picture import MOMENTS_PER_TURN, Body, Shape
 from kurbel.solver.forces import CylinderForces
+from kurbel.solver.gas import PistonGas
 
 BORE = 0.9
 """Bore relative to the stroke, if none is given."""
@@ -33,11 +34,12 @@ SHOE = 0.36  # half the length and height of a crosshead over the crank radius
 class Barrel(NamedTuple):
     """A cylinder with its piston; lengths in m along the stroke line from the shaft, toward it and away from it.
 
-    shift: from the output of the mechanism to the middle of the piston; faces: inner ends; covers: outer faces of the
-    covers, where it is open the inner end; rods: radii of the piston rods through the ends, both 0 of a trunk piston.
+    gas: what is in it, if there is an indicator; shift: from the output of the mechanism to the middle of the piston;
+    faces: inner ends; covers: outer faces of the covers, where it is open the inner end; rods: radii of the piston rods
+    through the ends, both 0 of a trunk piston.
     """
 
-    piston: Piston | None
+    gas: PistonGas | None
     bore: float
     height: float
     shift: float
@@ -71,8 +73,7 @@ class Train:
         assert sketch is not None
         self.mechanism, self.sketch = mechanism, sketch
         self.joints: dict[str, ComplexArray] = {
-            name: np.broadcast_to(np.asarray(x) + 1j * np.asarray(y), self.motion.shape)
-            for name, (x, y) in sketch.joints.items()
+            name: np.atleast_1d(np.asarray(x) + 1j * np.asarray(y)) for name, (x, y) in sketch.joints.items()
         }
         R, shaft = mechanism.crank, machine.crankshaft
         self.pin = shaft.pin_diameter / 2 if shaft else _PIN * R
@@ -112,22 +113,19 @@ class Train:
         """The cylinders on the piston rod; those of a yoke or frame after the first are on the side of the shaft."""
         (near, _), (far, _) = self.sketch.guides[0]
         inner, outer = near + self.head[0], far + self.head[1]  # of what is on the rod already
-        stroke, found = self.mechanism.stroke, list[Barrel]()
-        for piston in self.cylinder.pistons or (None,):
-            if piston is not None and piston.lever_ratio != 1:
+        stroke, found, every = self.mechanism.stroke, list[Barrel](), self.results.drive.gas
+        for piston in self.cylinder.pistons or (Piston(BORE * stroke),):
+            if piston.lever_ratio != 1:
                 continue
-            bore, chambers = (piston.bore, piston.chambers) if piston else (BORE * stroke, {})
-            below, above = (
-                (getattr(chambers.get(end), "clearance", None) or _CLEARANCE) * stroke
-                for end in ("crank_end", "head_end")
-            )
-            closed, topped = "crank_end" in chambers if chambers else self.crosshead, chambers.keys() != {"crank_end"}
+            gas, bore = next((one for one in every if one.piston is piston), None), piston.bore
+            closed, topped = (bool(gas.crank), bool(gas.head)) if gas else (self.crosshead, True)
             trunk = not found and not self.crosshead
             height = (_TRUNK if trunk else _DISC if closed else _PLUNGER) * bore
-            below = height / 2 + below if closed else 0.28 * height  # a liner that is open ends above the skirt
-            above += height / 2
+            gaps = [volume / area for volume, area in zip(gas.clearance_volumes, gas.areas)] if gas else [0.0, 0.0]
+            above, below = (height / 2 + (gap or _CLEARANCE * stroke) for gap in gaps)
+            below = below if closed else 0.28 * height  # a liner that is open ends above the skirt
             room = 0.12 * self.mechanism.crank + _GLAND * _COVER * bore
-            rods = (piston.crank_end_rod / 2, piston.head_end_rod / 2) if piston else (0.0, 0.0)
+            rods = piston.crank_end_rod / 2, piston.head_end_rod / 2
             if trunk:
                 shift, rods = 0.08 * height, (0.0, 0.0)
             elif found and (self.has_slot or self.has_frame):
@@ -136,7 +134,7 @@ class Train:
                 shift, rods = outer + room + below - near, (rods[0] or _ROD * bore, rods[1])
             faces = near + shift - below, far + shift + above
             covers = faces[0] - _COVER * bore * closed, faces[1] + _COVER * bore * topped
-            found.append(Barrel(piston, bore, height, shift, faces, covers, rods))
+            found.append(Barrel(gas, bore, height, shift, faces, covers, rods))
             inner, outer = min(inner, found[-1].glands[0]), max(outer, found[-1].glands[1])
         return tuple(found)
 
@@ -194,7 +192,7 @@ def cylinders(train: Train) -> Iterator[Body]:
 
 def _chambers(train: Train, barrel: Barrel) -> Iterator[Body]:
     """Yield the gas or liquid at both ends of a piston, the darker the higher its pressure is."""
-    gas = next((one for one in train.results.drive.gas if one.piston is barrel.piston), None)
+    gas = barrel.gas
     if gas is None:
         return
     # a picture at one angle has the tints of the moving one
@@ -302,9 +300,7 @@ def members(train: Train) -> Iterator[Body]:
         )
     hidden = (SHAFT, sketch.output if train.forked else "")
     for name in (PIN,) if train.has_slot else [one for one in joints if one not in hidden]:
-        radius = train.journal if name in sketch.fixed else pin if name == PIN else 0.72 * pin
-        place = joints[name][:1] if name in sketch.fixed else joints[name]
-        yield Body.of([disc("metal", radius), disc("web", 0.15 * radius)], place)
+        yield Body.of([disc("metal", 0.9 * pin), disc("web", 0.15 * pin)], joints[name])
 
 
 def _ram(train: Train) -> Iterator[Body]:
