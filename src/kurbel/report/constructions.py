@@ -83,9 +83,8 @@ def _at(degrees: float) -> str:
 
 def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     """Return x as AG, cut off on the stroke line by an arc about the crosshead, and as CE up to the arc through A."""
-    pin, head = _pin_and_head(mechanism, angle)
-    length, way = mechanism.rod, float(mechanism.coordinate(angle))
-    psi = math.atan2(*mechanism.rod_angle(angle))
+    pin, head, sin, cos = _straight(mechanism, angle)
+    length, way, psi = mechanism.rod, float(mechanism.coordinate(angle)), math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
     dead = head + way  # the crosshead at its inner dead centre
     curves = (
@@ -105,8 +104,8 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
 
 def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
     """Return v of the pin with its component v_s along the rod, which is that of c of the crosshead, too."""
-    pin, head = (omega * place for place in _pin_and_head(mechanism, angle))
-    sin, cos = map(float, mechanism.rod_angle(angle))
+    pin, head, sin, cos = _straight(mechanism, angle)
+    pin, head = omega * pin, omega * head
     along, around = complex(-cos, sin), 1j * pin
     share = (around * along.conjugate()).real
     c = share / cos
@@ -126,9 +125,8 @@ def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Pane
 
 def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
     """Return c as MF, the curve of c over the displacement, and the circle that it is with an infinite rod."""
-    sin, cos = map(float, mechanism.rod_angle(angle))
-    pin = omega * _pin_and_head(mechanism, angle)[0]
-    v = omega * mechanism.crank
+    pin, _, sin, cos = _straight(mechanism, angle)
+    pin, v = omega * pin, omega * mechanism.crank
     cut = 1j * (pin.imag + pin.real * sin / cos)
     foot = complex(sin, cos) * (pin.real * sin + pin.imag * cos)
     x, c = source.samples("c", [source.line("x"), source.line("c")]).values
@@ -180,10 +178,10 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     return _panel("velocity", curves, marks)
 
 
-def _pin_and_head(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex]:
-    """Return the places of crank pin and crosshead in m; φ = 0 is to the right."""
-    pin = mechanism.crank * complex(angle.cos, angle.sin)
-    return pin, complex(pin.real + mechanism.rod * mechanism.rod_angle(angle)[1], mechanism.offset)
+def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex, float, float]:
+    """Return the places of crank pin and crosshead in m, with φ = 0 to the right, and sine and cosine of ψ."""
+    pin, (sin, cos) = mechanism.crank * complex(angle.cos, angle.sin), map(float, mechanism.rod_angle(angle))
+    return pin, complex(pin.real + mechanism.rod * cos, mechanism.offset), sin, cos
 
 
 def _mark(symbol: str, place: complex, value: float | None = None) -> Mark:

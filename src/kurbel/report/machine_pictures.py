@@ -9,7 +9,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.report.picture_source import Line, Source, between, curve, level
+from kurbel.report.picture_source import Line, Source, curve, level
 from kurbel.solver.bearings import BearingColumns
 from kurbel.solver.effort import Term
 from kurbel.solver.flywheel import TurningState
@@ -41,8 +41,7 @@ def effort(source: Source) -> Iterator[Panel]:
     level_load = results.machine.load is None or results.machine.load.diagram is None
     name = Words("W" if id == "T" else "M_m" if level_load else "M_W", words="resistance")
     load: Line = name, lambda state: state["M_load"] / radius
-    panel = source.panel([id, load], shaded=True, also=results.phi_crossing)
-    line, resistance = panel.curves
+    panel = source.panel([id, load], shaded=True, faint=level_load, also=results.phi_crossing)
     shades, lobes = list(panel.shades), results.lobes
     if 0 < len(lobes) <= _MOST_NUMBERED:
         owners = [np.searchsorted(results.phi_crossing, (one.x[0] + one.x[-1]) / 2) - 1 for one in shades]
@@ -52,23 +51,23 @@ def effort(source: Source) -> Iterator[Panel]:
             widest = max(own, key=lambda place: float(np.ptp(shades[place].x)), default=None)
             if widest is not None:
                 shades[widest] = shades[widest]._replace(figure=PageFigure(Words(f"A_{lobe + 1}"), work, kind="energy"))
-    resistance = resistance._replace(kind="faint" if level_load else "line")
-    yield panel._replace(curves=(line, resistance), shades=tuple(shades))
+    yield panel._replace(shades=tuple(shades))
 
     yield from source.panels(["E"])
-    means = ("omega", "omega_mean", results.omega_mean), ("M_coupling", "M_mean", results.M_mean)
-    for id, mean, height in means:
-        for panel in source.panels([id]):
-            yield panel._replace(curves=(*panel.curves, level(panel.curves[0].x, height, source.words(mean))))
+    if source.having("omega"):
+        mean_speed: Line = source.words("omega_mean"), lambda state: results.omega_mean
+        yield source.panel(["omega", mean_speed], faint=True)
+    if source.having("M_coupling"):
+        mean_torque: Line = source.words("M_mean"), lambda state: results.M_mean
+        yield source.panel(["M_coupling", mean_torque], faint=True)
 
 
 def flow(source: Source) -> Iterator[Panel]:
     """Flow that the pumps deliver over the crank angle, and its mean; what is between them fills and empties the air
     vessel. Below it, where there is a suction pipe without a vessel, the head that accelerates the liquid."""
-    for panel in source.panels(["flow"]):
-        (line,), mean = panel.curves, source.results.flow_mean
-        shades = [shade for x, y in line.pieces() for shade in between(x, np.full_like(x, mean), y)]
-        yield panel._replace(curves=(line, level(line.x, mean, source.words("flow_mean"))), shades=tuple(shades))
+    if source.having("flow"):
+        mean: Line = source.words("flow_mean"), lambda state: source.results.flow_mean
+        yield source.panel(["flow", mean], shaded=True, faint=True)
         yield from source.panels(["acceleration_head"])
 
 
@@ -85,9 +84,8 @@ def crank_efforts(source: Source) -> Iterator[Panel]:
     lines += [_on_crank_1(source, Words("T with η", "T with eta"), effort.M)] if lossy else []
     for one in acting if len(acting) > 1 else ():
         lines.append(_on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])])))
-    panel = source.panel(lines, like="T")
-    mean = level(panel.curves[0].x, float(effort.mean[0]) / source.results.crank, Words("W"))
-    yield panel._replace(curves=(*panel.curves, mean), marks=source.marks("T"))
+    lines.append((Words("W"), lambda state: effort.mean[0] / source.results.crank))
+    yield source.panel(lines, like="T", faint=True)._replace(marks=source.marks("T"))
 
 
 def effort_of_sides(source: Source) -> Iterator[Panel]:

@@ -165,6 +165,7 @@ class Source:
         over: str = PHI,
         like: str = "",
         shaded: bool = False,
+        faint: bool = False,
         zero: bool = False,
         also: Iterable[float] = (),
         breaks: Iterable[float] | None = None,
@@ -174,14 +175,16 @@ class Source:
         """Return a panel of lines over a column: columns of one kind, with their extremes, or others.
 
         words: of columns, instead of their own. like: column whose axis is the upright one, if that is not the only
-        line. shaded: what is between the first line and the last, or zero, if there is one line; zero: with the line
-        y = 0.
+        line. shaded: what is between the first line and the last, or zero, if there is one line; faint: the last line,
+        to compare with; zero: with the line y = 0.
         """
         ids = [one for one in lines if isinstance(one, str)]
         drawn = [self.line(one, words.get(one, "")) if isinstance(one, str) else one for one in lines]
         samples = self.samples(like or ids[0], [self.line(over), *drawn], also, breaks)
         x, *rows = samples.values
-        curves = [samples.curve(name, x, row) for (name, _), row in zip(drawn, rows)] + ([level(x)] if zero else [])
+        curves = [samples.curve(name, x, row) for (name, _), row in zip(drawn, rows)]
+        curves[-1] = curves[-1]._replace(kind="faint" if faint else "line")
+        curves += [level(x)] if zero else []
         shades = between(x, rows[-1] if len(rows) > 1 else np.zeros_like(x), rows[0]) if shaded else ()
         place = float if over == PHI else lambda angle: float(self.values([self.line(over)], angle)[0, 0])
         marks = [mark for id in ids for mark in self.marks(id, place)]

@@ -170,9 +170,7 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     """Tangential force T drawn outward from the circle of the crank pin."""
     if not source.having("T"):
         return
-    force = source.samples("T", [source.line("T")]).values
-    size = float(np.abs(force).max()) or 1.0
-    base = max(0.6 * size, 0.25 * size - float(force.min()))
+    base = 1.2 * float(np.abs(source.samples("T", [source.line("T")]).values).max()) or 1.0
 
     def tip(state: State) -> ComplexArray:
         return np.asarray((base + state.T) * np.exp(1j * np.radians(state.phi)))
@@ -283,6 +281,9 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     name, cylinders = case.machine.name, [one.drive.name for one in case.cylinders]
     if options.cylinder:
         options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
+        if options.cylinder not in cylinders:
+            there = f"there is no '{shown(options.cylinder or '')}'; there are {', '.join(cylinders)}"
+            raise UsageError(f"--cylinder: {there}")
     if not names or "all" in names:
         each = filter(None, (pictures_if_any(case, kind, options) for kind in PICTURES))
         drawn = list(islice(each, None if names else 1))
@@ -292,15 +293,12 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
         return
     known = {kind.id: kind for kind in PICTURES}
     for id in names:
-        wrong = "" if id in known else f"no picture '{shown(id)}'{did_you_mean(id, tuple(known))}"
-        if not wrong and (found := _drawn(case, known[id], options)):
-            yield from found
-            continue
-        if not wrong and options.cylinder not in (None, *cylinders):
-            there = ", ".join(cylinders)
-            raise UsageError(f"--cylinder: there is no '{shown(options.cylinder or '')}'; there are {there}")
-        wrong = wrong or f"{name} has no picture '{id}': what it shows is left out"
-        raise UsageError(f"{wrong}; {name} has {', '.join(kind.id for kind in pictures_of(case, options))}")
+        found = _drawn(case, known[id], options) if id in known else []
+        if not found:
+            wrong = f"no picture '{shown(id)}'{did_you_mean(id, tuple(known))}"
+            wrong = f"{name} has no picture '{id}': what it shows is left out" if id in known else wrong
+            raise UsageError(f"{wrong}; {name} has {', '.join(kind.id for kind in pictures_of(case, options))}")
+        yield from found
 
 
 def pictures_if_any(case: Case, kind: PictureKind, options: PictureOptions) -> list[Picture]:

@@ -59,7 +59,7 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     first, angle, mirrored = trains[0], _drawn_angle(trains), machine.rotation == "under"
     # the first cylinder of each stroke line, which is in front of those behind it; a yoke is in front of its crank
     front = list({round(one.angle % 360.0, 6): one for one in reversed(trains)}.values())
-    R, (wheel, depth, look) = first.mechanism.crank, _wheel(machine, first.mechanism.crank)
+    R, (wheel, depth, look) = first.R, _wheel(machine, first.R)
     bodies = [Body.of([disc("axis", R), *(disc(look, one) for one in (wheel, wheel - depth) if one > 0)])]
     for parts in (cranks, cylinders, members) if first.has_slot else (cylinders, cranks, members):
         bodies += [body.seen(one.angle) for one in front for body in parts(one)]
@@ -138,7 +138,7 @@ def _from_the_side(
     for number, (place, one) in enumerate(row.items(), 1):
         bodies = *cylinders(one), *throw(one, bore)
         side += [body.seen(0.0 if level else 90.0, moved=-1j * turn * place) for body in bodies]
-        above, below = one.outer_end + em, -1.5 * one.mechanism.crank - (2.5 if level else 0.8) * em
+        above, below = one.outer_end + em, -1.5 * one.R - (2.5 if level else 0.8) * em
         captions.append(Caption(str(number), turn * complex(above, -place), 0.4 * em, strong=True))
         lag = f"{one.cylinder.crank_position % 360:.4g}°"
         captions.append(Caption(lag, turn * complex(below, -place), 0.4 * em * len(lag)))
@@ -206,7 +206,7 @@ class _Arrow(NamedTuple):
 
 def _acting(train: Train) -> dict[str, _Arrow]:
     """Return where the forces are drawn, by their ids."""
-    sketch, R, gap = train.sketch, train.mechanism.crank, 0.12 * train.mechanism.crank
+    sketch, R, gap = train.sketch, train.R, 0.12 * train.R
 
     def joint(name: str) -> ComplexArray:
         places = train.joints[name]
@@ -224,10 +224,8 @@ def _acting(train: Train) -> dict[str, _Arrow]:
     if sketch.toward:
         # beside the output, or beside the yoke
         output, toward = joint(sketch.output) - 2.0 * R * train.has_slot, np.full(len(pin), complex(*sketch.toward))
-        clear = 4.8 * train.pin
-        if train.has_slot or train.has_frame:
-            clear = 1.95 * R
-        elif train.is_engine:
+        clear = train.yoke + gap if train.yoke else 4.8 * train.pin
+        if train.is_engine and not train.yoke:
             clear = 1.5 * SHOE * R if train.crosshead else (0.5 + 2.2 * WALL) * train.barrels[0].bore
         across = 1j * toward
         acting["P"] = _Arrow(output - across * (clear + gap), toward, toward)
@@ -247,7 +245,7 @@ def _arrows(train: Train, angle: float, mirrored: bool) -> Iterator[Curve]:
         if np.abs(force).max() < _VANISHING * largest and len(force) > 1:
             continue
         place, direction, away = acting[id]
-        arrow = direction * force * (_LONGEST * train.mechanism.crank / largest)
+        arrow = direction * force * (_LONGEST * train.R / largest)
         tail = place - np.where((arrow * away.conj()).real < 0, arrow, 0.0)
         ends = np.stack((tail, tail + arrow), axis=1)
         ends = (ends.conj() if mirrored else ends) * np.exp(1j * np.radians(angle))

@@ -57,10 +57,10 @@ class Train:
     """One cylinder at crank angles of its own in degrees, (1,) or (1 + m,): at rest, then over its working cycle.
 
     motion: the angles of one turn, after which it moves alike; angle: from the stroke line of cylinder 1 to its own,
-    in degrees. pin, journal, weight: radii of these and of the counterweight in m. is_engine: whether a piston
-    reciprocates on the stroke line; has_slot: whether the crank pin slides in the slot of a yoke; has_frame: whether a
-    frame on the piston rod, which needs no guide, holds rod and crank within; crosshead: whether there is one, or
-    these; forked: whether the end of a lever slides in a fork of what it drives.
+    in degrees. R: crank radius; pin, journal, weight: radii of these and of the counterweight; yoke: half the height of
+    a yoke on the piston rod, in whose slot the crank pin slides, or of a frame that holds rod and crank within, or 0;
+    all in m. is_engine: whether a piston reciprocates on the stroke line; crosshead: whether there is one, or a yoke;
+    forked: whether the end of a lever slides in a fork of what it drives.
     """
 
     def __init__(self, machine: Machine, results: CylinderForces, degrees: Array, alone: bool) -> None:
@@ -75,20 +75,20 @@ class Train:
         self.joints: dict[str, ComplexArray] = {
             name: np.atleast_1d(np.asarray(x) + 1j * np.asarray(y)) for name, (x, y) in sketch.joints.items()
         }
-        R, shaft = mechanism.crank, machine.crankshaft
-        self.pin = shaft.pin_diameter / 2 if shaft else _PIN * R
-        self.journal = shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * R
-        self.weight = R * (_WEIGHT if machine.counterweights or self.cylinder.counterweights else _LIGHT)
+        self.R, shaft = mechanism.crank, machine.crankshaft
+        self.pin = shaft.pin_diameter / 2 if shaft else _PIN * self.R
+        self.journal = shaft.journal_diameter / 2 if shaft and shaft.journal_diameter else _JOURNAL * self.R
+        self.weight = self.R * (_WEIGHT if machine.counterweights or self.cylinder.counterweights else _LIGHT)
 
         self.is_engine = bool(mechanism.slides) and not mechanism.quick_return
         self.has_slot = self.is_engine and bool(sketch.blocks)
-        self.has_frame = self.is_engine and not self.has_slot and not mechanism.guided
+        framed = self.is_engine and not mechanism.guided
+        self.yoke = self.R * (1.6 if self.has_slot else 1.8 if framed else 0.0)
         masses, pistons = self.cylinder.masses, self.cylinder.pistons
         piston_rod = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-        known = piston_rod or machine.locomotive or (masses and masses.crosshead)
-        self.crosshead = bool(known or self.has_slot or self.has_frame)
-        drop = (self.output - self.joints["end"]).imag if sketch.output and "end" in self.joints else np.ones(1)
-        self.forked = np.allclose(drop, 0.0)
+        self.crosshead = bool(self.yoke or piston_rod or machine.locomotive or (masses and masses.crosshead))
+        lever = self.joints[sketch.links[-1][0]]
+        self.forked = bool(sketch.output) and not self.is_engine and np.allclose((self.output - lever).imag, 0.0)
 
     @property
     def output(self) -> ComplexArray:
@@ -98,15 +98,15 @@ class Train:
     @property
     def outer_end(self) -> float:
         """Outer end of the outermost cylinder on the stroke line, in m."""
-        return max(self.mechanism.crank, *(barrel.covers[1] for barrel in self.barrels))
+        return max(self.R, *(barrel.covers[1] for barrel in self.barrels))
 
     @property
     def head(self) -> tuple[float, float]:
         """How far what is on the piston rod at the crosshead reaches from the output, toward the shaft and outward."""
-        R, slot = self.mechanism.crank, float((self.joints[PIN] - self.output).real[0])
+        half, slot = SHOE * self.R, float((self.joints[PIN] - self.output).real[0])
         if self.has_slot:
-            return slot - SHOE * R, slot + SHOE * R
-        return (-self.mechanism.rod_length - 2.6 * R if self.has_frame else -SHOE * R), SHOE * R
+            return slot - half, slot + half
+        return (-self.mechanism.rod_length - 2.6 * self.R if self.yoke else -half), half
 
     @cached_property
     def barrels(self) -> tuple[Barrel, ...]:
@@ -124,11 +124,11 @@ class Train:
             gaps = [volume / area for volume, area in zip(gas.clearance_volumes, gas.areas)] if gas else [0.0, 0.0]
             above, below = (height / 2 + (gap or _CLEARANCE * stroke) for gap in gaps)
             below = below if closed else 0.28 * height  # a liner that is open ends above the skirt
-            room = 0.12 * self.mechanism.crank + _GLAND * _COVER * bore
+            room = 0.12 * self.R + _GLAND * _COVER * bore
             rods = piston.crank_end_rod / 2, piston.head_end_rod / 2
             if trunk:
                 shift, rods = 0.08 * height, (0.0, 0.0)
-            elif found and (self.has_slot or self.has_frame):
+            elif found and self.yoke:
                 shift, rods = inner - room - above - far, (0.0, max(rods) or _ROD * bore)
             else:
                 shift, rods = outer + room + below - near, (rods[0] or _ROD * bore, rods[1])
@@ -179,12 +179,12 @@ def cylinders(train: Train) -> Iterator[Body]:
     """Yield cylinders, guides, and the reciprocating parts on the stroke line."""
     if not train.is_engine:
         return
-    R, level = train.mechanism.crank, 1j * train.mechanism.offset
+    R, level = train.R, 1j * train.mechanism.offset
     yield Body.of([_polygon("axis", -1.4 * R, train.outer_end + 0.1 * R)], level)
     for barrel in train.barrels:
         yield from _chambers(train, barrel)
         yield Body.of(_walls(barrel), level)
-    if train.crosshead and train.mechanism.guided and not train.has_slot:
+    if train.crosshead and not train.yoke:
         (near, _), (far, _) = train.sketch.guides[0]
         yield Body.of(_both("wall", near - 1.4 * SHOE * R, far + 1.2 * SHOE * R, SHOE * R, 1.25 * SHOE * R), level)
     yield Body.of(_on_the_rod(train), train.output)
@@ -220,7 +220,7 @@ def _walls(barrel: Barrel) -> Iterator[Shape]:
 
 def _on_the_rod(train: Train) -> Iterator[Shape]:
     """Yield piston rods, pistons, and crosshead, yoke or frame, from the output of the mechanism."""
-    R, (left, right), start = train.mechanism.crank, train.head, train.head[0]
+    R, (left, right), start = train.R, train.head, train.head[0]
     (near, _), _ = train.sketch.guides[0]
     for barrel in train.barrels:
         inner, outer = barrel.rods
@@ -233,13 +233,10 @@ def _on_the_rod(train: Train) -> Iterator[Shape]:
             yield box("rod", start, barrel.glands[1] + 0.1 * barrel.bore - near, outer)
     for barrel in train.barrels:
         yield from _piston(barrel)
-    if train.has_slot or train.has_frame:
-        high, thick = (1.6 * R, 0.15 * R) if train.has_slot else (1.8 * R, 0.3 * R)
-        yield box("metal", left, right, high)
-        # the pin of the rod is on solid ground
-        yield box("hollow", left + thick, right - thick if train.has_slot else -right, high - thick)
-    elif train.crosshead:
-        yield box("metal", left, right, SHOE * R)
+    if train.crosshead:
+        yield box("metal", left, right, train.yoke or SHOE * R)
+    if train.yoke:  # the pin of a rod is on solid ground
+        yield box("hollow", left + 0.15 * R, right - 0.15 * R if train.has_slot else -right, train.yoke - 0.2 * R)
 
 
 def _piston(barrel: Barrel) -> Iterator[Shape]:
@@ -323,7 +320,7 @@ def throw(train: Train, bore: float) -> Iterator[Body]:
 
     bore: in m, of the narrowest cylinder of the row, by which the widths of rods and webs are drawn.
     """
-    R, pin, eye, hub, half = train.mechanism.crank, train.pin, EYE * train.pin, _HUB * train.journal, 0.2 * bore
+    R, pin, eye, hub, half = train.R, train.pin, EYE * train.pin, _HUB * train.journal, 0.2 * bore
     webs, high = (0.2 * bore, 0.34 * bore), np.cos(np.radians(train.motion))
     yield Body.of(_both("web", -train.weight, R, *webs), stretch=high)
     yield Body.of(_both("web", -hub, hub, *webs))
