@@ -106,6 +106,12 @@ def test_four_bars_are_as_long_as_the_file_says() -> None:
         assert placed(rocker, 0.08 + 0j) == pytest.approx(0.15, abs=1e-12)
 
 
+def test_mechanisms_without_pistons_may_be_several() -> None:
+    text = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm}"
+    panel = panel_of(Case(loads(f"{{cylinders: [{text}, {text}]}}")), 60.0)
+    assert [one.text for one in panel.captions] == ["1"]
+
+
 # the chambers
 
 

@@ -28,8 +28,8 @@ _WHEEL = 2.2
 """Radius of a flywheel, relative to the crank radius, if only its moment of inertia is known."""
 _LEVEL = 0.1
 """Sine of the inclination below which a machine counts as horizontal."""
-_LETTER = 0.35
-"""Height of the letters of captions over the bore."""
+_LETTER = 0.6
+"""Height of the letters of captions over the crank radius."""
 
 
 def mechanism(source: Source) -> Iterator[Panel]:
@@ -73,9 +73,8 @@ def _panel(machine: Machine, trains: Sequence[Train]) -> Panel:
     elif len(trains) > 1:
         for one in front:
             outward = np.exp(1j * np.radians(angle - one.angle if mirrored else angle + one.angle))
-            em = _LETTER * one.barrels[0].bore
-            place = outward * (one.outer_end + em)
-            captions.append(Caption(str(trains.index(one) + 1), place, 0.4 * em, strong=True))
+            place = outward * (one.outer_end + _LETTER * R)
+            captions.append(Caption(str(trains.index(one) + 1), place, 0.4 * _LETTER * R, strong=True))
     else:
         arrows = [*_arrows(first, angle, mirrored)]
     left, right, bottom, top = _bounds(bodies, arrows)
@@ -129,10 +128,10 @@ def _from_the_side(
     wheel: its radius in m, or 0; along: left, right, bottom and top of the view along the shaft. In the coordinates of
     the side view the shaft is along −y, on the page downward or to the right.
     """
-    places, journal = list(row), next(iter(row.values())).journal
+    places, first = list(row), next(iter(row.values()))
     half, bore = float(min(np.diff(places))) / 2, min(one.barrels[0].bore for one in row.values())
-    end, em, turn = -places[-1] - half, _LETTER * bore, 1.0 if level else 1j
-    on_shaft = [box("metal", -journal, journal, half - places[0], end)]
+    end, em, turn = -places[-1] - half, _LETTER * first.R, 1.0 if level else 1j
+    on_shaft = [box("metal", -first.journal, first.journal, half - places[0], end)]
     on_shaft += [box(look, -wheel, wheel, end, end - half / 2)] if wheel else []
     side, captions = [Body.of(on_shaft).seen(0.0 if level else 90.0)], list[Caption]()
     for number, (place, one) in enumerate(row.items(), 1):

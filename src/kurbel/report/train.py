@@ -98,7 +98,7 @@ class Train:
     @property
     def outer_end(self) -> float:
         """Outer end of the outermost cylinder on the stroke line, in m."""
-        return max(self.R, *(barrel.covers[1] for barrel in self.barrels))
+        return max([self.R, *(barrel.covers[1] for barrel in self.barrels)])
 
     @property
     def head(self) -> tuple[float, float]:
@@ -111,6 +111,8 @@ class Train:
     @cached_property
     def barrels(self) -> tuple[Barrel, ...]:
         """The cylinders on the piston rod; those of a yoke or frame after the first are on the side of the shaft."""
+        if not self.is_engine:
+            return ()
         (near, _), (far, _) = self.sketch.guides[0]
         inner, outer = near + self.head[0], far + self.head[1]  # of what is on the rod already
         stroke, found, every = self.mechanism.stroke, list[Barrel](), self.results.drive.gas
@@ -276,25 +278,23 @@ def _crank(train: Train, R: float) -> Iterator[Shape]:
 def members(train: Train) -> Iterator[Body]:
     """Yield the members between the joints, blocks that slide on them, and the pins in front of them."""
     pin, sketch, joints = train.pin, train.sketch, train.joints
-    slotted = {link: joint for joint, link in sketch.blocks}
-    for link in () if train.has_slot else sketch.links[1:]:
+    slotted = {link: joints[joint] for joint, link in sketch.blocks}
+    for link in sketch.links[1:]:
         start, end = (joints[name] for name in link)
         length, turn = float(abs(end - start)[0]), _directions(end - start)
         if link in slotted:
-            reach = abs(joints[slotted[link]] - start)
+            reach = abs(slotted[link] - start)
             far = max(length, float(reach.max()) + 2.4 * pin)
             slot = box("hollow", float(reach.min()) - 1.8 * pin, far - 0.7 * pin, 1.05 * pin)
-            yield Body.of([box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot], start, turn)
-        elif not train.is_crank(link) and not (train.forked and link[1] == sketch.output):
+            if not train.has_slot:
+                yield Body.of([box("rod", 0.0, far, 1.9 * pin), disc("rod", 1.9 * pin), slot], start, turn)
+            yield Body.of([box("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)], slotted[link], turn)
+        elif not (train.has_slot or train.is_crank(link) or (train.forked and link[1] == sketch.output)):
             inside = box("thin", EYE * pin, length - EYE * pin, 0.28 * pin)
             eyes = disc("rod", EYE * pin), disc("rod", 1.25 * pin, length)
             yield Body.of([box("rod", 0.0, length, 0.65 * pin), inside, *eyes], start, turn)
     if sketch.output and not train.is_engine:
         yield from _ram(train)
-    for joint, (first, last) in sketch.blocks:
-        yield Body.of(
-            [box("metal", -1.7 * pin, 1.7 * pin, 1.05 * pin)], joints[joint], _directions(joints[last] - joints[first])
-        )
     hidden = (SHAFT, sketch.output if train.forked else "")
     for name in (PIN,) if train.has_slot else [one for one in joints if one not in hidden]:
         yield Body.of([disc("metal", 0.9 * pin), disc("web", 0.15 * pin)], joints[name])
@@ -306,7 +306,8 @@ def _ram(train: Train) -> Iterator[Body]:
     under, over, stroke = 1.6 * pin, 3.8 * pin, end - start
     for at in (under - 0.5 * pin, over):
         yield Body.of([box("wall", line + at, line + at + 0.5 * pin, start - 0.35 * stroke, end + 0.25 * stroke)])
-    low = -float((train.output - train.joints["end"]).real.max()) if train.forked else 0.0
+    lever = train.joints[train.sketch.links[-1][0]]
+    low = -float((train.output - lever).real.max()) if train.forked else 0.0
     tool = complex(2.0 * pin, 0.95 * stroke) + pin * np.array([0.0, 0.8 - 1.4j, -2.6 - 0.3j])
     shapes = [_polygon("web", *tool), box("metal", under, over, -0.75 * stroke, 0.95 * stroke)]
     shapes.append(box("metal", low - 1.8 * pin, under, 1.9 * pin))
