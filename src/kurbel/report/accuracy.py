@@ -2,13 +2,13 @@
 
 import platform
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NamedTuple
 
-import mpmath
 import numpy as np
 
-from kurbel import __version__
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
 from kurbel.errors import UsageError
@@ -99,8 +99,11 @@ def environment() -> str:
     if cpuinfo.exists():
         lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
         processor = next((line.partition(":")[2] for line in lines if line.startswith("model name")), processor)
-    versions = f"Python {platform.python_version()}, numpy {np.__version__}, mpmath {mpmath.__version__}"
-    return f"kurbel {__version__}, {versions}; {platform.system()} {platform.machine()}, {' '.join(processor.split())}"
+    versions = [f"Python {platform.python_version()}"]
+    for package in ("kurbel", "numpy", "mpmath"):
+        with suppress(PackageNotFoundError):  # such as kurbel where it is run from its source
+            versions.append(f"{package} {version(package)}")
+    return f"{', '.join(versions)}; {platform.system()} {platform.machine()}, {' '.join(processor.split())}"
 
 
 # stiff and extreme cases
