@@ -33,19 +33,6 @@ def test_one_key_in_full() -> None:
 
 
 @pytest.mark.parametrize(
-    "path", ["cylinders.0.bore", "cylinders[0].bore", "cylinders.each.bore", "tandem.0.bore", "bore"]
-)
-def test_a_path_may_be_that_of_a_message(path: str) -> None:
-    assert "Diameter of the cylinder" in printed("keys", path)
-
-
-@pytest.mark.parametrize("path", ["indicator.head_end.constant", "cylinders.0.indicator.head_end.constant"])
-def test_a_key_with_keys_below_it_alone_lists_these(path: str) -> None:
-    names = [line.split()[0] for line in printed("keys", path).splitlines()]
-    assert names == ["indicator.head_end.constant.expansion", "indicator.head_end.constant.compression"]
-
-
-@pytest.mark.parametrize(
     ("words", "some"),
     [
         ("kurbel fly", ["flywheel"]),

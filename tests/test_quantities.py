@@ -2,7 +2,6 @@
 
 import pytest
 
-from command import run
 from kurbel import loads
 from kurbel.errors import KurbelError, UsageError
 from kurbel.mechanisms import Mechanism
@@ -34,16 +33,6 @@ def test_where_key_values_are_in_groups_every_one_is_in_a_group() -> None:
     for kind in RESULTS:
         headings = {row.quantity.heading for row in rows_of(kind).key_values.values()}
         assert ("" in headings) == (headings == {""}), kind
-
-
-def test_columns_take_printed_symbols() -> None:
-    for names in ("phi,psi,p_head,P_inertia", "φ,ψ,p_H,P_b", "phi,psi,p_H,P_b"):
-        arguments = ["forces", "-", "-f", "csv", "--angles", "30", "--columns", names]
-        printed = run(*arguments, text=ENGINE % (PRESSURE, "masses: {piston: 5 kg}"))
-        assert printed.stdout.splitlines()[0] == "phi_deg,psi_deg,p_head_Pa,P_inertia_N"
-    assert run("table", "--rows", "ψ,x/R,S/P,c", "-f", "csv").stdout.startswith(
-        "rod_ratio,phi_deg,psi_deg,displacement_factor,rod_force_factor,velocity_factor"
-    )
 
 
 def test_figures_take_printed_symbols_and_each_quantity_once() -> None:

@@ -69,11 +69,6 @@ def test_json_has_both_sections_and_kurbel_is_exact(engine: dict[str, Any]) -> N
     assert max(own.values()) < 1e-12
 
 
-def test_a_mechanism_without_a_reference_says_so() -> None:
-    machine = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}"
-    assert "no independent calculation of the four-bar" in printed("accuracy", "-", "--quick", text=machine)
-
-
 def scene(name: str, *rows: tuple[str, str, str, float | None, float | None]) -> Part:
     """Rows of quantity, method, state, error and time."""
     names = tuple((quantity, method, "36", state) for quantity, method, state, _, _ in rows)
