@@ -28,12 +28,3 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
     asked = {"load_max", "load_mean", "load_min", "unloaded_arc", "pressure_max", "pressure_velocity"}
     assert asked <= values.keys()
     assert values["load_max"]["value"] >= max(parts["bearing A"]["columns"][1]["values"])
-
-
-@pytest.mark.parametrize(("asked", "name"), [("2", "b"), ("b", "b"), ("1", "a")])
-def test_the_pins_of_one_cylinder_by_its_name_or_its_number(asked: str, name: str) -> None:
-    """`--cylinder 2` was taken for the cylinder's name, of which bearings were said to have no results."""
-    one = "name: a, crank: 0.1 m, rod: 0.4 m, masses: {reciprocating: 9 kg}"
-    two = f"speed: 100 rpm\ncylinders: [{{{one}}}, {{like: a, name: b, crank_position: 90 deg}}]"
-    found = json.loads(run("bearings", "-", "--cylinder", asked, "-f", "json", text=two).stdout)
-    assert [part["name"] for part in found["bearings"]] == [f"crank pin of {name}", f"crosshead pin of {name}"]

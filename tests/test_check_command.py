@@ -24,12 +24,6 @@ def called(text: str, *arguments: str) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-# limits
-
-
-# by the trapezoid rule the work of a sawtooth of four samples is far from that between them
-
-
 def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     text = ENGINE + f"masses: {{piston: 500 kg}}\nindicator: {{head_end: {{{PRESSURE}}}}}\n"
     low, high = sorted(solve(loads(text)).cylinders[0].extremes_of("T") or (), key=lambda one: one.value)
@@ -42,25 +36,6 @@ def test_a_limit_passed_in_magnitude_by_the_other_sign_is_told() -> None:
     for told in ("", f", T_max: {2 * high.value} N"):  # who bounds the other end too knows
         status, listed, _ = called(text + f"limits: {{T_min: -{2 * high.value} N{told}}}\n", "check")
         assert (status, "other sign" in listed) == (0, False)
-
-
-# expectations
-
-
-def test_expected_figures_are_compared() -> None:
-    """b_max = ω² R (1 + λ) for the straight slider-crank: (2π)² · 0.4 · 1.2 = 18.9496 m/s²."""
-    for figure in ("18.95 m/s2 ± 0.5 %", "18.95 m/s2 +- 0.5 %", "18.95 ± 0.05 m/s2", "18.95 m/s2 ± 1 cm/s2"):
-        for name in ("b_max", "'b_max'"):
-            status, listed, _ = called(ENGINE + f'expect: {{{name}: "{figure}"}}\n', "check")
-            assert (status, "  PASS  (cylinder 1)" in listed) == (0, True), figure
-    status, listed, _ = called(ENGINE + "expect: {b_max: [18.9 m/s2, 19 m/s2], c_m: 1600 mm/s +/- 1 %}\n", "check")
-    assert (status, listed.count("  PASS  ")) == (0, 2)
-    status, listed, _ = called(ENGINE + 'expect: {b_max: "18.8 m/s2 ± 0.5 %"}\n', "check")
-    off = (2 * math.pi) ** 2 * 0.4 * 1.2 - 18.8 * 1.005
-    assert status == 1
-    assert f"FAIL, {off:.9g} m/s2 too large  (cylinder 1)" in listed
-    status, listed, _ = called(ENGINE + "expect: {c_m: [1.7 m/s, 1.8 m/s]}\n", "check")
-    assert (status, "1.6 m/s, expected 1.7 m/s to 1.8 m/s  FAIL, 0.1 m/s too small" in listed) == (1, True)
 
 
 # findings for programs
@@ -106,19 +81,8 @@ def test_a_warning_has_the_place_of_its_cylinder() -> None:
 
 JENKINS = {
     "testsuites": {"name", "time", "tests", "failures", "errors"},
-    "testsuite": {
-        "name",
-        "tests",
-        "failures",
-        "errors",
-        "group",
-        "time",
-        "skipped",
-        "timestamp",
-        "hostname",
-        "id",
-        "file",
-    },
+    "testsuite": {"name", "tests", "failures", "errors", "group", "time", "skipped", "timestamp"}
+    | {"hostname", "id", "file"},
     "testcase": {"name", "time", "classname", "group"},
     "failure": {"type", "message"},
     "system-out": set(),
@@ -154,13 +118,6 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
     (failure,) = limit
     assert "2.13593341 m/s > 1 m/s" in failure.attrib["message"]
     assert (failure.text or "").startswith(f"{bad}:1:")
-
-
-def test_a_machine_without_a_finding_is_a_test_that_passes() -> None:
-    text = "{crank: 400 mm, rod: 2000 mm}"
-    status, listed, _ = called(text, "check", "-f", "junit")
-    (suite,) = ElementTree.fromstring(listed.encode())
-    assert (status, int(suite.attrib["tests"]) > 0, suite.attrib["failures"]) == (0, True, "0")
 
 
 def test_faults_of_the_file_are_findings_too(tmp_path: Path) -> None:
@@ -230,9 +187,6 @@ def test_notes_name_their_cylinder(command: str) -> None:
         assert lines[place].startswith("left, right: piston, head end: ")
     else:  # below the head of both
         assert any("left, right" in line for line in lines[:place])
-
-
-# firing
 
 
 # whose key value a limit or an expectation is put on: `machine.T_max`, `HP.T_max`, and `T_max` alone

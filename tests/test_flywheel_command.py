@@ -8,9 +8,6 @@ from typing import Any
 import pytest
 
 from command import answer, printed, run
-from kurbel.machine_file import loads
-from kurbel.report.check import checked
-from kurbel.solver.case import Case
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -95,14 +92,6 @@ def test_a_resonance_is_told() -> None:
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
     assert run("flywheel", "-", text=tuned).exit_code == 3
-
-
-def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
-    text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
-    assert "J_needed" not in values(text)
-    assert not checked(Case(loads(text + "limits: {J_needed: 1000 t m2}\n"))).broken
-    (error,) = checked(Case(loads(ENGINE + "limits: {delta: 0.1}\n"))).errors
-    assert "this machine has no delta: coefficient" in str(error)
 
 
 def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None:

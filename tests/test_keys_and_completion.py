@@ -3,7 +3,6 @@
 import pytest
 from click.testing import CliRunner
 
-from command import printed
 from kurbel.cli import kurbel
 from representative import CONFIGS
 
@@ -17,19 +16,6 @@ def completed(words: str) -> list[str]:
     }
     output = CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout
     return [line.partition(",")[2] for line in output.splitlines() if line]
-
-
-def test_one_key_in_full() -> None:
-    assert printed("keys", "masses.connecting_rod.share").splitlines() == [
-        "meaning  Reciprocating share of the mass",
-        "form     a number",
-        "absent   1/2",
-        "or give  center_of_gravity",
-        "example  share: 0.1",
-    ]
-    assert "must be given" in printed("keys", "crankshaft.a")
-    rim = printed("keys", "flywheel.rim.mean_diameter")
-    assert "absent   mean_diameter or outer_diameter must be given\nor give  outer_diameter" in rim
 
 
 @pytest.mark.parametrize(
