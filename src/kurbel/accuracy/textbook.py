@@ -28,43 +28,38 @@ STEPS = 24
 # what has no reference
 
 
-def unknown(machine: Machine, quantity: str) -> str:
-    """Return what of a machine has no independent calculation of a quantity here, or an empty text."""
-    found = [what for one in taking_part(machine, quantity) for what in _unknown_parts(one, quantity in "xcb")]
-    if quantity == "ΔE":
-        load = machine.load
-        whole = {
-            "a given turning effort": machine.effort is not None,
-            "an efficiency": machine.efficiency != 1,
-            "a load given by points": load is not None and load.diagram is not None,
-        }
-        found += [what for what in whole if whole[what]]
-    return next(iter(found), "")
-
-
 def taking_part(machine: Machine, quantity: str) -> tuple[Cylinder, ...]:
     """Return the cylinders that a quantity belongs to: all, or the first one."""
     return machine.cylinders if quantity == "ΔE" else machine.cylinders[:1]
 
 
-def _unknown_parts(cylinder: Cylinder, motion_alone: bool) -> Iterator[str]:
-    if cylinder.mechanism.name not in ("slider-crank", "scotch-yoke", "yoke-frame"):
-        yield f"the {cylinder.mechanism.name}"
-    if motion_alone:
-        return
-    if not all(isinstance(one, Card) for piston in cylinder.pistons for one in piston.chambers.values()):
-        yield "traces and ideal cards"
-    if cylinder.masses and cylinder.masses.connecting_rod and cylinder.masses.connecting_rod.exact:
-        yield "a rod given by its centre of gravity"
-    if cylinder.ram_force:
-        yield "a ram force"
-    if friction := cylinder.friction:
-        if friction.of_pins:
-            yield "pins that rub"
-        if friction.block is not None or friction.guides is not None:
-            yield "a yoke that rubs"
-        if friction.rings and isinstance(friction.rings.pressure, GasOnRings):
-            yield "rings that the gas presses"
+def unknown(machine: Machine, quantity: str) -> Iterator[str]:
+    """Yield what of a machine has no independent calculation of a quantity here."""
+    for one in taking_part(machine, quantity):
+        if one.mechanism.name not in ("slider-crank", "scotch-yoke", "yoke-frame"):
+            yield f"the {one.mechanism.name}"
+        if quantity in "xcb":
+            return
+        if not all(isinstance(card, Card) for piston in one.pistons for card in piston.chambers.values()):
+            yield "traces and ideal cards"
+        if one.masses and one.masses.connecting_rod and one.masses.connecting_rod.exact:
+            yield "a rod given by its centre of gravity"
+        if one.ram_force:
+            yield "a ram force"
+        if friction := one.friction:
+            if friction.of_pins:
+                yield "pins that rub"
+            if friction.block is not None or friction.guides is not None:
+                yield "a yoke that rubs"
+            if friction.rings and isinstance(friction.rings.pressure, GasOnRings):
+                yield "rings that the gas presses"
+    if quantity == "ΔE":
+        if machine.effort is not None:
+            yield "a given turning effort"
+        if machine.efficiency != 1:
+            yield "an efficiency"
+        if machine.load is not None and machine.load.diagram is not None:
+            yield "a load given by points"
 
 
 # motion and forces

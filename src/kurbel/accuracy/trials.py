@@ -79,7 +79,7 @@ def examined(machine: Machine, degrees: Array, quick: bool) -> tuple[list[Trial]
             try:
                 if quantity not in motion and own_answer(machine, quantity) is None:
                     continue
-                if what := unknown(machine, quantity):
+                if what := next(unknown(machine, quantity), ""):
                     why = f"no independent calculation of {what}"
                 else:
                     truth, methods = compared(machine, quantity, degrees)
@@ -233,14 +233,14 @@ def savings(machine: Machine, compute: Callable[[Machine], object], quick: bool)
 
     compute: all that a command prints.
     """
-    every, stages = machine.cylinders, {"everything": machine}
-    less: tuple[tuple[str, bool, dict[str, Any]], ...] = (
-        ("no friction", any(one.friction for one in every), {"friction": None}),
-        ("no masses either", any(one.masses for one in every), {"masses": None, "inclination": None}),
-        ("no cards either: motion alone", any(one.pistons for one in every), {"pistons": ()}),
+    stages = {"everything": machine}
+    less: tuple[tuple[str, list[object], dict[str, Any]], ...] = (
+        ("no friction", [one.friction for one in machine.cylinders], {"friction": None}),
+        ("no masses either", [one.masses for one in machine.cylinders], {"masses": None, "inclination": None}),
+        ("no cards either: motion alone", [one.pistons for one in machine.cylinders], {"pistons": ()}),
     )
     for name, given, change in less:
-        if given:
+        if any(given):
             lighter = tuple(replace(one, **change) for one in machine.cylinders)
             machine = stages[name] = replace(machine, cylinders=lighter, limits=())
     if machine.speed is not None:
