@@ -23,7 +23,7 @@ from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.cylinder import gathered, work_alike
+from kurbel.machine.cylinder import gathered
 from kurbel.machine.turning import Harmonics, Known, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
@@ -94,7 +94,7 @@ class TurningEffort:
         self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
         # cylinders in which a force acts, identical ones in one group
         acting = [forces for forces in cylinders if forces.drive.has_force]
-        self.groups = gathered(acting, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
+        self.groups = gathered(acting, lambda one, other: other.twin is one)
         # groups with moving masses and a speed
         self._moving = [group for group in self.groups if moves(group)]
 
