@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
@@ -183,7 +183,7 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
     return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)
 
 
-def _sense(state: State) -> Any:
+def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     return state.guide_sense if state.rod_angle else state.after_steady_friction
 

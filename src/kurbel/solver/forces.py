@@ -450,7 +450,7 @@ class CylinderForces(SampledCylinder, Results):
         if friction is None:
             return found
 
-        def over_cycle(values: Number) -> Any:
+        def over_cycle(values: Number) -> Number:
             return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
 
         if friction.crosshead is not None and drive.has_force:
