@@ -5,16 +5,13 @@ import pytest
 
 from kurbel.accuracy.extremes import Probe, all_cases, verdicts
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.report.accuracy import answer
 
 mp = mpmath.mp
 CASES = all_cases()
 PLAIN = "{speed: 60 rpm, crank: 400 mm, rod_ratio: 5}"
-
-
-def ask(text: str, asked: str) -> float | None:
-    return answer(loads(text), asked)
 
 
 def test_there_are_many_cases() -> None:
@@ -42,7 +39,7 @@ DEAR = {(case.case, case.asked.partition("@")[0]): case for case in CASES if not
 
 def fault(case: Probe) -> str:
     """What is wrong with the answer of a case; '' where nothing is."""
-    (one,) = verdicts([case], ask, loads)
+    (one,) = verdicts([case], answer, loads)
     wrong = f"{case.case}, {case.asked}: expected {one.expected}, observed {one.observed} ({one.ulp} ulp)"
     return "" if one.passed else wrong
 
@@ -78,7 +75,7 @@ def test_dear_case(case: Probe) -> None:
     ],
 )
 def test_a_wrong_answer_fails(expected: str, observed: float | Exception | None) -> None:
-    def wrong(text: str, asked: str) -> float | None:
+    def wrong(machine: Machine, asked: str) -> float | None:
         if isinstance(observed, Exception):
             raise observed
         return observed
@@ -89,7 +86,7 @@ def test_a_wrong_answer_fails(expected: str, observed: float | Exception | None)
 
 
 def test_a_right_refusal_passes() -> None:
-    def refuses(text: str, asked: str) -> float | None:
+    def refuses(machine: Machine, asked: str) -> float | None:
         raise NoSolutionError("the crosshead locks itself")
 
     (verdict,) = verdicts([Probe("right", PLAIN, "motion x@30", "status 3: locks itself")], refuses, loads)

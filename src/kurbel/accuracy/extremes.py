@@ -60,16 +60,17 @@ def all_cases() -> list[Probe]:
 
 
 def verdicts(
-    cases: list[Probe], compute: Callable[[str, str], float | None], loads: Callable[[str], Machine]
+    cases: list[Probe], compute: Callable[[Machine, str], float | None], loads: Callable[[str], Machine]
 ) -> Iterator[Verdict]:
     """Yield the verdict on each case. Any exception except KurbelError is a fault of the program.
 
-    compute: runs the program: (text of the machine, requested quantity) -> its value, or None if it is left out.
+    compute: runs the program: (machine, requested quantity) -> its value, or None if it is left out.
     """
     for case in cases:
-        text, expected, missed = case.machine.replace("\\n", "\n"), case.expected, None
+        expected, missed = case.expected, None
         try:
-            answer = compute(text, case.asked)
+            machine = loads(case.machine.replace("\\n", "\n"))
+            answer = compute(machine, case.asked)
         except KurbelError as error:
             message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
             passed = expected.startswith(status) and expected.removeprefix(status) in message
@@ -80,7 +81,7 @@ def verdicts(
             observed = "left out" if answer is None else repr(answer)
             passed = observed == expected
             if case.ulp:
-                expected, missed = _missed(case, loads(text), answer)
+                expected, missed = _missed(case, machine, answer)
                 passed = missed is not None and missed <= float(case.ulp)
         allowed = None if missed is None else float(case.ulp)
         verdict = "passed" if passed else "FAILED"

@@ -29,7 +29,7 @@ Found = Union[Number, tuple[Number, Number]]
 def merged(angles: Array) -> Array:
     """Return angles in order, without those that differ from the one before by rounding only."""
     found = np.sort(angles)
-    return np.asarray(found[np.append(True, np.diff(found) > 1e-25)])
+    return found[np.append(True, np.diff(found) > 1e-25)]
 
 
 def _on(function: Function, low: Array, high: Array, shares: Array) -> Array:
@@ -57,7 +57,7 @@ def roots(function: Function, low: Array, high: Array, parts: int) -> tuple[Arra
         f_found = function(found, within)
         crossed = (f_found > 0) != (f_last > 0)
         stays, f_stays = np.where(crossed, last, stays), np.where(crossed, f_last, f_stays / 2)
-    return np.asarray(found), within
+    return found, within
 
 
 @cache
@@ -86,7 +86,7 @@ def integrals(function: Function, edges: Array, count: int) -> Array:
     halves = ruled(halved)[0].reshape(-1, 2).sum(axis=1)
     for piece in np.flatnonzero(np.abs(halves - whole) > 1e-25 * size):
         halves[piece] = integrals(function, halved[2 * piece : 2 * piece + 3], count).sum()
-    return np.asarray(halves)
+    return halves
 
 
 def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Found:

@@ -114,7 +114,7 @@ def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Met
 
     def fit(count: int) -> Array:
         series = np.polynomial.Chebyshev.interpolate(lambda at: book(at).x, count, (0, 360)).deriv(order)
-        return np.asarray(series(degrees % 360) * math.degrees(1) ** order)
+        return series(degrees % 360) * math.degrees(1) ** order
 
     own = (mechanism.coordinate, mechanism.slope, mechanism.curvature)[order]
     yield OWN, "closed", lambda: own(CrankAngle.of(degrees))

@@ -4,6 +4,7 @@ import platform
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
+from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -111,7 +112,7 @@ def environment() -> str:
 
 def extremes_report(loads: Loads) -> tuple[Report, bool]:
     """Return the verdicts on all cases, and whether every one is passed."""
-    found = list(verdicts(all_cases(), lambda text, asked: answer(loads(text), asked), loads))
+    found = list(verdicts(all_cases(), answer, loads))
     passed = sum(one.passed for one in found)
     judged = _table("extremes", f"{passed} of {len(found)} cases passed", found, 5)
     part = Part("stiff and extreme cases", (), place_tables=(judged,))
@@ -148,30 +149,26 @@ def accuracy_picture(report: Report) -> Picture:
 
     Raises UsageError where nothing was compared.
     """
-    dots: dict[str, dict[tuple[str, str], list[tuple[float, float]]]] = {}
-    tables = [(part.name, one) for part in report.parts for one in part.place_tables if one.id == NUMERICAL]
-    for scene, one in tables:
+    curves: dict[str, list[Curve]] = {}
+    methods: list[str] = []
+    for one in (one for part in report.parts for one in part.place_tables if one.id == NUMERICAL):
         columns = {column.id: column.values for column in one.columns}
-        for (quantity, method, _, _), error, time in zip(one.names, columns["error"], columns["median"]):
-            if error is not None and time is not None:
-                curves = dots.setdefault(quantity, {})
-                curves.setdefault((method, str(scene)), []).append((max(error, _LEAST), time))
-    if not dots:
+        rows = zip(one.names, columns["error"], columns["median"])
+        found = ((names[:2], max(error, _LEAST), time) for names, error, time in rows if error is not None)
+        for (quantity, method), dots in groupby(found, key=lambda row: row[0]):
+            if method not in methods:
+                methods.append(method)
+            _, errors, times = map(np.array, zip(*dots))
+            curves.setdefault(quantity, []).append(Curve(Words(method), errors, times, "dots", methods.index(method)))
+    if not curves:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
 
-    methods = list(dict.fromkeys(method for curves in dots.values() for method, _ in curves))
-    times = [time for curves in dots.values() for points in curves.values() for _, time in points]
-    low, high = min(times), max(times)
+    every = np.concatenate([one.y for of_quantity in curves.values() for one in of_quantity])
+    low, high = every.min(), every.max()
     rounding = Curve(Words(""), np.array([2.0**-53, 2.0**-53]), np.array([low, high]), "faint")
     x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
     y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)
-    panels = []
-    for quantity, curves in dots.items():
-        drawn = [rounding]
-        for (method, _), points in curves.items():
-            errors, spans = np.array(points).T
-            drawn.append(Curve(Words(method), errors, spans, "dots", methods.index(method)))
-        panels.append(Panel(x, y, tuple(drawn), title=quantity))
+    panels = [Panel(x, y, (rounding, *drawn), title=quantity) for quantity, drawn in curves.items()]
     return Picture(
         "accuracy",
         "time over error",
@@ -179,6 +176,6 @@ def accuracy_picture(report: Report) -> Picture:
         "right, the thin upright line is the rounding of one float.",
         tuple(panels),
         report.title,
-        across=min(4, len(dots)),
+        across=min(4, len(curves)),
         legend=tuple((Words(method), number) for number, method in enumerate(methods)),
     )
