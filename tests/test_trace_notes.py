@@ -161,7 +161,7 @@ WRONG = {
     ),
     "closing sample": wrong(
         np.append(late(0), late(0)[0] + 3),
-        "and comes back to it just before: leave that sample out",
+        "where the cycle closes: does the sensor drift? write 'drift: linear', or leave the closing sample out",
         angles=np.append(FINE, 720.0),
     ),
     "pegged at its peak": wrong(
@@ -172,7 +172,7 @@ WRONG = {
     **{f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}") for unit in ("Pa", "psi")},
     **{f"{unit} meant as bar, gauge": wrong(SUNK, UNIT, f"{RATIO}, unit: {unit}", "gauge") for unit in ("Pa", "psi")},
 }
-NO_KEY = "an injector", "closing sample", "pegged at its peak", "psi meant as bar, absolute", "psi meant as bar, gauge"
+NO_KEY = "an injector", "closing sample", "pegged at its peak"
 """Faults whose way out is no key with a value that the note could name."""
 SEEN = [
     *("90 deg late", "one turn late", "gauge as absolute", "ten times", "a tenth, gauge", "backward", "on its head"),

@@ -107,7 +107,7 @@ class Indicated(Results):
             return None
         shares, ends = [self._share(one) for one in self._traces], []
         for one in self._traces:
-            at = np.mod(one.trace.angles + one.shift, one.setting.cycle)
+            at = np.mod(one.angles, one.setting.cycle)
             own = (one.each @ one.weights, one.each.max(axis=1), at[np.argmax(one.each, axis=1)])
             whole = np.broadcast_arrays(*own, one.rises(one.each)[0].max(axis=1), np.empty(max(counts)))
             ends.append(Cycles(*whole[:4]))
