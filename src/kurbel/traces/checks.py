@@ -114,9 +114,6 @@ def doubt(trace: Trace, setting: Setting, each: Array) -> str:
 
 # the samples
 
-_PULSE = 0.02, 0.9
-"""Share of the swing, and of the samples that are within it of one level if there are only pulses."""
-_FEWEST = 36
 _TURNS_DIFFER = 0.2
 """Share of the range by which the turns of a two-stroke cycle never differ in pairs."""
 _WANDERED = 10.0
@@ -131,20 +128,6 @@ _WORTH_IT = 0.01
 """Share of p_i below which a drift is not reported."""
 _SURE_OF_NOISE = 6.0
 """Standard deviations of the noise that a drift must exceed."""
-
-
-def _column_of_pulses(reading: TraceReading) -> str:
-    """A signal that is flat but for pulses with upright sides is that of an injector or a mark, no pressure."""
-    p, column = reading.p, reading.trace.column
-    swing = float(np.ptp(p))
-    flat = float(np.mean(np.abs(p - np.median(p)) <= _PULSE[0] * swing))
-    upright = np.count_nonzero(np.abs(np.diff(p)) > swing / 2) >= 2
-    if not column or len(p) < _FEWEST or flat < _PULSE[1] or not upright:
-        return ""
-    return (
-        f"column {column} is flat over {flat:.0%} of the cycle, but for a pulse with upright sides: the signal "
-        "of an injector or a mark? name the column of the pressures by 'pressure_column'"
-    )
 
 
 def _turns_in_pairs(reading: TraceReading) -> str:
@@ -404,18 +387,7 @@ def _exponents(reading: TraceReading) -> str:
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
         key, effect = reading.put_later(-later)
         return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
-    if sensible:
-        return ""
-    swapped = reading.setting.ambient if reading.setting.absolute else -reading.setting.ambient
-    if _is_sensible(reading.exponent(COMPRESSION, raised=swapped)):
-        word = "absolute" if swapped < 0 else "gauge"
-        return f"{seen}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
-    inside = (COMPRESSION[0] <= reading.place) & (reading.place <= COMPRESSION[1])
-    volumes = reading.setting.stroke_fraction(reading.place[inside]) + (reading.trace.clearance or 0.0)
-    pressures = reading.p[inside] + reading.setting.lift
-    raised = -float(np.polyfit(volumes**-_AIR, pressures, 1)[1])  # p = C V^−n − Δp
-    level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
-    return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
+    return "" if sensible else f"{seen}: mend the level ('pegging', 'offset'; p_i stays), or the clearance"
 
 
 def _apart(reading: TraceReading, later: float) -> float:
@@ -425,7 +397,7 @@ def _apart(reading: TraceReading, later: float) -> float:
 
 
 CHECKS: tuple[Callable[[TraceReading], str], ...] = (
-    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
+    *(_turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
     *(_inverted, _unit),
     *(_backward, _peak_elsewhere, _motored_peak),
     *(_level, _exponents),
