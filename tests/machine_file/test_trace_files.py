@@ -219,7 +219,11 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     ),
     # what is no text
     (b"\xff\xfe0\x00,\x001\x00", "", "line 1"),
-    (b"PK\x03\x04[Content_Types].xml", "", "p.csv is an Excel or other workbook, or a zip archive, no text; export its table"),
+    (
+        b"PK\x03\x04[Content_Types].xml",
+        "",
+        "p.csv is an Excel or other workbook, or a zip archive, no text; export its table",
+    ),
     (b"TDSm\x0e\x00\x00\x00", "", "a TDMS file of LabVIEW, no text; export its table"),
     (b"\x1f\x8b\x08\x00", "", "compressed by gzip, no text; export its table"),
     (b"0,1\n\x00\x01\x02 and so on, to the end of the head of the file, which has text", "", "has zero bytes"),

@@ -8,48 +8,40 @@ from typing import ClassVar, NamedTuple
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field, record
-from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
-    SHAFT,
     SWING_OFFERS,
     SWING_VALUES,
+    TURNING,
     KeyOffer,
     Mechanism,
     Offer,
     Sketch,
     Turning,
-    finite,
     on_circle,
-    on_request,
+    requested_column,
 )
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity
 
 
-def _coupler(end: str, symbol: str, kind: str, text: str) -> Quantity:
-    id, plain = f"theta_coupler{end}", f"theta_K{end}"
-    return on_request(id, symbol, kind, f"{text} of the coupler", plain, after="theta_ddot")
-
-
-COUPLER_OFFERS = (
-    Offer(
-        _coupler("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).degrees,
-    ),
-    Offer(
-        _coupler("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).slope,
-        omega=1,
-    ),
-    Offer(
-        _coupler("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).curvature,
-        omega=2,
-    ),
-)
+def _coupler(order: int) -> Offer:
+    end, mark, kind, name = TURNING[order]
+    text = (
+        f"{name}, from the line crank pivot → rocker pivot, of the coupler" if not order else f"{name} of the coupler"
+    )
+    return requested_column(
+        f"theta_coupler{end}",
+        f"θ{mark}_K",
+        kind,
+        text,
+        lambda one, angle: one.coupler_at(angle)[order],
+        "theta_ddot",
+        order,
+        f"theta_K{end}",
+    )
 
 
 def _transmission(end: str, size: str, degrees: float) -> KeyOffer:
@@ -127,7 +119,7 @@ class FourBar(Mechanism):
 
     name: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
+    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *map(_coupler, range(3)), F_COUPLER)
     KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
         *SWING_VALUES,
         _transmission("min", "Smallest", 0.0),
@@ -136,32 +128,18 @@ class FourBar(Mechanism):
     far_pin: ClassVar[str] = "rocker_pin"
 
     def rules(self) -> Iterator[Rule]:
-        yield from finite(self, "crank", "coupler", "rocker", "frame")
         # among equals the crank comes first
         links = {"crank": self.crank, "frame": self.frame, "coupler": self.coupler, "rocker": self.rocker}
-        if not all(map(math.isfinite, links.values())):
-            return
         shortest, *others, longest = sorted(links, key=links.__getitem__)
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
-        rounding = 2 * math.ulp(links[longest])
-        if gap > rounding and shortest in ("crank", "frame"):
-            return
-        named = {name: f"{name} {show(links[name], 'length')}" for name in self.KEYS}
-        rest = [text for name, text in named.items() if name != longest]
-        ends = f"{named[shortest]} + {named[longest]}"
-        pair = " + ".join(one for one in rest if one != named[shortest])
-        if gap + 2 * links[shortest] <= 0:
-            message = f"the links do not meet: {named[longest]} is no shorter than {' + '.join(rest)}"
-        elif shortest not in ("crank", "frame"):
-            longer = f"{show(self.crank, 'length')} is longer than the {named[shortest]}"
-            message = f"{longer}; the crank or the frame must be the shortest link"
-        elif abs(gap) <= rounding:
-            flat = "the linkage folds flat once a turn and may go on either way from there (change point)"
-            message = f"{flat}: {ends} = {pair}"
-        else:
-            message = f"it cannot turn fully: {ends} is more than {pair} (Grashof)"
-        yield Rule("crank", True, message)
+        flat = gap <= 2 * math.ulp(links[longest])
+        numbers = links | {"ends": links[shortest] + links[longest], "pair": sum(links[name] for name in others)}
+        longer = "{crank} is not the shortest link, nor is the frame ({frame}): the crank cannot turn fully"
+        yield Rule("crank", shortest not in ("crank", "frame"), longer)
+        sums = f"{shortest} + {longest}, {{ends:length}}, must be less than {' + '.join(others)}, {{pair:length}}"
+        grashof = f"it cannot turn fully: {sums} (Grashof; where they are equal, it folds flat: a change point)"
+        yield Rule("crank", flat and shortest in ("crank", "frame"), grashof, numbers)
 
     @property
     def turns(self) -> bool:
@@ -231,13 +209,9 @@ class FourBar(Mechanism):
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, coupler and rocker."""
         loop, pivot = self.closed_at(angle), (self.frame, 0.0)
-        joints = {
-            SHAFT: (0.0, 0.0),
-            PIN: on_circle(self.crank, angle.cos, angle.sin),
-            "rocker pin": on_circle(self.rocker, loop.cos, loop.sin, pivot),
-            "pivot": pivot,
-        }
-        return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
+        joints = {"rocker pin": on_circle(self.rocker, loop.cos, loop.sin, pivot), "pivot": pivot}
+        links = (PIN, "rocker pin"), ("rocker pin", "pivot")
+        return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("pivot",))
 
     lacks: ClassVar[tuple[tuple[str, str], ...]] = (
         ("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),

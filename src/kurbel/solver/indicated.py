@@ -66,10 +66,10 @@ class Indicated(Results):
         if not self._traces:
             return found
 
-        exchange = [one.exchange_weights for one in self._traces]
-        if exchange[0] is not None:
-            shares = [self._share(one) * one.pressures for one in self._traces]
-            terms = np.concatenate(exchange) * np.concatenate(shares)
+        parts = [(one.exchange_weights, self._share(one) * one.pressures) for one in self._traces]
+        exchange = [weights * pressures for weights, pressures in parts if weights is not None]
+        if exchange:
+            terms = np.concatenate(exchange)
             found["mean_pressure_exchange"] = lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
             found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
         found["p_rise_max"] = max(one.steepest for one in self._traces)

@@ -144,9 +144,7 @@ def _turns_in_pairs(reading: TraceReading) -> str:
     joined = joined_in_pairs(trace.samples).mean(axis=0)
     step = trace.period / (len(joined) - 1)
     then = reading.then(reading.angles[0] - trace.angles[0] + step * np.arange(len(joined)), joined)
-    return (
-        f"its cycles {seen}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; {then}"
-    )
+    return f"its cycles {seen}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; {then}"
 
 
 def _wandering_cycles(reading: TraceReading) -> str:
@@ -159,8 +157,8 @@ def _wandering_cycles(reading: TraceReading) -> str:
         return ""
     off = wandered / (trace.period * (len(each) - 1))
     return (
-        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last: was "
-        "the speed another, or not constant? If the file counts time: a 'recorded_speed' about "
+        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last: "
+        "was the speed another, or not constant? If the file counts time: a 'recorded_speed' about "
         f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'} brings both together"
     )
 
@@ -193,8 +191,8 @@ def _drift(reading: TraceReading) -> str:
     if abs(jump) <= least or abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
         return ""
     return (
-        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write 'drift: linear', or "
-        f"leave the closing sample out if it is another cycle's; {reading.then(pressures=levelled)}"
+        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write 'drift: linear', "
+        f"or leave the closing sample out if it is another cycle's; {reading.then(pressures=levelled)}"
     )
 
 
@@ -246,7 +244,7 @@ def _unit(reading: TraceReading) -> str:
         return least <= peak <= max(most, ambient) and (setting.cycle == 360 or peak > _ENGINE * base)
 
     def away(factor: float) -> float:
-        """Return how far, in logarithms, the peak then is from the usual one, and an absolute level from the ambient."""
+        """Return by how much, in logarithms, the peak then is not the usual one, and a level not the ambient."""
         level = 1.0 if setting.lift else max(reading.low * factor / max(ambient, 1.0), 1e-3)
         peak = (factor * reading.peak + setting.lift) / max(2 * compressed, 1.0)
         return abs(math.log(peak)) + abs(math.log(level))

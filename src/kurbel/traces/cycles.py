@@ -132,7 +132,9 @@ def _put_in_order(recording: Recording) -> None:
         recording.refuse(int(back[0]) + 1, message)
     if len(back):
         i = int(back[0]) + 1
-        recording.refuse(i, f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle")
+        recording.refuse(
+            i, f"{angles[i]:.10g} deg after {angles[i - 1]:.10g} deg; put the points in order of the angle"
+        )
     if not np.ptp(angles):
         recording.refuse(0, "a trace needs samples at two angles or more")
 

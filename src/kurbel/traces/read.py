@@ -221,9 +221,7 @@ def text_of(file: str) -> str:
 
 # what to write instead
 
-_PLAIN = (
-    "; figures are plain numbers, such as 1013.25 or 1.01325e3, without signs between thousands: export them so"
-)
+_PLAIN = "; figures are plain numbers, such as 1013.25 or 1.01325e3, without signs between thousands: export them so"
 _NO_FIGURES = "; is it a file of figures?"
 _TRIED = 200
 """Lines that are examined; no heading is longer."""

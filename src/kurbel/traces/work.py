@@ -1,7 +1,7 @@
 """The indicated work of a trace: weights of its samples in ∮ p dz over the stroke fraction z.
 
-Samples at equal angles: trapezoid of p z′, z′ = dz/dφ exact, which for a periodic pressure converges far faster than the
-straight lines between the samples. Otherwise the integral of those straight lines, by a rule exact to rounding.
+Samples at equal angles: trapezoid of p z′, z′ = dz/dφ exact, which for a periodic pressure converges far faster than
+the straight lines between the samples. Otherwise the integral of those straight lines, by a rule exact to rounding.
 """
 
 from collections.abc import Callable
