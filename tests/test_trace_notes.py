@@ -253,7 +253,7 @@ def drawn_trace(random: np.random.Generator) -> tuple[Trace, Setting]:
     pressures = shapes[random.integers(len(shapes))] * 10 ** random.uniform(-8, 14)
     laps = pressures * (1 + 0.1 * random.standard_normal((int(random.integers(1, 5)), 1)))
     clearance = random.choice([None, 0.07, 1e-6, 1e6])
-    trace = Trace(angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5, column=2)
+    trace = Trace(angles, laps, clearance=clearance, completed=bool(random.random() < 0.5), unit=1e5)
     ambient, gauge = random.choice([0.0, 101325.0]), bool(random.random() < 0.5)
     return trace, Setting(SliderCrank(0.05, 0.2), cycle, bool(random.random() < 0.5), float(ambient), not gauge)
 

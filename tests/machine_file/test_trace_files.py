@@ -298,9 +298,6 @@ def test_what_cannot_be_a_trace_is_named_with_its_line(
             "",
             ["the angle begins anew at 0 deg; the samples from there on come first"],
         ),
-        ("CA [deg],p [kPa]\n" + "\n".join(GOOD), ", skip_rows: 1", ["column 2 has another unit, kPa"]),
-        ("CA [deg],p (bar)\n" + "\n".join(GOOD), ", skip_rows: 1", []),
-        ("angle,p [V]\n" + "\n".join(GOOD), ", skip_rows: 1", []),
     ],
 )
 def test_what_was_tidied_up_is_noted(tmp_path: Path, content: str, keys: str, notes: list[str]) -> None:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -117,15 +117,15 @@ class FourBar(Mechanism):
     rocker: float = field("length", "Length of the rocker", "c", above=0, required=True)
     frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0, required=True)
 
-    name: ClassVar[str] = "four-bar"
-    slides: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *map(_coupler, range(3)), F_COUPLER)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
+    name = "four-bar"
+    slides = False
+    OFFERS = (*SWING_OFFERS, *map(_coupler, range(3)), F_COUPLER)
+    KEY_OFFERS = (
         *SWING_VALUES,
         _transmission("min", "Smallest", 0.0),
         _transmission("max", "Largest", 180.0),
     )
-    far_pin: ClassVar[str] = "rocker_pin"
+    far_pin = "rocker_pin"
 
     def rules(self) -> Iterator[Rule]:
         # among equals the crank comes first
@@ -213,9 +213,7 @@ class FourBar(Mechanism):
         links = (PIN, "rocker pin"), ("rocker pin", "pivot")
         return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("pivot",))
 
-    lacks: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),
-    )
+    lacks = (("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),)
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded.

@@ -1,7 +1,7 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -13,7 +13,6 @@ from kurbel.mechanisms import (
     SWING_VALUES,
     KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
     Turning,
     motion_column,
@@ -103,14 +102,14 @@ class ParallelCrank(Mechanism):
     frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0, required=True)
     coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
 
-    name: ClassVar[str] = "parallel-crank"
-    slides: ClassVar[bool] = False
-    turns: ClassVar[bool] = True
-    stroke: ClassVar[float] = math.tau
-    swing: ClassVar[None] = None
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, *COUPLER_VALUES)
-    notes: ClassVar[tuple[str, ...]] = (
+    name = "parallel-crank"
+    slides = False
+    turns = True
+    stroke = math.tau
+    swing = None
+    OFFERS = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
+    KEY_OFFERS = (*SWING_VALUES, *COUPLER_VALUES)
+    notes = (
         "At 0 and 180 deg cranks and coupler lie in one line: one pair alone passes on no torque there and leaves "
         "the motion undetermined; a second pair of cranks at 90 deg to the first carries it through.",
     )

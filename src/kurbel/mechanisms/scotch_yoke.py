@@ -1,7 +1,5 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
-from typing import ClassVar
-
 import numpy as np
 
 from kurbel.arrays import Array, Number
@@ -10,9 +8,7 @@ from kurbel.declared.record import field, record
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
-    KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
     force_column,
     pin_diameter,
@@ -53,11 +49,11 @@ class ScotchYoke(Mechanism):
     pin_diameter: float | None = pin_diameter()
     pin_length: float | None = pin_length()
 
-    name: ClassVar[str] = "scotch-yoke"
-    known_across: ClassVar[bool] = True
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*BLOCK_OFFERS, _N_PAIR)
+    name = "scotch-yoke"
+    known_across = True
+    OFFERS = (*BLOCK_OFFERS, _N_PAIR)
     # R p. 615: up to 200 kgf/cm²
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
+    KEY_OFFERS = (pin_pressure(bound=200 * 98066.5),)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block in the yoke."""

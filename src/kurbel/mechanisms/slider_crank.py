@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Numb
     return requested_column(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega)
 
 
-ROD_OFFERS = (
+ROD_OFFERS: tuple[Offer, ...] = (
     _book("x", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", formulas.first_order_displacement),
     _book("c", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", formulas.first_order_velocity, omega=1),
     _book("b", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", formulas.first_order_acceleration, 2),
@@ -101,9 +101,9 @@ class SliderCrank(Mechanism):
         absent="0",
     )
 
-    name: ClassVar[str] = "slider-crank"
-    has_rod: ClassVar[bool] = True
-    OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
+    name = "slider-crank"
+    has_rod = True
+    OFFERS = ROD_OFFERS
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:

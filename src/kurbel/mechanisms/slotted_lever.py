@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -15,9 +15,7 @@ from kurbel.mechanisms import (
     PIN,
     SWING_OFFERS,
     SWING_VALUES,
-    KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
     Turning,
     on_circle,
@@ -100,10 +98,10 @@ class SlottedLever(Mechanism):
     pin_diameter: float | None = pin_diameter()
     pin_length: float | None = pin_length()
 
-    name: ClassVar[str] = "slotted-lever"
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *BLOCK_OFFERS)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
-    quick_return: ClassVar[bool] = True
+    name = "slotted-lever"
+    OFFERS = (*SWING_OFFERS, *BLOCK_OFFERS)
+    KEY_OFFERS = (*SWING_VALUES, pin_pressure())
+    quick_return = True
 
     def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)

@@ -5,7 +5,7 @@ slider-crank; the side force N of the rod finds no guide and bends the piston ro
 """
 
 import math
-from typing import Any, ClassVar
+from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -65,12 +65,10 @@ class YokeFrame(SliderCrank):
         absent="no bending of the piston rod",
     )
 
-    name: ClassVar[str] = "yoke-frame"
-    guided: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SliderCrank.OFFERS, *BENDING_OFFERS)
-    notes: ClassVar[tuple[str, ...]] = (
-        "There is no crosshead guide: the side force N bends the piston rod (R p. 614).",
-    )
+    name = "yoke-frame"
+    guided = False
+    OFFERS = (*SliderCrank.OFFERS, *BENDING_OFFERS)
+    notes = ("There is no crosshead guide: the side force N bends the piston rod (R p. 614).",)
 
     def bending_arm(self, angle: CrankAngle) -> Number | None:
         """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.

@@ -15,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indivisible
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Rule
+from kurbel.declared.record import Record, Rule, field, record
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
@@ -37,16 +37,12 @@ def at_equal_steps(angles: Array) -> bool:
     return bool(np.abs(steps - steps.mean()).max() <= _EVEN * steps.mean())
 
 
-@dataclass(frozen=True)
-class KnownLevel:
-    """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
+@record
+class KnownLevel(Record):
+    """Where the level of a trace is known, in degrees and Pa: piezoelectric sensors measure changes only."""
 
-    Piezoelectric sensors measure changes of pressure only. None for both: the ambient, at the dead centre where the
-    compression begins.
-    """
-
-    angle: float | None = None
-    pressure: float | None = None
+    angle: float = field("angle", "Crank angle from the (firing) dead centre", required=True)
+    pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +53,12 @@ class Trace(Indivisible):
     the other, each over these angles; two samples at one angle are a jump. Laps of 360 deg are cycles of two strokes,
     or in pairs of four. angle_zero: the angle, as the trace counts, of the firing or inner dead centre, in degrees.
     Both ends of a cylinder count from the same dead centre, as one encoder on the shaft does; a mirrored trace follows
-    one stroke later. files: where the samples came from, if not from the machine file, in this column; notes: what was
-    tidied up in them; completed: the last sample is the first one again; clearance: smallest volume over that of the
-    stroke, None where it is not known; level: a line over the cycle is taken off so that it closes; against: the file
-    counts its angles against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the
-    figures of the file were multiplied by, and offset: the Pa that were added then.
+    one stroke later. files: where the samples came from, if not from the machine file; notes: what was tidied up in
+    them; completed: the last sample is the first one again; clearance: smallest volume over that of the stroke, None
+    where it is not known; level: a line over the cycle is taken off so that it closes; pegging: where the level is
+    known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
+    against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
+    file were multiplied by.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -73,12 +70,10 @@ class Trace(Indivisible):
     completed: bool = False
     clearance: float | None = None
     level: bool = False
-    pegging: KnownLevel | None = None
+    pegging: KnownLevel | str | None = None
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
-    offset: float = 0.0
-    column: int = 0
 
     def __post_init__(self) -> None:
         alike = self.angles.ndim == 1 and len(self.angles) > 1 and self.samples.shape[1:] == self.angles.shape
@@ -203,9 +198,10 @@ def corrected(trace: Trace, setting: Setting) -> Array:
     if pegging is None:
         return samples
     inner, outer = setting.mechanism.dead_centres()
-    angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
-    if pegging.angle is not None and pegging.pressure is not None:
+    if isinstance(pegging, KnownLevel):
         angle, pressure = inner + pegging.angle, pegging.pressure
+    else:
+        angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
     turned = trace.angles + setting.shift(trace) - angle
     away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
     near = away <= max(_AROUND, float(away.min()))

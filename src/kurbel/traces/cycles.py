@@ -22,14 +22,13 @@ class Samples(NamedTuple):
     """Laps of a trace in order: of one cycle each, or of one turn each if only the machine file decides the cycle.
 
     angles (n,) in degrees, rising over a period; values (m, n) of m laps; notes: what was corrected; completed: the
-    closing sample is a copy of the first, as the file has none; headed: the unit in the heading of the values, or ''.
+    closing sample is a copy of the first, as the file has none.
     """
 
     angles: Array
     values: Array
     notes: tuple[str, ...] = ()
     completed: bool = False
-    headed: str = ""
 
 
 class Recording:
@@ -66,14 +65,13 @@ def samples_of_file(
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
         values = base(table.figures)
     try:
-        found = whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
+        return whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
     except RuleError as error:
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:
             raise
         message = f"{fault.message}; are 'recorded_speed' and 'angle_unit' (s or ms) right?"
         raise RuleError(fault._replace(message=message)) from None
-    return found._replace(headed=table.headed)
 
 
 def whole_cycles(

@@ -39,7 +39,6 @@ _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 """A possible figure: messages show nothing else of a file, since it may be a different file with secrets."""
 _NUMBER = re.compile(r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII)
 _SPLIT_DECIMALS = re.compile(r"^[^#\n]*,[0-9]+,0[0-9][^#\n]*", re.MULTILINE)
-_UNIT = re.compile(r"[\[(]([^\])]+)[\])]")
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
 
@@ -91,15 +90,11 @@ class Layout(NamedTuple):
 
 
 class Table(NamedTuple):
-    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample.
-
-    headed: the unit in the heading of the first of these columns, as in `p [bar]`, or ''.
-    """
+    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample."""
 
     angles: Array
     figures: Array
     line: Callable[[int], str]
-    headed: str = ""
 
 
 def read_table(file: str, layout: Layout) -> Table:
@@ -126,10 +121,7 @@ def read_table(file: str, layout: Layout) -> Table:
         number, _ = next(itertools.islice(_figure_lines(text, layout), index, None))
         return f"line {number}"
 
-    heads = [one for one in text.split("\n", layout.skip_rows)[: layout.skip_rows] if one.strip()]
-    cells = heads[-1].split(layout.between) if heads else []
-    unit = _UNIT.search(cells[layout.columns[0] - 1]) if len(cells) >= layout.columns[0] else None
-    return Table(angles, numbers[:, -len(layout.columns) :].T, line, unit[1].strip() if unit else "")
+    return Table(angles, numbers[:, -len(layout.columns) :].T, line)
 
 
 @lru_cache(maxsize=4)
