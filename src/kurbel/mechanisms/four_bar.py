@@ -65,43 +65,6 @@ class Closure(NamedTuple):
     foot: Number
 
 
-def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle: CrankAngle) -> Closure:
-    """Return the loop of four lengths in m closed at a crank angle, wherever its triangle closes.
-
-    With a, b, c over the frame, the diagonal p from the crank pin to the rocker's pivot has the square
-    w = 1 + a² − 2a cos φ, and
-
-        H² = (b + c + p)(b + c − p)(p + b − c)(p + c − b)/4     twice the area of coupler, rocker and p (Heron)
-        θ′ = [a sin φ E/(2H) + a(a − cos φ)]/w                  E = w + b² − c²: the triangle turns, and p
-        θ″ = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw)             G = b² + c² − w
-
-    Every difference is built from positive terms, so that a linkage that is nearly flat keeps its digits.
-    """
-    a, b, c = crank / frame, coupler / frame, rocker / frame
-    near, far = min(crank, frame), max(crank, frame)
-    flat, near_coupler, near_rocker = (
-        math.fsum(one) / frame
-        for one in (
-            (coupler, rocker, -crank, -frame),  # b + c − a − 1
-            (far, coupler, -near, -rocker),  # |1 − a| + b − c
-            (far, rocker, -near, -coupler),
-        )
-    )
-    span, unlike = (frame - crank) / frame, (coupler - rocker) / frame * (b + c)
-    w = span * span + 2 * a * angle.versine
-    p = sqrt(w)
-    lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
-    drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
-    H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
-    across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
-    sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
-    E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
-    slope = (across * E / (2 * H) + a * (angle.versine - span)) / w
-    triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
-    curvature = across * span * (1 + a) / (w * w) + triangle / (4 * H * w)
-    return Closure(sin, cos, slope, curvature, H, foot)
-
-
 @record
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
@@ -154,8 +117,41 @@ class FourBar(Mechanism):
     has_dead_centres = quick_return
 
     def closed_at(self, angle: CrankAngle) -> Closure:
-        """Return the loop closed at a crank angle."""
-        return closed_loop(self.crank, self.coupler, self.rocker, self.frame, angle)
+        """Return the loop closed at a crank angle.
+
+        With a, b, c over the frame, the diagonal p from the crank pin to the rocker's pivot has the square
+        w = 1 + a² − 2a cos φ, and
+
+            H² = (b + c + p)(b + c − p)(p + b − c)(p + c − b)/4     twice the area of coupler, rocker and p (Heron)
+            θ′ = [a sin φ E/(2H) + a(a − cos φ)]/w                  E = w + b² − c²: the triangle turns, and p
+            θ″ = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw)             G = b² + c² − w
+
+        Every difference is built from positive terms, so that a linkage that is nearly flat keeps its digits.
+        """
+        crank, coupler, rocker, frame = self.crank, self.coupler, self.rocker, self.frame
+        a, b, c = crank / frame, coupler / frame, rocker / frame
+        near, far = min(crank, frame), max(crank, frame)
+        flat, near_coupler, near_rocker = (
+            math.fsum(one) / frame
+            for one in (
+                (coupler, rocker, -crank, -frame),  # b + c − a − 1
+                (far, coupler, -near, -rocker),  # |1 − a| + b − c
+                (far, rocker, -near, -coupler),
+            )
+        )
+        span, unlike = (frame - crank) / frame, (coupler - rocker) / frame * (b + c)
+        w = span * span + 2 * a * angle.versine
+        p = sqrt(w)
+        lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
+        drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
+        H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
+        across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
+        sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
+        E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
+        slope = (across * E / (2 * H) + a * (angle.versine - span)) / w
+        triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
+        curvature = across * span * (1 + a) / (w * w) + triangle / (4 * H * w)
+        return Closure(sin, cos, slope, curvature, H, foot)
 
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return θ in radians; where it turns fully, it runs on with φ."""

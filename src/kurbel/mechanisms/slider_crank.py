@@ -107,17 +107,14 @@ class SliderCrank(Mechanism):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
-        if stroke is None or offset is None or has_refused((stroke, rod, k, offset)):
-            return
-        numbers = {"rod": rod, "offset": offset}
-        if rod is not None:
-            short = np.not_equal(offset, 0) & ((rod - stroke / 2) * (rod + stroke / 2) <= offset * offset)
-            yield Rule("rod", short, "{rod:length} is too short for this stroke and offset", numbers)
-        elif k is not None:
-            square = k * k
-            large = (square - 1) ** 2 < 4 * square * (2 * offset / stroke) ** 2
-            yield Rule("offset", large, "{offset:length} is too large for this stroke and rod_ratio", numbers)
+        rod = given.get("rod") if given.get("rod") is not None else given.get("rod_ratio")
+        known = given.get("stroke"), given.get("offset"), rod
+        if not (any(one is None for one in known) or has_refused(known)):
+            crank = _crank_of_stroke(given)
+            remedy = (
+                "no crank has this stroke with {offset:length} and so short a rod; give a longer one, or less offset"
+            )
+            yield Rule("offset", crank != crank, remedy, given)
 
     def rules(self) -> Iterator[Rule]:
         crank, rod, offset = self.crank, self.rod, abs(self.offset)
@@ -296,14 +293,15 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
 
 def _crank_of_stroke(given: Values) -> Any:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
-    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset", 0.0)
-    length: Any = rod if k is None else k
+    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset") or 0.0
+    length: Any = k if rod is None else rod
     straight = np.equal(offset, 0) | np.isinf(length)
     if np.all(straight):
         return half
     with np.errstate(all="ignore"):
         if k is None:
-            share = np.sqrt(1 - offset * offset / ((rod - half) * (rod + half)))
+            between = np.asarray((rod - half) * (rod + half))
+            share = np.sqrt(1 - offset * offset / np.where(between > 0, between, 0.0))
         else:
             # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
             square = k * k
