@@ -93,10 +93,9 @@ class ClosedCurve:
     def __init__(self, waves: ComplexArray) -> None:
         self.waves, self.numbers = waves, np.arange(len(waves)) - len(waves) // 2
 
-    def of(self, number: int) -> Any:
+    def of(self, number: int) -> ComplexArray:
         """Return the amplitudes of a wave (machines,), 0 of one that there is not."""
-        index = number + len(self.waves) // 2
-        return self.waves[index] if 0 <= index < len(self.waves) else np.zeros(self.waves.shape[1])
+        return np.asarray(self.waves[self.numbers == number].sum(axis=0))
 
     def plus(self, number: int, amplitude: Any) -> ClosedCurve:
         """Return the sum of this curve and one more wave of a number that it has."""

@@ -363,7 +363,7 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> Array:
     begins, ends = begins - turns, ends - turns
     bounds = np.searchsorted(pieces.machine, np.arange(pieces.count + 1)).tolist()
     arcs = [*zip(begins.tolist(), ends.tolist())]
-    return np.array([unreached(arcs[low:high]) for low, high in pairwise(bounds)]).T
+    return np.asarray(np.transpose([unreached(arcs[first:last]) for first, last in pairwise(bounds)]), dtype=float)
 
 
 @lru_cache

@@ -67,8 +67,9 @@ class Chain:
     def reversed(self) -> Chain:
         """Return the same chain read from its other end."""
         ground = {"before": "after", "after": "before"}.get(self.ground, self.ground)
-        inertias, against = self.inertias[::-1], self.mass_damping[::-1]
-        return Chain(inertias, self.stiffnesses[::-1], self.segment_damping[::-1], against, self.loss[::-1], ground)
+        numbers = (self.inertias, self.stiffnesses, self.segment_damping, self.mass_damping, self.loss)
+        inertias, stiffnesses, of_segments, of_masses, loss = (one[::-1] for one in numbers)
+        return Chain(inertias, stiffnesses, of_segments, of_masses, loss, ground)
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
@@ -99,40 +100,20 @@ def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_dampi
     omegas, sides = frequencies.ravel(), torques.reshape(len(torques), -1)
     damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(sides.shape)
     twists, springs = chain.twists, chain.springs(omegas)
-    own = 1j * damping * omegas - np.outer(chain.inertias, omegas**2)
     # a pivot of exactly zero is none: it ends as inf
-    diagonal = own + (twists.T**2) @ springs + np.finfo(float).tiny * 1j
-    beside = (twists[:, :-1] * twists[:, 1:]).T @ springs
-    (angles,) = _eliminated(diagonal, beside, sides)
+    own = 1j * (damping * omegas + np.finfo(float).tiny) - np.outer(chain.inertias, omegas**2)
+    matrices = (twists.T * springs.T[:, None]) @ twists + own.T[:, :, None] * np.eye(len(own))
+
+    def solved(sides: ComplexArray) -> ComplexArray:
+        return np.asarray(np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T)
+
+    angles = solved(sides)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
     left = sides - own * angles - twists.T @ (springs * (twists @ angles))
     phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
     sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
     unsure = np.finfo(float).eps * (sizes * angles + np.abs(sides) * phases)
-    missed, moved = _eliminated(diagonal, beside, left, unsure)
-    return Response((angles + missed).reshape(torques.shape), moved.reshape(torques.shape))
-
-
-def _eliminated(diagonal: ComplexArray, beside: ComplexArray, *sides: ComplexArray) -> ComplexArray:
-    """Return x (q, n, m) with beside_{i−1} x_{i−1} + diagonal_i x_i + beside_i x_{i+1} = each of q sides_i.
-
-    diagonal, sides (n, m), beside (n − 1, m). Of two neighbouring rows the one with the larger pivot goes first.
-    """
-    count, nothing = len(diagonal), np.zeros_like(diagonal[:1])
-    before, after = np.concatenate((nothing, beside)), np.concatenate((beside, nothing))
-    # a row holds the factors of x_i, x_{i+1}, x_{i+2}, and its right sides
-    rows = np.stack((before, diagonal, after, *sides), axis=1).astype(complex)
-    row = np.stack((diagonal[0], after[0], nothing[0], *(one[0] for one in sides)))
-    for i in range(1, count):
-        swap = np.abs(rows[i, 0]) > np.abs(row[0])
-        rows[i - 1], below = np.where(swap, rows[i], row), np.where(swap, row, rows[i])
-        row = below - below[0] / rows[i - 1, 0] * rows[i - 1]
-        row[0], row[1], row[2] = row[1].copy(), row[2].copy(), 0.0
-    rows[-1] = row
-    found = np.zeros((count + 2, len(sides), diagonal.shape[1]), dtype=complex)
-    for i in range(count - 1, -1, -1):
-        found[i] = (rows[i, 3:] - rows[i, 1] * found[i + 1] - rows[i, 2] * found[i + 2]) / rows[i, 0]
-    return np.asarray(found[:-2].swapaxes(0, 1))
+    return Response((angles + solved(left)).reshape(torques.shape), solved(unsure).reshape(torques.shape))
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
