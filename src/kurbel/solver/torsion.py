@@ -14,8 +14,8 @@ angle, with every jump and thus with all orders; else it is the sum of many orde
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -25,17 +25,15 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.machine.turning import MOST_TURNS
-from kurbel.numerics.arithmetic import every, is_whole, unless_cancelled
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
-from kurbel.numerics.pieces import Pieces, refined
-from kurbel.numerics.waves import crests
+from kurbel.numerics.pieces import NOWHERE, Pieces, refined
 from kurbel.quantity import value
 from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.harmonics import HIGHEST, Spectrum, amplitudes, every_order
+from kurbel.solver.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
 
@@ -51,6 +49,8 @@ _ROUNDING = 1e-14
 """Of the largest torque on a mass: an order that is smaller is zero."""
 _MOST_WORK, _FEWEST = 3.75e4, 40
 """Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
+_WAVE = 240.0
+"""Degrees of the shortest wave that are a polynomial of 16 nodes to 1e-13."""
 _LOST = 1e-4
 """By what rounding moves a torque, over the largest one, beyond which its fourth digit is none: tables print four."""
 
@@ -81,13 +81,14 @@ def stress(line: ShaftLine, segment: int) -> float | None:
 
 
 class Excitation(NamedTuple):
-    """The torques on n masses in N m, by orders (k,).
+    """The torques on n masses in N m, by orders (k,), over their common period of `cycle` degrees.
 
     gas, inertia: amplitudes (n, k) of what is independent of the speed, and of the inertia forces at ω_n = omega in
     rad/s; means (n,), with the load on the mass that takes it; load_slope: dL/dω of each mass at ω_n in N m s/rad (n,).
     """
 
     omega: float
+    cycle: float
     orders: Array
     gas: ComplexArray
     inertia: ComplexArray
@@ -129,7 +130,7 @@ def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitat
     omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
     if law:
         slopes[line.load] = law.steepness[0] / omega
-    return Excitation(omega, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
+    return Excitation(omega, effort.cycle, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
 
 
 # forced vibration
@@ -169,19 +170,21 @@ class Vibration:
         return np.asarray(reached[: len(self.ratios)] / self.ratios)
 
     @cached_property
-    def crests(self) -> tuple[Array, Array]:
-        """Largest and smallest torque in the segments less their mean in N m, (segments, s) each."""
-        orders = self.acting.orders
-        # turns in which all of them are whole waves
-        cycle = next(turns for turns in range(1, 2 * MOST_TURNS + 1) if every(is_whole(turns * orders)))
-        high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
-        return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
+    def swings(self) -> tuple[Pieces, Array]:
+        """The torques in the segments less their mean in N m over the turn, (segments, s, nodes, pieces)."""
+        orders, pieces = self.acting.orders, Pieces.between(NOWHERE, 1, self.acting.cycle)
+        parts = math.ceil(2 * pieces.half.max() * orders.max() / _WAVE)
+        pieces = pieces.parted(np.full(len(pieces.half), parts))
+        waves = unit_vector(np.multiply.outer(orders, pieces.degrees))
+        parts = np.concatenate((self.torques.real, -self.torques.imag), axis=2)
+        return pieces, np.tensordot(parts, np.concatenate((waves.real, waves.imag)), 1)
 
     @property
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        high, low = self.crests
-        return np.asarray((high - low) / 2)
+        pieces, torques = self.swings
+        ends = pieces.extremes(torques.reshape(-1, *pieces.degrees.shape))
+        return ((ends.largest - ends.smallest) / 2).reshape(torques.shape[:2])
 
     @property
     def loss(self) -> Array:
@@ -200,21 +203,33 @@ def _mean_inertia(drive: Drive) -> float:
 
 
 class SegmentTorque(NamedTuple):
-    """The torque in one segment of the shaft line at the working speed in N m, and the stress in Pa, None if not known.
+    """The torque in one segment of the shaft line at the working speed in N m.
 
-    M_vibratory, tau_vibratory: half of what they swing; over: the torque at crank angles (n,) in degrees; factor: the
-    stress in Pa per N m.
+    swing: samples of what swings about the mean, (nodes, pieces); factor: the stress in Pa per N m, None if not known.
     """
 
     name: str
     M_shaft_mean: float
     M_shaft_max: float
     M_shaft_min: float
-    M_vibratory: float
-    tau_mean: float | None
-    tau_vibratory: float | None
-    over: Callable[[Array], Array]
+    pieces: Pieces
+    swing: Array
     factor: float | None
+
+    @property
+    def M_vibratory(self) -> float:
+        """Half of what it swings."""
+        return (self.M_shaft_max - self.M_shaft_min) / 2
+
+    @property
+    def tau_mean(self) -> float | None:
+        """The stress of the mean torque in Pa."""
+        return None if self.factor is None else self.factor * self.M_shaft_mean
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """The stress of half of what the torque swings in Pa."""
+        return None if self.factor is None else self.factor * self.M_vibratory
 
     def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
@@ -229,7 +244,7 @@ class SegmentState(AtAngles):
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.segment.over(one.phi) if one.segment else None,
+        lambda one: one.torque(),
     )
     tau = value(
         "τ",
@@ -240,6 +255,13 @@ class SegmentState(AtAngles):
 
     def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
         self.segment, self.phi = segment, phi
+
+    def torque(self) -> Array | None:
+        """Return the torque in N m (n,)."""
+        if self.segment is None:
+            return None
+        of_first = np.zeros(len(self.phi), dtype=np.intp)
+        return self.segment.M_shaft_mean + self.segment.pieces.at(self.segment.swing, of_first, self.phi)
 
 
 # the results
@@ -305,7 +327,7 @@ class ShaftVibration(Results):
         "τ_a",
         "stress",
         "Largest vibratory stress amplitude of any shaft segment",
-        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.factor is not None), default=None),
+        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.tau_vibratory is not None), default=None),
     )
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
@@ -400,7 +422,7 @@ class ShaftVibration(Results):
     def steady(self) -> tuple[Pieces, Array] | None:
         """The motion at the working speed with all orders: torques in the segments less their means, in N m.
 
-        (segments, nodes, pieces), as chains of one shaft have them. None where certain orders are requested, where a
+        (segments, nodes, pieces). None where certain orders are requested, where a
         loss factor is given, and where no motion is found, or none that is worth its time.
         """
         # the springs of a chain between two fixed ends are more unknowns than equations
@@ -413,7 +435,9 @@ class ShaftVibration(Results):
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
         found = periodic(equation, equation.pieces)
-        return None if found.failed[0] else (found.pieces, equation.torques(found.samples, found.pieces))
+        if found.failed[0]:
+            return None
+        return found.pieces, equation.torques(found.samples, found.pieces) / self.vibration.ratios[:, None, None]
 
     @cached_property
     def _summed(self) -> Vibration | None:
@@ -445,27 +469,14 @@ class ShaftVibration(Results):
         """The torque in every segment at the working speed; none where no forced vibration can be computed."""
         if self.vibration is None:
             return ()
-        means = self.vibration.means.tolist()
         if self._summed:
-            orders, (high, low) = self._summed.acting.orders, (one[:, 0] for one in self._summed.crests)
-            waves = [Spectrum(mean, orders, one).at for mean, one in zip(means, self._summed.torques[:, 0])]
+            pieces, torques = self._summed.swings[0], self._summed.swings[1][:, 0]
         else:
             assert self.steady
-            pieces, torques = self.steady[0], self.steady[1] / self.vibration.ratios[:, None, None]
-            waves = [partial(_torque_at, pieces, mean, torque) for mean, torque in zip(means, torques)]
-            ends = pieces.extremes(torques)
-            high, low = ends.largest[:, 0], ends.smallest[:, 0]
-
-        found = []
-        for segment, (mean, up, down, wave) in enumerate(zip(means, high.tolist(), low.tolist(), waves)):
-            factor, top, bottom = stress(self.line, segment), mean + up, mean + down
-            swing = (top - bottom) / 2
-            tau_mean, tau = (None, None) if factor is None else (factor * mean, factor * swing)
-            name = self.piece_name(segment)
-            found.append(SegmentTorque(name, mean, top, bottom, swing, tau_mean, tau, wave, factor))
+            pieces, torques = self.steady
+        ends, found = pieces.extremes(torques), []
+        rows = zip(self.vibration.means.tolist(), ends.largest[:, 0].tolist(), ends.smallest[:, 0].tolist(), torques)
+        for segment, (mean, high, low, swing) in enumerate(rows):
+            factor = stress(self.line, segment)
+            found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
         return tuple(found)
-
-
-def _torque_at(pieces: Pieces, mean: float, torque: Array, degrees: Array) -> Array:
-    """Return a mean and samples of what swings about it, together, at crank angles (n,) in degrees."""
-    return mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)
