@@ -175,9 +175,10 @@ class Vibration:
         orders, pieces = self.acting.orders, Pieces.between(NOWHERE, 1, self.acting.cycle)
         parts = math.ceil(2 * pieces.half.max() * orders.max() / _WAVE)
         pieces = pieces.parted(np.full(len(pieces.half), parts))
-        waves = unit_vector(np.multiply.outer(orders, pieces.degrees))
-        parts = np.concatenate((self.torques.real, -self.torques.imag), axis=2)
-        return pieces, np.tensordot(parts, np.concatenate((waves.real, waves.imag)), 1)
+        # at a node the waves are those at the beginning of its piece times those of a piece from there on
+        inside = unit_vector(np.multiply.outer(pieces.half[0] * (1 + pieces.rule.nodes), orders))
+        begin = unit_vector(np.multiply.outer(orders, pieces.low))
+        return pieces, ((self.torques[:, :, None] * inside) @ begin).real
 
     @property
     def vibratory(self) -> Array:
