@@ -95,7 +95,7 @@ class ClosedCurve:
 
     def of(self, number: int) -> ComplexArray:
         """Return the amplitudes of a wave (machines,), 0 of one that there is not."""
-        return np.asarray(self.waves[self.numbers == number].sum(axis=0))
+        return self.waves[self.numbers == number].sum(axis=0)
 
     def plus(self, number: int, amplitude: Any) -> ClosedCurve:
         """Return the sum of this curve and one more wave of a number that it has."""
@@ -124,7 +124,7 @@ class ClosedCurve:
         count = 1 << math.ceil(math.log2(max(_PER_WAVE * shortest, 2 * len(self.waves))))
         spectrum = np.zeros((count, self.waves.shape[1]), complex)
         spectrum[self.numbers] = self.waves
-        return np.asarray(np.fft.ifft(spectrum, axis=0) * count)
+        return np.fft.ifft(spectrum, axis=0) * count
 
     def farthest(self) -> tuple[Array, Array]:
         """Return the largest distances from 0, and the first angles in degrees that have them, each (machines,)."""

@@ -81,7 +81,7 @@ def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
         waves = unless_cancelled(waves, least, 1.0)
         last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
         if last <= samples // 4:
-            return np.asarray(waves[:last])
+            return waves[:last]
         samples *= 4
     raise UsageError(
         f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
@@ -154,7 +154,7 @@ class Unbalanced:
 
 def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
     terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
-    return ClosedCurve(np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0))))
+    return ClosedCurve(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
 def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
@@ -163,7 +163,7 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     for number, wave in zip(curve.numbers.tolist(), curve.waves[:, 0]):
         if wave:
             found += wave * unit_vector(number * degrees)
-    return np.asarray(unless_cancelled(found, np.abs(curve.waves).sum()))
+    return unless_cancelled(found, np.abs(curve.waves).sum())
 
 
 # over the crank angle

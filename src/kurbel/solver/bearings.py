@@ -18,7 +18,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -26,9 +26,8 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.errors import UsageError
-from kurbel.machine import Cylinder, Machine
+from kurbel.machine import Machine
 from kurbel.machine.batch import taken
-from kurbel.machine.cylinder import work_alike
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
@@ -61,25 +60,17 @@ Frames = dict[str, ComplexArray]
 """A load in N in each of its frames."""
 
 
-class Follower(NamedTuple):
-    """A cylinder at the angles φ of crank 1: its own crank is at φ − late, in degrees.
+def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
+    """Return the state of a cylinder at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
+    late = position(forces)
+    return State.at(forces.drive, degrees - late, within - late)
 
-    forces: of the first of the cylinders that work alike.
-    """
 
-    cylinder: Cylinder
-    forces: CylinderForces
-    late: Number
-
-    def at(self, degrees: Array, within: Array) -> State:
-        """Return the state at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
-        return State.at(self.forces.drive, degrees - self.late, within - self.late)
-
-    def carried(self, pieces: Pieces, *values: Any) -> ComplexArray:
-        """Return quantities sampled on the pieces of the cylinder at the nodes of common ones, (q, nodes, pieces)."""
-        source = self.forces.pieces
-        parts = pieces.carried(_parts(values, source.degrees.shape), source, self.late)
-        return parts[::2] + 1j * parts[1::2]
+def carried(pieces: Pieces, forces: CylinderForces, *values: Any) -> ComplexArray:
+    """Return quantities sampled on the pieces of a cylinder at the nodes of common ones, (q, nodes, pieces)."""
+    source = forces.pieces
+    parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
+    return parts[::2] + 1j * parts[1::2]
 
 
 class BearingColumns(AtAngles):
@@ -136,13 +127,13 @@ class Bearing(Results):
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value("A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work())
 
-    def __init__(self, name: str, followed: Sequence[Follower], size: Size, surfaces: tuple[str, str]) -> None:
+    def __init__(self, name: str, followed: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]) -> None:
         self.name, self.followed, self.size = name, tuple(followed), size
         self.journal, self.shell = surfaces
-        drive = followed[0].forces.drive
+        drive = followed[0].drive
         self.machine, self.count, self.omega = drive.machine, drive.count, drive.omega
         cycle = 360.0 * self.machine.revolutions
-        self._common = common([(one.forces.pieces, one.late) for one in followed], cycle)
+        self._common = common([(one.pieces, position(one)) for one in followed], cycle)
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> Frames:
@@ -208,9 +199,9 @@ class RodPin(Bearing):
 
     of_rod = True
 
-    def __init__(self, name: str, own: Follower, size: Size, pin: str) -> None:
+    def __init__(self, name: str, own: CylinderForces, size: Size, pin: str) -> None:
         super().__init__(name, (own,), size, ("throw" if pin == "crank_pin" else "engine", "rod"))
-        self._own, self._pin, self._bank = own, pin, unit_vector(own.cylinder.bank_angle)
+        self._own, self._pin, self._bank = own, pin, unit_vector(own.drive.cylinder.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
         """Return the load; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
@@ -226,27 +217,25 @@ class RodPin(Bearing):
         return {**found, "engine": line * bank, "rod": line * (cos_psi + 1j * sin_psi)}
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        return self._seen(self._own.at(degrees, within), self._bank)
+        return self._seen(state_at(self._own, degrees, within), self._bank)
 
     def _samples(self) -> Sequence[ComplexArray]:
-        forces = self._own.forces
-        frames = self._seen(forces.samples, forces.pieces.of(self._bank))
-        return [*self._own.carried(self._common, frames[self.journal], frames[self.shell])]
+        frames = self._seen(self._own.samples, self._own.pieces.of(self._bank))
+        return [*carried(self._common, self._own, frames[self.journal], frames[self.shell])]
 
     def turning(self) -> tuple[Extreme, Number]:
         """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
-        state, pieces = self._own.forces.samples, self._common
+        state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = self._own.carried(pieces, 1 + slope if self._pin == "crank_pin" else slope).real
+        rate = carried(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
         fastest = pieces.extremes(rate).each(self._result)[0].peak
         return fastest, self._result(pieces.mean(np.abs(rate[0])))
 
     def friction_work(self) -> Number | None:
         """As the forces of the cylinder have it; see `Bearing`."""
-        forces = self._own.forces
-        work = forces.friction_works.get(self._pin)
-        return None if work is None else work * (self.machine.revolutions // forces.drive.revolutions)
+        work = self._own.friction_works.get(self._pin)
+        return None if work is None else work * (self.machine.revolutions // self._own.drive.revolutions)
 
 
 class MainBearing(Bearing):
@@ -257,7 +246,9 @@ class MainBearing(Bearing):
 
     contact = 0.0
 
-    def __init__(self, name: str, number: int, line: SupportedShaft, every: Sequence[Follower], size: Size) -> None:
+    def __init__(
+        self, name: str, number: int, line: SupportedShaft, every: Sequence[CylinderForces], size: Size
+    ) -> None:
         throws = [throw for throw in line.throws if number in (throw.A, throw.B)]
         self._members = {index: every[index] for throw in throws for index in throw.cylinders}
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
@@ -279,7 +270,7 @@ class MainBearing(Bearing):
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        pins = {number: _pin_load(own.at(degrees, within)) for number, own in self._members.items()}
+        pins = {number: _pin_load(state_at(own, degrees, within)) for number, own in self._members.items()}
         throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
@@ -287,8 +278,8 @@ class MainBearing(Bearing):
         """Return the force in N on the common pieces; rubbed: with the friction of the pins."""
         pieces, pins = self._common, {}
         for number, own in self._members.items():
-            state = own.forces.samples if rubbed else own.forces.samples.without_pin_friction
-            (pins[number],) = own.carried(pieces, _pin_load(state))
+            state = own.samples if rubbed else own.samples.without_pin_friction
+            (pins[number],) = carried(pieces, own, _pin_load(state))
         line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
         return self._force(line, pins, pieces.degrees)
 
@@ -298,12 +289,12 @@ class MainBearing(Bearing):
 
     def friction_work(self) -> Number | None:
         """f |F| d/2 dφ, of the force without the friction of the pins; see `Bearing`."""
-        given = [one.cylinder.friction for one in self.followed]
+        given = [one.drive.cylinder.friction for one in self.followed]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size[0] is None:
             return None
         pieces, load, _ = with_magnitude(self._common, [self._sampled(rubbed=False)])
-        return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2  # type: ignore[no-any-return]
+        return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
 def _pin_load(state: State) -> Any:
@@ -363,7 +354,7 @@ def unloaded(pieces: Pieces, load: ComplexArray, contact: float) -> Array:
     begins, ends = begins - turns, ends - turns
     bounds = np.searchsorted(pieces.machine, np.arange(pieces.count + 1)).tolist()
     arcs = [*zip(begins.tolist(), ends.tolist())]
-    return np.asarray(np.transpose([unreached(arcs[first:last]) for first, last in pairwise(bounds)]), dtype=float)
+    return np.transpose([unreached(arcs[first:last]) for first, last in pairwise(bounds)])
 
 
 @lru_cache
@@ -423,17 +414,14 @@ class ShaftBearings:
     @cached_property
     def parts(self) -> tuple[Bearing, ...]:
         """Crank pin and crosshead pin of every cylinder, then the main bearings along the shaft."""
-        every = []
-        for forces in self._cylinders:
-            own = forces.drive.cylinder
-            alike = next(one for one in self._cylinders if work_alike(one.drive.cylinder, own))
-            every.append(Follower(own, alike, position(forces)))
-        pins = [pin for number, one in enumerate(every) if _loads_pins(one.forces) for pin in self._pins(number, one)]
-        return (*pins, *self._main_bearings(every))
+        pins = (
+            pin for number, one in enumerate(self._cylinders) if _loads_pins(one) for pin in self._pins(number, one)
+        )
+        return (*pins, *self._main_bearings())
 
-    def _pins(self, number: int, own: Follower) -> Iterator[RodPin]:
-        friction, shaft = own.cylinder.friction, self.machine.crankshaft
-        of = f" of {own.cylinder.name}" if len(self._cylinders) > 1 else ""
+    def _pins(self, number: int, own: CylinderForces) -> Iterator[RodPin]:
+        friction, shaft = own.drive.cylinder.friction, self.machine.crankshaft
+        of = f" of {own.drive.name}" if len(self._cylinders) > 1 else ""
         pin: Size = friction.crank_pin_diameter if friction else None, None
         if shaft:  # rods on one pin have equal parts of its length
             rods = len(self.line.throw_of(number).cylinders) if self.line else 1
@@ -442,14 +430,14 @@ class ShaftBearings:
         crosshead = (friction.crosshead_pin_diameter, friction.crosshead_pin_length) if friction else (None, None)
         yield RodPin(f"crosshead pin{of}", own, crosshead, "crosshead_pin")
 
-    def _main_bearings(self, every: Sequence[Follower]) -> Iterator[MainBearing]:
+    def _main_bearings(self) -> Iterator[MainBearing]:
         if self.line is None:
             return
-        shaft, frictions = self.line.shaft, [one.cylinder.friction for one in every]
+        shaft, frictions = self.line.shaft, [one.friction for one in self.machine.cylinders]
         diameters = (shaft.journal_diameter, *(one.journal_diameter for one in frictions if one))
         size = next((one for one in diameters if one is not None), None), shaft.journal_length
         for number, name in enumerate("AB" if self.line.bearings == 2 else range(1, self.line.bearings + 1)):
-            yield MainBearing(f"bearing {name}", number, self.line, every, size)
+            yield MainBearing(f"bearing {name}", number, self.line, self._cylinders, size)
 
 
 def _loads_pins(forces: CylinderForces) -> bool:

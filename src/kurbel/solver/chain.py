@@ -57,7 +57,7 @@ class Chain:
         """The matrix (segments, n) that turns angles of the masses into twists, that before less that behind."""
         first, last = self.held
         held = np.eye(len(self.inertias) + first + last)
-        return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
+        return (held[:-1] - held[1:])[:, int(first) : len(held) - last]
 
     @property
     def held(self) -> tuple[bool, bool]:
@@ -74,7 +74,7 @@ class Chain:
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
         still = (self.stiffnesses * (1 + 1j * self.loss)).reshape(-1, *(1,) * frequencies.ndim)
-        return np.asarray(still + 1j * np.multiply.outer(self.segment_damping, frequencies))
+        return still + 1j * np.multiply.outer(self.segment_damping, frequencies)
 
 
 # response to torques of one frequency
@@ -105,7 +105,7 @@ def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_dampi
     matrices = (twists.T * springs.T[:, None]) @ twists + own.T[:, :, None] * np.eye(len(own))
 
     def solved(sides: ComplexArray) -> ComplexArray:
-        return np.asarray(np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T)
+        return np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T
 
     angles = solved(sides)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
@@ -118,7 +118,7 @@ def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_dampi
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
     """Return the torques (segments, …) in N m in springs and dampers of the segments; angles (n, …): see `response`."""
-    return np.asarray(chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1))
+    return chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1)
 
 
 # natural vibrations
@@ -189,7 +189,7 @@ class Modes:
         """Return how many elastic modes are below each ω (m,)."""
         stiffnesses, behind = self._line.stiffnesses[int(self._line.held[0]) :], _behind(self._line, omegas)
         negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
-        return np.asarray(negative if self.chain.ground else negative + (behind[-1] > 0) - 1)
+        return negative if self.chain.ground else negative + (behind[-1] > 0) - 1
 
     def holzer(self, mode: int) -> Holzer:
         """Return the table of a mode, counted from 0.

@@ -311,7 +311,7 @@ class CrankshaftStrength(Results):
         def magnitudes(some: Pieces, found: Array) -> Array:
             D, T, own = found
             body = self._body(D + 1j * T, CrankAngle.at_nodes(some), some)
-            return np.asarray(np.abs(np.stack((body.pin, body.A, body.B, D + own + 1j * T))))
+            return np.abs(np.stack((body.pin, body.A, body.B, D + own + 1j * T)))
 
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
         return fine, found, np.asarray(loads)

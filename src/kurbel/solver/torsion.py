@@ -167,7 +167,7 @@ class Vibration:
             # of two fixed ends the twists add up to nothing, of one the torque behind the last mass is nothing
             soft = 1 / self.chain.stiffnesses
             reached -= (reached @ soft) / soft.sum() if self.chain.held[1] else reached[-1]
-        return np.asarray(reached[: len(self.ratios)] / self.ratios)
+        return reached[: len(self.ratios)] / self.ratios
 
     @cached_property
     def swings(self) -> tuple[Pieces, Array]:
@@ -194,7 +194,7 @@ class Vibration:
         twists = np.abs(np.tensordot(chain.twists, self.angles, 1)) ** 2
         of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
         of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
-        return np.asarray((of_masses + of_segments) / 2)
+        return (of_masses + of_segments) / 2
 
 
 def _mean_inertia(drive: Drive) -> float:
