@@ -146,11 +146,6 @@ class Unbalanced:
         orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
         self.orders, self.next_order = orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None
 
-    def at_most(self, vector: ClosedCurve) -> float:
-        """Return an upper bound, over ω², of the force or moment of the orders that are not listed."""
-        higher = np.abs(vector.numbers)[:, None] > self.orders[-1]
-        return float(ClosedCurve(vector.waves * higher).farthest()[0][0])
-
 
 def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
     terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]

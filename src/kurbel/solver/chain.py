@@ -80,19 +80,10 @@ class Chain:
 # response to torques of one frequency
 
 
-class Response(NamedTuple):
-    """The complex amplitudes of the masses in rad, (n, …), and about how far rounding moves them.
-
-    A θ = M is solved for a chain and torques whose last digits are unsure: A δθ = δM − δA θ, all of it taken in phase
-    with the angles, as it is where they meet a natural vibration.
-    """
-
-    angles: ComplexArray
-    moved: ComplexArray
-
-
-def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0) -> Response:
-    """Return the vibration under torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
+def response(
+    chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0
+) -> ComplexArray:
+    """Return the complex amplitudes in rad (n, …) under torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
 
     (K (1 + iη) + iΩ C − Ω² J) θ = M; load_damping: of the masses in addition to their own, (n, …) in N m s/rad. A
     resonance that nothing damps has no answer: it is not finite.
@@ -110,10 +101,7 @@ def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_dampi
     angles = solved(sides)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
     left = sides - own * angles - twists.T @ (springs * (twists @ angles))
-    phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
-    sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
-    unsure = np.finfo(float).eps * (sizes * angles + np.abs(sides) * phases)
-    return Response((angles + solved(left)).reshape(torques.shape), solved(unsure).reshape(torques.shape))
+    return (angles + solved(left)).reshape(torques.shape)
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:

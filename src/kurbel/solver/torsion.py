@@ -51,8 +51,8 @@ _MOST_WORK, _FEWEST = 3.75e4, 40
 """Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
 _WAVE = 240.0
 """Degrees of the shortest wave that are a polynomial of 16 nodes to 1e-13."""
-_LOST = 1e-4
-"""By what rounding moves a torque, over the largest one, beyond which its fourth digit is none: tables print four."""
+_ENDLESS = 1e9
+"""Torques over those that drive, above which a resonance counts as undamped, since only rounding limits it."""
 
 
 def shaft_line_of(machine: Machine) -> ShaftLine:
@@ -150,13 +150,12 @@ class Vibration:
         self._frequencies = np.multiply.outer(omegas, acting.orders)
         # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
         self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
-        self.angles, moved = response(chain, self._frequencies, self.driving, self._load_damping)
+        self.angles = response(chain, self._frequencies, self.driving, self._load_damping)
         self.ratios = np.array([piece.ratio for piece in line.pieces])
-        self.torques, unsure = (
-            passing(chain, self._frequencies, angles) / self.ratios[:, None, None] for angles in (self.angles, moved)
-        )
-        largest, unsure = (np.abs(one).max(axis=(0, 2)) for one in (self.torques, unsure))
-        self.endless: Flags = np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest)
+        passed = passing(chain, self._frequencies, self.angles)
+        self.torques = passed / self.ratios[:, None, None]
+        largest, driving = (np.abs(one).max(axis=(0, 2)) for one in (passed, self.driving))
+        self.endless: Flags = np.isfinite(driving) & ~(largest <= _ENDLESS * driving)
 
     @cached_property
     def means(self) -> Array:
