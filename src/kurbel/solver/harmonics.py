@@ -72,7 +72,8 @@ def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
                 waves = shares * unit_vector(-order * degrees)
             before = order
             found[:, index, part] = waves.sum(axis=1)
-    return np.asarray(np.add.reduceat(found, pieces.first, axis=2), dtype=complex) * (2 / pieces.cycle)
+    whole = np.add.reduceat(found, pieces.first, axis=2)
+    return np.asarray(whole * (2 / pieces.cycle), dtype=complex)
 
 
 class Spectrum(NamedTuple):
