@@ -185,21 +185,18 @@ class Modes:
         From the mass at which the tables from both ends meet best it is computed outward both ways, where no error
         grows.
         """
-        omega = self.omegas[mode : mode + 1]
-        inertias, first = self._line.inertias, int(self._line.held[0])
-        stiffnesses = self._line.stiffnesses[first:]  # behind the masses
+        omega, first = self.omegas[mode : mode + 1], int(self._line.held[0])
         behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
-        own = omega[0] ** 2 * inertias
+        own = omega[0] ** 2 * self._line.inertias
         gap = behind + before - own
-        meet, count = int(np.argmin(np.abs(gap) / inertias)), len(inertias)
-        angles = np.ones(count)
-        for i in range(meet - 1, -1, -1):
-            angles[i] = angles[i + 1] / _not_zero(1 - behind[i] / stiffnesses[i])
-        for i in range(meet + 1, count):
-            angles[i] = angles[i - 1] / _not_zero(1 - before[i] / stiffnesses[i - 1])
+        meet = int(np.argmin(np.abs(gap) / self._line.inertias))
+        between = self._line.stiffnesses[first : first + len(own) - 1]
+        up = 1 / _not_zero(1 - behind[:meet] / between[:meet])
+        down = 1 / _not_zero(1 - before[meet + 1 :] / between[meet:])
+        angles = np.concatenate((np.cumprod(up[::-1])[::-1], [1.0], np.cumprod(down)))
         torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
         if self.chain.ground:
-            torques = np.append(torques, stiffnesses[-1] * angles[-1])
+            torques = np.append(torques, self._line.stiffnesses[-1] * angles[-1])
         if first:
             torques = np.append(-self._line.stiffnesses[0] * angles[0], torques)
         if self.chain.ground == "before":
@@ -261,12 +258,10 @@ class ChainEquation:
         parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
         self.pieces = pieces.parted(parts.astype(int))
 
-        def by_machine(numbers: Array) -> Array:
-            return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
-
-        self._twists, inertias = chain.twists, by_machine(chain.inertias)
-        self._damping, self._against = by_machine(chain.segment_damping), by_machine(chain.mass_damping)
-        self._speeds, self._springs = 1 / (inertias * omega), by_machine(chain.stiffnesses) / (omega * self._order)
+        numbers = (chain.inertias, chain.stiffnesses, chain.segment_damping, chain.mass_damping)
+        inertias, stiffnesses, self._damping, self._against = (one.reshape(len(one), -1) for one in numbers)
+        self._twists, self._speeds = chain.twists, 1 / (inertias * omega)
+        self._springs = stiffnesses / (omega * self._order)
         self.unknowns = sum(chain.twists.shape)
         self.bounded = len(chain.stiffnesses) + loaded if law else None
         self._height = inertias[loaded] * omega**2

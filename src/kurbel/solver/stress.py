@@ -195,7 +195,7 @@ class CrankshaftStrength(Results):
     """What `kurbel stress` computes: statics and stresses of the only crank throw of a machine.
 
     Raises UsageError where the machine has no crankshaft, more than one cylinder, or no pressure that loads it. Of many
-    machines the key values are arrays (machines,), nan where the flywheel is not on the same side of B as the first.
+    machines the key values are arrays (machines,).
     """
 
     command = "stress"
@@ -207,21 +207,36 @@ class CrankshaftStrength(Results):
     )
     C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
     _stresses = Heading("Stresses")
-    _dead_centre = "Combined stress of * in the dead centre under full force (Bach)"
-    sigma_dc = values_for(PARTS, "sigma_*_dc", "σ_*,dc", "stress", _dead_centre, group=str)
-    _bach, _mises = (
-        "Largest combined stress of * over the cycle (Bach)",
-        "Largest equivalent stress of * over the cycle",
+    sigma_dc = values_for(
+        PARTS,
+        "sigma_*_dc",
+        "σ_*,dc",
+        "stress",
+        "Combined stress of * in the dead centre under full force (Bach)",
+        group=str,
     )
-    sigma_max = values_for(PARTS, "sigma_*_max", "σ_*,max", "stress", _bach, group=str)
-    mises_max = values_for(PARTS, "mises_*_max", "σ_v,*,max", "stress", f"{_mises} (von Mises)", group=str)
-    _safety = "Smallest safety of *: k_b over its combined stress, dead centre and cycle"
-    safety = values_for(PARTS, "safety_*_min", "S_*", "ratio", _safety, group=str)
+    sigma_max = values_for(
+        PARTS, "sigma_*_max", "σ_*,max", "stress", "Largest combined stress of * over the cycle (Bach)", group=str
+    )
+    mises_max = values_for(
+        PARTS,
+        "mises_*_max",
+        "σ_v,*,max",
+        "stress",
+        "Largest equivalent stress of * over the cycle (von Mises)",
+        group=str,
+    )
+    safety = values_for(
+        PARTS,
+        "safety_*_min",
+        "S_*",
+        "ratio",
+        "Smallest safety of *: k_b over its combined stress, dead centre and cycle",
+        group=str,
+    )
     _bearings = Heading("Bearings")
-    A_max = value("A_max", "force", "Largest force on bearing A", lambda one: one.pressures["A_max"])
-    B_max = value(
-        "B_max", "force", "Largest force on bearing B, next to the flywheel", lambda one: one.pressures["B_max"]
-    )
+    A_max = value("A_max", "force", "Largest force on bearing A")
+    B_max = value("B_max", "force", "Largest force on bearing B, next to the flywheel")
     p_pin_dc = value("p_pin,dc", "pressure", "Pressure on the crank pin under full force, P/(d l)")
     pressure_max = values_for(
         _BEARINGS,
@@ -229,7 +244,6 @@ class CrankshaftStrength(Results):
         "p_*,max",
         "pressure",
         "Largest pressure on * over the cycle, force over d l",
-        of=lambda one, part: one.pressures.get(f"p_{part}_max"),
         group=str,
     )
     pressure_mean = values_for(
@@ -238,7 +252,6 @@ class CrankshaftStrength(Results):
         "p_*,m",
         "pressure",
         "Mean pressure on * over the time of a cycle",
-        of=lambda one, part: one.pressures.get(f"p_{part}_mean"),
         after="p_*_max",
         group=str,
     )
@@ -248,7 +261,6 @@ class CrankshaftStrength(Results):
         "k_*",
         "pressure_velocity",
         "Mean pressure times surface speed, p_m v, of *",
-        of=lambda one, part: one.pressures.get(f"k_{part}"),
         after="p_*_mean",
         group=str,
     )
@@ -333,12 +345,11 @@ class CrankshaftStrength(Results):
 
     @cached_property
     def answers(self) -> dict[str, Any]:
-        """The key values of the stresses by id, of the parts that are examined; the safety where k_b is given."""
+        """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
         shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
-        found: dict[str, Any] = {
-            "C_rod": pull if some(pull != 0) else None,
-            "p_pin_dc": abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length,  # G: P_max/(d_z l_z)
-        }
+        found = self._of_loads()
+        found["C_rod"] = pull if some(pull != 0) else None
+        found["p_pin_dc"] = abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length  # G: P_max/(d_z l_z)
         at = self.at_dead_centre
         rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
         for part in dict.fromkeys(place.part for place in at):
@@ -353,8 +364,7 @@ class CrankshaftStrength(Results):
                 found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return found
 
-    @cached_property
-    def pressures(self) -> dict[str, Any]:
+    def _of_loads(self) -> dict[str, Any]:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
