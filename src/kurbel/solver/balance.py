@@ -207,18 +207,12 @@ class BalanceColumns(AtAngles):
     )
 
     def __init__(self, balance: MachineBalance, phi: Array, within: Array) -> None:
-        self.phi = phi
-        self._balance, self._within = balance, within
-        self._vectors: dict[str, ComplexArray | None] = {}
+        self.phi, self._balance, self._within = phi, balance, within
 
     def vector(self, name: str) -> ComplexArray | None:
         """Return a vector (n,): `force`, `moment`, `book force`, `book moment`; None where it does not exist."""
-        if name not in self._vectors:
-            curve, omega, found = self._balance.curve(name), self._balance.omega, None
-            if curve is not None and omega is not None:
-                found = vector_at(curve, self.phi) * (omega * omega)
-            self._vectors[name] = found
-        return self._vectors[name]
+        curve, omega = self._balance.curve(name), self._balance.omega
+        return None if curve is None or omega is None else vector_at(curve, self.phi) * (omega * omega)
 
     def rolling(self) -> Array | None:
         """Return the rolling moment (n,) in N m; None without a speed."""

@@ -83,10 +83,6 @@ class Spectrum(NamedTuple):
     orders: Array
     amplitudes: ComplexArray
 
-    def at(self, degrees: Array) -> Array:
-        """Return the sum of the mean and these orders in N m at crank angles (m,) in degrees, of one machine."""
-        return self.mean + (unit_vector(np.multiply.outer(degrees, self.orders)) @ self.amplitudes).real
-
 
 class Orders(NamedTuple):
     """The orders ν (k,) of a torque in two parts: independent of the speed, and of the inertia forces at ω_n.
