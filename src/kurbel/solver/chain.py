@@ -11,6 +11,7 @@ from there to the first mass, or from the last mass there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -64,12 +65,11 @@ class Chain:
         """Whether the end before the first mass is fixed, and that behind the last one."""
         return self.ground in ("before", "both"), self.ground in ("after", "both")
 
-    def reversed(self) -> Chain:
-        """Return the same chain read from its other end."""
-        ground = {"before": "after", "after": "before"}.get(self.ground, self.ground)
-        numbers = (self.inertias, self.stiffnesses, self.segment_damping, self.mass_damping, self.loss)
-        inertias, stiffnesses, of_segments, of_masses, loss = (one[::-1] for one in numbers)
-        return Chain(inertias, stiffnesses, of_segments, of_masses, loss, ground)
+    @property
+    def around(self) -> Array:
+        """The stiffnesses (n + 1,) before the first mass, between the masses and behind the last, 0 at a free end."""
+        first, last = self.held
+        return np.concatenate(([0.0] * (not first), self.stiffnesses, [0.0] * (not last)))
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
@@ -129,14 +129,13 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
     residual: the torque left behind the last mass in N m, or at a fixed end behind it the angle left in rad, both per
     radian of the first mass: at a natural frequency it is zero.
     """
-    first, last = chain.held
-    angles, torque, torques = [1.0], -chain.stiffnesses[0] if first else 0.0, []
-    for inertia, stiffness in zip(chain.inertias, [*chain.stiffnesses[int(first) :], np.inf]):
-        torque = torque + omega**2 * inertia * angles[-1]
-        torques.append(torque)
-        angles.append(angles[-1] - torque / stiffness)
-    held, far = [-chain.stiffnesses[0]] if first else [], angles.pop()
-    return Holzer(np.array(angles), np.array([*held, *torques][: len(chain.stiffnesses)]), far if last else torque)
+    springs, angles = chain.around, [1.0]
+    torques = [-springs[0]]
+    for inertia, stiffness in zip(chain.inertias, springs[1:]):
+        torques.append(torques[-1] + omega**2 * inertia * angles[-1])
+        angles.append(angles[-1] - torques[-1] / (stiffness or math.inf))
+    far = angles.pop()
+    return Holzer(np.array(angles), np.array(torques)[springs != 0], far if chain.held[1] else torques[-1])
 
 
 class Modes:
@@ -150,7 +149,8 @@ class Modes:
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
-        self._line = chain.reversed() if chain.ground == "before" else chain  # read toward the fixed end
+        self._onward = -1 if chain.ground == "before" else 1  # read toward the fixed end
+        self._inertias, self._springs = chain.inertias[:: self._onward], chain.around[:: self._onward]
 
     @cached_property
     def omegas(self) -> Array:
@@ -175,9 +175,8 @@ class Modes:
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes are below each ω (m,)."""
-        stiffnesses, behind = self._line.stiffnesses[int(self._line.held[0]) :], _behind(self._line, omegas)
-        negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
-        return negative if self.chain.ground else negative + (behind[-1] > 0) - 1
+        negative = (_behind(self._inertias, self._springs, omegas) > self._springs[1:, None]).sum(axis=0)
+        return negative - (not self.chain.ground)
 
     def holzer(self, mode: int) -> Holzer:
         """Return the table of a mode, counted from 0.
@@ -185,21 +184,18 @@ class Modes:
         From the mass at which the tables from both ends meet best it is computed outward both ways, where no error
         grows.
         """
-        omega, first = self.omegas[mode : mode + 1], int(self._line.held[0])
-        behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
-        own = omega[0] ** 2 * self._line.inertias
+        omega, inertias, springs = self.omegas[mode : mode + 1], self._inertias, self._springs
+        behind = _behind(inertias, springs, omega)[:, 0]
+        before = _behind(inertias[::-1], springs[::-1], omega)[::-1, 0]
+        own = omega[0] ** 2 * inertias
         gap = behind + before - own
-        meet = int(np.argmin(np.abs(gap) / self._line.inertias))
-        between = self._line.stiffnesses[first : first + len(own) - 1]
-        up = 1 / _not_zero(1 - behind[:meet] / between[:meet])
-        down = 1 / _not_zero(1 - before[meet + 1 :] / between[meet:])
+        meet = int(np.argmin(np.abs(gap) / inertias))
+        up = 1 / _not_zero(1 - behind[:meet] / springs[1 : meet + 1])
+        down = 1 / _not_zero(1 - before[meet + 1 :] / springs[meet + 1 : -1])
         angles = np.concatenate((np.cumprod(up[::-1])[::-1], [1.0], np.cumprod(down)))
-        torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
-        if self.chain.ground:
-            torques = np.append(torques, self._line.stiffnesses[-1] * angles[-1])
-        if first:
-            torques = np.append(-self._line.stiffnesses[0] * angles[0], torques)
-        if self.chain.ground == "before":
+        inner = behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]
+        torques = np.concatenate(([-springs[0] * angles[0]], *inner, [springs[-1] * angles[-1]]))[springs != 0]
+        if self._onward < 0:
             angles, torques = angles[::-1], -torques[::-1]
         left = abs(float(gap[meet])) / max(float(np.abs(torques).max(initial=0.0)), float(own[meet]), 1e-300)
         unit = angles[0] if abs(angles[0]) > _STILL * np.abs(angles).max() else angles[np.argmax(np.abs(angles))]
@@ -211,14 +207,16 @@ class Modes:
         return tuple((mass, a / (a - b)) for mass, (a, b) in neighbours if a * b < 0 or a == 0 != b)
 
 
-def _behind(chain: Chain, omegas: Array) -> Array:
-    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along the chain at ω (m,)."""
-    first, found = int(chain.held[0]), np.empty((len(chain.inertias), len(omegas)))
-    carried = np.full(len(omegas), -chain.stiffnesses[0] if first else 0.0)
-    for i, inertia in enumerate(chain.inertias):
+def _behind(inertias: Array, springs: Array, omegas: Array) -> Array:
+    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along a chain at ω (m,).
+
+    springs: those around the masses, see `Chain.around`.
+    """
+    found, carried = np.empty((len(inertias), len(omegas))), np.full(len(omegas), -springs[0])
+    for i, inertia in enumerate(inertias):
         found[i] = carried + omegas * omegas * inertia
         if i + 1 < len(found):
-            carried = found[i] / _not_zero(1 - found[i] / chain.stiffnesses[first + i])
+            carried = found[i] / _not_zero(1 - found[i] / springs[i + 1])
     return found
 
 
