@@ -109,10 +109,8 @@ def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: b
 
     book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
     """
-    orders: dict[int, ComplexArray] = {}
-    for throw in throws:
-        if id(throw.cylinder.mechanism) not in orders:
-            orders[id(throw.cylinder.mechanism)] = orders_of(throw, book, count)
+    alike = {id(one.cylinder.mechanism): one for one in throws}
+    orders = {mechanism: orders_of(throw, book, count) for mechanism, throw in alike.items()}
     k, found = max(_FEWEST, *map(len, orders.values())), []
     for throw in throws:
         own = orders[id(throw.cylinder.mechanism)]

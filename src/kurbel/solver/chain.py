@@ -159,8 +159,8 @@ class Modes:
         Those of the elastic modes by bisection of the number of modes below, to the last digit.
         """
         elastic = len(self.chain.inertias) - (not self.chain.ground)
-        wanted, springs = np.arange(elastic), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
-        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self.chain.inertias).max()))  # Gershgorin, J⁻¹ K
+        wanted, springs = np.arange(elastic), self._springs[:-1] + self._springs[1:]
+        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self._inertias).max()))  # Gershgorin, J⁻¹ K
         low = high * 1e-3
         while self._below(low[:1])[0]:
             low = low * 1e-3

@@ -160,13 +160,12 @@ class Vibration:
     @cached_property
     def means(self) -> Array:
         """Mean torques in the segments in N m."""
-        reached = np.cumsum(self.acting.means)
-        if self.chain.held[0]:
-            reached = np.append(0.0, reached)
-            # of two fixed ends the twists add up to nothing, of one the torque behind the last mass is nothing
-            soft = 1 / self.chain.stiffnesses
-            reached -= (reached @ soft) / soft.sum() if self.chain.held[1] else reached[-1]
-        return reached[: len(self.ratios)] / self.ratios
+        chain, reached = self.chain, np.append(0.0, np.cumsum(self.acting.means))
+        # a free end has no torque; between two fixed ones the twists add up to nothing
+        free = np.eye(len(reached))[-1 if chain.held[0] else 0]
+        counted = 1 / chain.stiffnesses if all(chain.held) else free
+        reached -= reached @ counted / counted.sum()
+        return reached[chain.around != 0] / self.ratios
 
     @cached_property
     def swings(self) -> tuple[Pieces, Array]:
