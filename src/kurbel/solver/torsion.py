@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -220,15 +220,23 @@ class SegmentTorque(NamedTuple):
         """Half of what it swings."""
         return (self.M_shaft_max - self.M_shaft_min) / 2
 
+    def stress_of(self, torque: Any) -> Any:
+        """Return the stress in Pa of torques in N m, None if not known."""
+        return None if self.factor is None else self.factor * torque
+
     @property
     def tau_mean(self) -> float | None:
         """The stress of the mean torque in Pa."""
-        return None if self.factor is None else self.factor * self.M_shaft_mean
+        return self.stress_of(self.M_shaft_mean)
 
     @property
     def tau_vibratory(self) -> float | None:
         """The stress of half of what the torque swings in Pa."""
-        return None if self.factor is None else self.factor * self.M_vibratory
+        return self.stress_of(self.M_vibratory)
+
+    def torque_at(self, degrees: Array) -> Array:
+        """Return the torque in N m at crank angles (n,) in degrees."""
+        return self.M_shaft_mean + self.pieces.at(self.swing, np.zeros(len(degrees), dtype=np.intp), degrees)
 
     def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
@@ -236,31 +244,24 @@ class SegmentTorque(NamedTuple):
 
 
 class SegmentState(AtAngles):
-    """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
+    """The columns of a segment at crank angles φ (n,) in degrees."""
 
     commands = ("torsion",)
     M_shaft = value(
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.torque(),
+        lambda one: one.segment.torque_at(one.phi),
     )
     tau = value(
         "τ",
         "stress",
         "Torsional stress at the smallest section of the segment",
-        lambda one: one.segment.factor * one.M_shaft if one.segment and one.segment.factor else None,
+        lambda one: one.segment.stress_of(one.M_shaft),
     )
 
-    def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
+    def __init__(self, segment: SegmentTorque, phi: Array) -> None:
         self.segment, self.phi = segment, phi
-
-    def torque(self) -> Array | None:
-        """Return the torque in N m (n,)."""
-        if self.segment is None:
-            return None
-        of_first = np.zeros(len(self.phi), dtype=np.intp)
-        return self.segment.M_shaft_mean + self.segment.pieces.at(self.segment.swing, of_first, self.phi)
 
 
 # the results
@@ -357,7 +358,7 @@ class ShaftVibration(Results):
         self.obstacle = self._unexcited or undamped
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
-        return SegmentState(None, phi)
+        raise UsageError("each segment of a shaft line has its own columns: ask one of case.torsion.pieces")
 
     def piece_name(self, segment: int) -> str:
         """Return what a segment is between."""
