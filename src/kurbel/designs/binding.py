@@ -12,9 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Given, Maker, too_extreme
+from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
-from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
 from kurbel.errors import Path, RuleError, UsageError, path_text
@@ -132,10 +131,10 @@ class Binder:
                 for number, key in enumerate(self._keys)
                 if self._numeric[number]
             }
-            values, read = _values(columns, every, len(places))
+            read = _put(columns, every, len(places))
             if reading.faults or not read.any():
                 return [], places.tolist()
-            maker = _Maker(reading, values, every, int(read.sum()))
+            maker = Maker(reading, int(read.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(every[-1])
         # a formula works for a single machine only
@@ -151,38 +150,8 @@ class Binder:
         return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
 
 
-class _Maker(Maker):
-    """Makes records with arrays (count,) instead of some numbers; broken: which of the machines break a rule."""
-
-    def __init__(
-        self, reading: Reading, values: dict[tuple[int, str], Any], every: Sequence[Given], count: int
-    ) -> None:
-        super().__init__(reading)
-        self._values, self.broken = values, np.zeros(count, dtype=bool)
-        own = {at for at, _ in values}
-        self._around = {id(one) for one in every if any(id(inner) in own for inner in _every(one))}
-
-    def _record(self, given: Given) -> Any:
-        if id(given) not in self._around:
-            return super()._record(given)
-        values = {name: self._values.get((id(given), name), self.made(one)) for name, one in given.values.items()}
-        if any(one is REFUSED for one in values.values()):
-            return REFUSED
-        kind = given.form.record
-        record = kind.of_keys(**values)
-        rules = list(kind.rules_of_keys(values))
-        if isinstance(record, Record):
-            rules += record.rules()
-            self.broken |= too_extreme(record, values)
-        for rule in rules:
-            self.broken |= rule.broken
-        return record
-
-
-def _values(
-    columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int
-) -> tuple[dict[tuple[int, str], Any], Flags]:
-    """Return the arrays that replace numbers, by the id of their mapping and their key, and the rows that have all.
+def _put(columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int) -> Flags:
+    """Put arrays in place of numbers, of the rows that have all of them; return which rows these are.
 
     columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
     UsageError for a key whose value is not a number.
@@ -198,12 +167,12 @@ def _values(
         if plain is None:  # one by one, nan for a text that is no number
             known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
             plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
-        numbers = np.array(plain)
-        read &= ~np.isnan(numbers)
-        for one in every:
-            if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name):
-                slots.append((one, name, form.number, numbers))
-    return {(id(one), name): form.of_numbers(numbers[read]) for one, name, form, numbers in slots}, read
+        alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
+        slots += [(one, name, form.number, np.array(plain)) for one in alike]
+        read &= ~np.isnan(plain)
+    for one, name, number, numbers in slots:
+        one.values[name] = number.of_numbers(numbers[read])
+    return read
 
 
 def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:

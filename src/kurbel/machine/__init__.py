@@ -18,8 +18,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, has_refused, shown
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.reading import REFUSED, shown
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
@@ -53,7 +53,6 @@ def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
 
-@record
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
@@ -67,7 +66,6 @@ class LoadCase(Record):
     )
 
 
-@record
 class Machine(Record):
     """A whole machine.
 
@@ -96,7 +94,6 @@ class Machine(Record):
         default=1.0,
         above=0,
         most=1,
-        absent="1",
     )
     ambient: float = field(
         "pressure",
@@ -152,7 +149,6 @@ class Machine(Record):
         [BalanceShaft],
         "Balance shafts, turning once, twice, … per turn of the crank, with or against it",
         default=(),
-        absent="none",
     )
     moment_reference: float | None = field(
         "length",
@@ -175,20 +171,17 @@ class Machine(Record):
         "Limits of key values, checked by `kurbel check` for each cylinder that has the value, else for the machine; "
         "`machine.T_max` is of the whole machine, `NAME.T_max` of one cylinder",
         default=(),
-        absent="none",
     )
     expect: tuple[tuple[str, Expected], ...] = field(
         EXPECTATIONS,
         "Expected key values, compared by `kurbel check`; names as in `limits`",
         default=(),
-        absent="none",
     )
     uncertainty: tuple[tuple[str, str], ...] = field(
         UNCERTAINTIES,
         "Standard uncertainties of values of this file, by dotted key; forces, flywheel and stress propagate them to "
         "the key values",
         default=(),
-        absent="none",
     )
     rotation: str | None = field(
         ("over", "under"),
@@ -248,12 +241,12 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield the rules on the shaft line if other keys could not be read."""
+    def faults_of_some(cls, given: Values) -> list[Fault]:
+        """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
         shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        if has_refused(given.values()) and isinstance(shaft, tuple) and not unknown:
-            yield from map(Rule.of, _shaft_faults(shaft, cylinders))
+        known = _shaft_faults(shaft, cylinders) if isinstance(shaft, tuple) and not unknown else []
+        return super().faults_of_some(given) + known
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the machine as a whole."""
@@ -270,12 +263,12 @@ class Machine(Record):
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
         for index, cylinder in enumerate(self.cylinders):
             of_yoke = cylinder.mechanism.pin_diameter if isinstance(cylinder.mechanism, ScotchYoke) else None
-            rubbing = cylinder.friction.faults_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
-            yield from (Rule.of(fault.below(("cylinders", index, "friction"))) for fault in rubbing)
+            rubbing = cylinder.friction.rules_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
+            yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
-        for key, diagram in (("effort", self.effort), ("load", self.load)):
+        for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
-                yield Rule.of(Fault((key, diagram.key), message))
+                yield Rule((key, diagram.key), True, message)
         if isinstance(self.effort, Swing):
             message = "needs the effort over the angle; of this one the swing of energy alone is given"
             yield Rule("load", self.load is not None and self.load.varies, message)
@@ -292,13 +285,12 @@ class Machine(Record):
         names = [cylinder.name for cylinder in self.cylinders]
         for index, name in enumerate(names):
             place = ("cylinders", index, "name")
-            yield Rule.of(Fault(place, f"two cylinders are called '{name}'"))._replace(broken=name in names[:index])
+            yield Rule(place, name in names[:index], f"two cylinders are called '{name}'")
             whole = f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
             yield Rule(place, name == MACHINE, whole)
         cases = [case.name for case in self.cases]
         for index, name in enumerate(cases):
-            twice = Rule.of(Fault(("cases", index, "name"), f"two cases are called '{name}'"))
-            yield twice._replace(broken=name in cases[:index])
+            yield Rule(("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'")
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
         scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
@@ -307,7 +299,7 @@ class Machine(Record):
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
                     written = getattr(figure, "name", "") or id
                     message = f"no cylinder is called '{shown(scope)}'{hint}"
-                    yield Rule.of(Fault((key, written), message, at_key=True))
+                    yield Rule((key, written), True, message, at_key=True)
 
     def cycle_of(self, cylinder: Cylinder) -> str:
         """Return the working cycle of a cylinder: its own, or that of the machine."""

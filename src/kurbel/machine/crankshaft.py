@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.declared.record import Record, Rule, field, record
+from kurbel.declared.record import Record, Rule, field
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
 
 
-@record
 class Crankshaft(Record):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 
@@ -63,7 +62,6 @@ class Crankshaft(Record):
         bool,
         "True if the pin is overhung: outside bearing A, at the end of the shaft",
         default=False,
-        absent="false",
     )
 
     bearing_metal: str | None = field(

@@ -11,9 +11,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
-from kurbel.errors import Fault
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
 from kurbel.mechanisms import Mechanism
@@ -41,11 +39,9 @@ def counterweights() -> Any:
         OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
         "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
         default=(),
-        absent="none",
     )
 
 
-@record
 class Cylinder(Record):
     """One cylinder with its crank mechanism and all that is on the same rod.
 
@@ -126,7 +122,7 @@ class Cylinder(Record):
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
-        yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
+        yield Rule("like", "like" in given, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
         yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 
@@ -143,7 +139,7 @@ class Cylinder(Record):
         at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
         yield from at_point
         if not any(rule.broken for rule in at_point):
-            yield from map(Rule.of, _of_output(self))
+            yield from _of_output(self)
             yield from _of_rod(self) if self.mechanism.slides else ()
 
 
@@ -169,19 +165,18 @@ def may_lock(cylinder: Cylinder) -> bool:
     return coefficient > 0 and any(coefficient * abs(float(sin)) >= cos for sin, cos in widest)
 
 
-def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
-    kind = cylinder.mechanism.name
+def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
+    kind, moment = cylinder.mechanism.name, cylinder.moment
     if cylinder.mechanism.slides:
-        if cylinder.moment is not None:
-            yield Fault(("moment",), f"a {kind} moves its output to and fro; give 'ram_force', a force, instead")
+        to_and_fro = f"a {kind} moves its output to and fro; give 'ram_force', a force, instead"
+        yield Rule("moment", moment is not None, to_and_fro)
         return
-    own = ("bore",) if cylinder.pistons else ()
-    for key in (*own, *(key for key in _SLIDING if vars(cylinder)[key] is not None)):
-        yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
-    if cylinder.mechanism.turns and cylinder.moment and cylinder.moment.back:
-        yield Fault(
-            ("moment", "return"), f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
-        )
+    given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
+    for key, value in given.items():
+        yield Rule(key, value is not None, f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
+    returns = bool(cylinder.mechanism.turns and moment and np.any(moment.back))
+    message = f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
+    yield Rule(("moment", "return"), returns, message)
 
 
 _INSTEAD = {

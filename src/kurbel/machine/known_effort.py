@@ -7,7 +7,6 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.values import Points, unit_name
-from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, Values, alternative
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import refused
@@ -55,8 +54,6 @@ class KnownEffort(Columns):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if has_refused(given.values()):
-            return
         forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
         message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
         yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)

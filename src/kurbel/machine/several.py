@@ -7,14 +7,12 @@ from typing import Any
 
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
-@record
 class EqualCylinders(Record):
     """Cylinders that differ only in name, crank position and place.
 
@@ -64,8 +62,6 @@ class EqualCylinders(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if has_refused(given.values()):
-            return
         count, banks = given["count"], given.get("bank_angles", (0.0,))
         number = f"{len(banks)} angles for {count} cylinders; give one for each bank or for each cylinder"
         yield Rule("bank_angles", count % len(banks) != 0, number)

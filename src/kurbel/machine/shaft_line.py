@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, Union
 from kurbel.declared.forms.structures import Listing, OneOf
 from kurbel.declared.forms.values import TEXT
 from kurbel.declared.reading import REFUSED
-from kurbel.declared.record import Record, Rule, field, record
+from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, refuse
 from kurbel.near_words import did_you_mean
 
@@ -25,7 +25,6 @@ _OF_MASS = ("inertia", "cylinder", "load")
 _OF_PIECE = ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor")
 
 
-@record
 class ShaftPart(Record):
     """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None."""
 

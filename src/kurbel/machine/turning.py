@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms.structures import OneOf
-from kurbel.declared.forms.values import NumberForm, Points, size_faults, unit_name
+from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Node, Reading, has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.reading import Node, Reading
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
@@ -23,7 +23,6 @@ _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
-@record
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
@@ -76,8 +75,8 @@ class Rim(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if "outer_diameter" in given and "inner_diameter" in given and not has_refused(given.values()):
-            inner, outer = given["inner_diameter"], given["outer_diameter"]
+        inner, outer = given.get("inner_diameter"), given.get("outer_diameter")
+        if inner is not None and outer is not None:
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
             yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})
 
@@ -120,7 +119,6 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
-@record
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
@@ -196,7 +194,7 @@ class Effort:
     @classmethod
     def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
         """Return the diagram of the value of `points` in a machine file; raises RuleError."""
-        refuse(*(_angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
+        refuse(*(fault.below(("points",)) for fault in _angle_faults(points) or size_faults(points, unit, "torque")))
         up, down = unit
         return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
 
@@ -241,7 +239,7 @@ class Harmonics:
                 refused(message, "harmonics", index, 0)
         bare = isinstance(mean, InUnit)
         sizes = [(0.0, mean if bare else 0.0), *((order, abs(c) + abs(s)) for order, c, s in terms)]
-        refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
+        refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
         level = mean * up / down if bare else mean
         return cls(level, tuple((n, c * up / down, s * up / down) for n, c, s in terms))
 
@@ -308,7 +306,6 @@ MEAN_TORQUE = _MeanTorque()
 HARMONICS = Points("order", "cos", "sin", least=1)
 
 
-@record
 class Load(Record):
     """The resistance at the shaft, in exactly one of four forms.
 
@@ -354,8 +351,8 @@ class Load(Record):
         given = [name for name, value in forms.items() if value is not None]
         message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
         yield Rule((), not given, message)
-        names = " and ".join(f"'{name}'" for name in given)
-        yield Rule((given[1:] or ("",))[0], len(given) > 1, f"{names} are different loads; keep one of them")
+        both = f"{' and '.join(map(repr, given))} are different loads; keep one of them"
+        yield Rule(given[-1] if given else (), len(given) > 1, both)
 
     @property
     def varies(self) -> bool:
@@ -367,36 +364,26 @@ class Load(Record):
         """The key of the torques in the machine file."""
         return self.diagram.key if self.diagram else "points"
 
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        return self.diagram.cycle_fault(cycle, turns) if self.diagram else ""
 
-
-@record
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 
     stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
     inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0, required=True)
-    damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0, absent="0")
+    damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0)
 
 
-def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
-    """Return what is wrong with the angles of a diagram over one cycle.
-
-    They run from 0 to the end of a turn and do not turn back; two points at one angle are a jump, three one too many.
-    """
-    for i, (angle, _) in enumerate(points):
+def _angle_faults(points: list[Point]) -> list[Fault]:
+    """Return what is wrong with the angles of a diagram over one cycle: from 0 to the end of a turn, in order."""
+    for index, (angle, _) in enumerate(points):
         if not 0 <= angle <= 360 * MOST_TURNS:
-            return [Fault((*path, i), f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg")]
-        if i and angle < points[i - 1][0]:
-            return [
-                Fault((*path, i), f"{angle:g} deg after {points[i - 1][0]:g} deg; put the points in order of the angle")
-            ]
-        if i >= 2 and angle == points[i - 2][0]:
-            return [Fault((*path, i), f"three points at {angle:g} deg; a jump has two")]
-    if not points or points[0][0] != 0 or points[-1][0] == 0 or points[-1][0] % 360:
-        runs = f"this one runs from {points[0][0]:g} to {points[-1][0]:g} deg" if points else "this one has no points"
+            message = f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg"
+            return [Fault((index,), message)]
+    if faults := order_faults(points, "{:g} deg"):
+        return faults
+    first, last = points[0][0], points[-1][0]
+    if first != 0 or last == 0 or last % 360:
         whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
-        return [Fault(path, f"{whole}, {runs}; give the values at both ends of the cycle, with angles in degrees")]
+        ends = "give the values at both ends of the cycle, with angles in degrees"
+        return [Fault((), f"{whole}, this one runs from {first:g} to {last:g} deg; {ends}")]
     return []

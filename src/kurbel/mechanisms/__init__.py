@@ -164,8 +164,6 @@ class Mechanism(Record):
     lacks: ClassVar[Any] = ()
     """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
     crank: float
-    offset: float = 0.0
-    """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -175,6 +173,11 @@ class Mechanism(Record):
         missing = [name for name in required if name not in given]
         if missing:
             raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
+
+    @property
+    def offset(self) -> float:
+        """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
+        return 0.0
 
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""

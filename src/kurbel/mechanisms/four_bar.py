@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field, record
+from kurbel.declared.record import Rule, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     F_COUPLER,
@@ -110,7 +110,6 @@ def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle
     return Closure(sin, cos, slope, curvature, H, foot)
 
 
-@record
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

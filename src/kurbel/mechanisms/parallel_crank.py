@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field, record
+from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
@@ -81,7 +81,6 @@ COUPLER_VALUES = (
 )
 
 
-@record
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field, record
+from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
@@ -32,7 +32,6 @@ _N_PAIR = own_force(
 )
 
 
-@record
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 

@@ -10,8 +10,7 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Rule, Values, alternative, field, record
+from kurbel.declared.record import Rule, Values, alternative, field
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
@@ -57,7 +56,6 @@ ROD_OFFERS = (
 )
 
 
-@record
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
@@ -93,7 +91,6 @@ class SliderCrank(Mechanism):
         "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
         "e",
         default=0.0,
-        absent="0",
     )
 
     name: ClassVar[str] = "slider-crank"
@@ -103,7 +100,7 @@ class SliderCrank(Mechanism):
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
-        if stroke is None or offset is None or has_refused((stroke, rod, k, offset)):
+        if stroke is None or offset is None:
             return
         numbers = {"rod": rod, "offset": offset}
         if rod is not None:
@@ -116,7 +113,7 @@ class SliderCrank(Mechanism):
 
     def rules(self) -> Iterator[Rule]:
         crank, rod, offset = self.crank, self.rod, abs(self.offset)
-        apart = np.isfinite(crank) & (rod > 0) & np.isfinite(offset)
+        apart = (np.isfinite(crank) & (rod > 0) & np.isfinite(offset)) | np.isnan(crank + rod + offset)
         yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
         if not np.any(apart):
             return

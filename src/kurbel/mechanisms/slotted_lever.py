@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, alternative, field, record
+from kurbel.declared.record import Rule, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
@@ -51,7 +51,6 @@ class Ram(NamedTuple):
     bend: Number
 
 
-@record
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 

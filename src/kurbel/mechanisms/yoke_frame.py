@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field, record
+from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import Offer, finite, own_force
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.arithmetic import some
@@ -58,7 +58,6 @@ def _fibre(state: Any, side: float) -> Any:
     return None if along is None or across is None or arm is None else along + across * arm * side
 
 
-@record
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

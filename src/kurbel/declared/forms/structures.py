@@ -15,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import TOO_EXTREME, Key, Record, required
+from kurbel.declared.keys import NOT_A_NUMBER, TOO_EXTREME, Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
@@ -46,16 +46,9 @@ class RecordForm(Form):
         super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
         self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
 
-    def every_key(self) -> Iterator[tuple[str, Key]]:
-        """Yield all keys that such a mapping can have; inline ones follow the key that adds them."""
-        for name, key in self.keys.items():
-            yield name, key
-            for record in key.form.inline:
-                yield from record.every_key()
-
-    def names(self, mapping: Tree) -> dict[str, None]:
-        """Return the names of all keys that this mapping may have: its own, inline ones, those of the variant."""
-        found = {name: None for name, key in self.keys.items() if not isinstance(key.form, Inline)}
+    def names(self, mapping: Tree) -> Keys:
+        """Return all keys that this mapping may have: its own, inline ones, those of the variant."""
+        found = {name: key for name, key in self.keys.items() if not isinstance(key.form, Inline)}
         for name, key in self.keys.items():
             if isinstance(key.form, Inline) and key.form.unless not in mapping:
                 found |= key.form.names(mapping)
@@ -81,7 +74,7 @@ class RecordForm(Form):
         for name, key in self.keys.items():
             form = key.form
             if isinstance(form, Inline):
-                if form.unless not in mapping and rest.keys() & form.names(mapping).keys():
+                if form.unless not in mapping and rest.keys() & form.names(mapping):
                     values[name] = form.build(reading, rest, path, inline=True)
             elif isinstance(form, Variant):
                 word = form.read(reading, mapping[name], (*path, name)) if name in mapping else form.default
@@ -100,7 +93,7 @@ class RecordForm(Form):
         """Report each unknown key, and yield the known keys that were probably meant."""
         known = self.names(mapping)
         misplaced = self._misplaced(mapping)
-        other_words = {word: name for name, key in self.every_key() for word in (*key.also, key.symbol)}
+        other_words = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
             place = self._as_here(reading.where_it_belongs(name, path), mapping)
@@ -157,14 +150,6 @@ class RecordForm(Form):
                 head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
                 faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
         return RuleError(*faults)
-
-    def made(self, values: Tree) -> Any:
-        """Return the record of these values of its keys; raises RuleError."""
-        try:
-            record = self.record.from_keys(**values)
-        except ArithmeticError:
-            refused(TOO_EXTREME)
-        return refused(TOO_EXTREME) if too_extreme(record, values) else record
 
 
 class Inline(RecordForm):
@@ -247,30 +232,51 @@ def too_extreme(record: Any, values: Tree) -> Any:
 
 
 class Maker:
-    """The second pass: makes records of what was read, and reports what is wrong with them."""
+    """The second pass: makes records of what was read, and reports what is wrong with them.
 
-    def __init__(self, reading: Reading) -> None:
-        self.reading = reading
+    broken: which of many machines, whose numbers are arrays (count,), break a rule.
+    """
+
+    def __init__(self, reading: Reading, count: int = 0) -> None:
+        self.reading, self.broken = reading, np.zeros(count, dtype=bool)
 
     def made(self, value: Any) -> Any:
         """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
         if isinstance(value, Given):
-            value.made = self._record(value)
+            values = {name: self.made(one) for name, one in value.values.items()}
+            try:
+                value.made = self._record(value.form, values)
+            except ArithmeticError:
+                value.made = self.reading.fault(value.path, TOO_EXTREME)
+            except RuleError as error:
+                value.made = self.reading.refuse(value.path, value.form.flattened(error, value.mapping))
             return value.made
         if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
             return tuple(map(self.made, value))
         return value
 
-    def _record(self, given: Given) -> Any:
-        path, form = given.path, given.form
-        values = {name: self.made(one) for name, one in given.values.items()}
-        try:
-            if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
-                return form.made(values)
-            # contradictions between keys are reported even where the value of one could not be read
-            return self.reading.refuse(path, RuleError(*form.record.faults_of_keys(values)))
-        except RuleError as error:
-            return self.reading.refuse(path, form.flattened(error, given.mapping))
+    def _record(self, form: RecordForm, values: dict[str, Any]) -> Any:
+        """Return the record of values by key; REFUSED after its rules have judged those that could be read."""
+        unread = [
+            name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
+        ]
+        stand_ins = {name: form.keys[name].form.unread for name in unread}
+        if None in stand_ins.values():
+            raise RuleError(*form.record.faults_of_some(values))
+        if unread:
+            try:
+                form.record.from_keys(**(values | stand_ins))
+            except RuleError as error:
+                raise RuleError(*(one for one in error.faults if one.message != NOT_A_NUMBER)) from None
+            return REFUSED
+        record = form.record.from_keys(**values)
+        extreme = too_extreme(record, values)
+        if len(self.broken):
+            rules = [*form.record.rules_of_keys(values), *(record.rules() if isinstance(record, Record) else ())]
+            self.broken = functools.reduce(np.logical_or, (rule.broken for rule in rules), self.broken | extreme)
+        elif extreme:
+            refused(TOO_EXTREME)
+        return record
 
 
 class Variant(Choice):
@@ -317,7 +323,6 @@ class Listing(Form):
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
-        pairs = [{name, key.instead} for name, key in self.item.every_key() if key.instead]
         above: dict[str, tuple[int, Tree]] = {}
         completed: list[Any] = []
         for index, item in enumerate(items):
@@ -328,6 +333,7 @@ class Listing(Form):
                 here: Path = (*path, index)
                 reading.alike[here] = (*path, place)
                 own = {key: value for key, value in item.items() if key != "like"}
+                pairs = [{name, key.instead} for name, key in self.item.names(other | own).items() if key.instead]
                 replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
                 whole = {key: value for key, value in other.items() if key not in replaced} | own
             elif like is not REFUSED:
@@ -351,6 +357,7 @@ class OneOf(Form):
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
         self.number = next((form.number for form in forms if form.number), None)
+        self.unread = next((form.unread for form in forms if form.unread is not None), None)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a value by the first form that has its shape."""

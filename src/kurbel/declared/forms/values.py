@@ -39,7 +39,8 @@ class Form(ABC):
 
     expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: a
     short description for pages. kind: of the number, or of each number of a list, '' for other values; number: the form
-    of the number that it becomes, which many machines have as an array; inline: records whose keys are in the same
+    of the number that it becomes, which many machines have as an array; unread: stands for a value that could not be
+    read, while rules judge the others, None if nothing can; inline: records whose keys are in the same
     mapping. schema: the JSON Schema of a value, as far as it does not depend on parts and units; parts: the forms that
     it consists of, each after its key, '' for none.
     """
@@ -48,6 +49,7 @@ class Form(ABC):
     """Of the tree: str, list or dict."""
     kind: str = ""
     number: "NumberForm | None" = None
+    unread: Any = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -106,12 +108,28 @@ def out_of_size(value: Any, kind: str) -> str:
     return ""
 
 
-def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
+def size_faults(points: Sequence[Point], unit: Factor, kind: str) -> list[Fault]:
     """Return a fault for the first point whose value in this unit of its kind is too large; [] if there is none."""
     up, down = unit
     for index, (_, value) in enumerate(points):
-        if not abs(value * up / down) <= KINDS[kind].largest:
-            return [Fault((*path, index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
+        if abs(value * up / down) > KINDS[kind].largest:
+            return [Fault((index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
+    return []
+
+
+def order_faults(points: Sequence[Point], place: str) -> list[Fault]:
+    """Return a fault for the first point at which a line turns back, or has a third value; place: how one is written.
+
+    >>> order_faults([(0, 5), (0.6, 4), (0.5, 3)], "fraction {:g}")[0].message
+    'fraction 0.5 after 0.6: the line turns back'
+    """
+    forward = points[0][0] <= points[-1][0]
+    for index in range(1, len(points)):
+        before, here = points[index - 1], points[index]
+        if here[0] != before[0] and (here[0] > before[0]) != forward:
+            return [Fault((index,), f"{place.format(here[0])} after {before[0]:g}: the line turns back")]
+        if index > 1 and points[index - 2][0] == here[0] and points[index - 2] != before != here:
+            return [Fault((index,), f"three points at {place.format(here[0])}; a jump has two")]
     return []
 
 
@@ -152,6 +170,7 @@ class NumberForm(Form):
         written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in instead)
         super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
         self.number = None if self.whole or self.apart else self
+        self.unread = None if self.number is None or self.becomes else math.nan
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the number, and compare it with its bounds."""
@@ -213,7 +232,7 @@ class NumberForm(Form):
         for bound, wrong, too, must in bounds if known else ():
             if bound is None:
                 continue
-            if np.any((wrong(value, bound) | (value != value)) & ((value != 0) | (not self.zero))):
+            if np.any(wrong(value, bound) & ((value != 0) | (not self.zero))):
                 return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
         return ""
 
@@ -262,6 +281,7 @@ class Text(Form):
         found = {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
         super().__init__(expected, example, written, found)
         self.become, self.pattern, self.unit_of = become, pattern, unit_of
+        self.unread = (math.nan, 1.0) if unit_of else None
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the text."""
