@@ -223,20 +223,14 @@ class Machine(Record):
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         given = (cylinder,) if cylinder else cylinders
         faults = _shaft_faults(shaft, given) if shaft else []
-        keys.pop("kurbel", None)
         try:
-            if firing_order or not isinstance(given, tuple) or len(given) > 1:
-                given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
-            if shaft and not faults:
-                keys["shaft"] = line_of(shaft, _names(given))
-            elif not given:
-                refuse(*faults)
-            if len(given) == 1 and given[0].crank_position is None:
-                given = (replace(given[0], crank_position=0.0),)
-            named = tuple(one if one.name else replace(one, name=name) for one, name in zip(given, _names(given)))
+            given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+            if shaft:
+                keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, _names(given))
+            named = tuple(replace(one, name=name) for one, name in zip(given, _names(given)))
             machine: Machine = super().of_keys(cylinders=named, **keys)
         except RuleError as error:
-            raise RuleError(*dict.fromkeys((*error.faults, *faults))) from None
+            raise RuleError(*error.faults, *faults) from None
         refuse(*faults)
         return machine
 

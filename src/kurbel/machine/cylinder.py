@@ -64,6 +64,7 @@ class Cylinder(Record):
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
         absent="none",
+        also=("<<",),
     )
     _piston = alternative(Inline(Piston), "The cylinder's own piston")
     _tandem = alternative(

@@ -6,7 +6,6 @@ then `Maker` makes records of these.
 
 import functools
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -91,23 +90,16 @@ class RecordForm(Form):
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Report each unknown key, and yield the known keys that were probably meant."""
-        known = self.names(mapping)
-        misplaced = self._misplaced(mapping)
-        other_words = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
+        known, moved = self.names(mapping), self._moved(mapping)
+        synonyms = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
-            place = self._as_here(reading.where_it_belongs(name, path), mapping)
-            word = other_words.get(name, "")
-            meant = word if word in known else near(name, tuple(known))
-            if name in misplaced:
-                message, meant = misplaced[name], ""
-            elif name == "<<":
-                message = (
-                    "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
-                )
-            elif meant:
+            place = moved.get(name) or reading.where_it_belongs(name, path)
+            meant = "" if name in moved else synonyms.get(name) or near(name, tuple(known))
+            if meant:
+                # a synonym of a key here may be the name of a key elsewhere
                 message = f"unknown key; did you mean '{meant}'?"
-                if place and meant == word:  # a synonym of a key here, and the name of a key elsewhere
+                if place and name in synonyms:
                     message, meant = f"{message} Or {place}", ""
             elif place:
                 message = f"does not belong here; {place}"
@@ -117,7 +109,7 @@ class RecordForm(Form):
             if meant and meant not in mapping:
                 yield meant
 
-    def _misplaced(self, mapping: Tree) -> dict[str, str]:
+    def _moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that belong below another key of this mapping, each with the message where to move it."""
         moved = {
             inner: f"move it below '{name}'"
@@ -128,27 +120,20 @@ class RecordForm(Form):
         if self.listed and self.listed.unless in mapping:
             unless = self.listed.unless
             there = f"'{unless}.each'" if isinstance(mapping[unless], dict) else f"the items of '{unless}'"
-            moved |= dict.fromkeys(self.listed.names(mapping), f"belongs {self.listed.item}; move it into {there}")
+            moved |= dict.fromkeys(self.listed.names(mapping), f"it belongs {self.listed.item}; move it into {there}")
         return moved
-
-    def _as_here(self, words: str, mapping: Tree) -> str:
-        """Return the words for a place as seen from this mapping: a key of a cylinder is in an item of 'cylinders'."""
-        if self.listed and self.listed.unless in mapping:
-            own, listed = self.listed.names(mapping), mapping[self.listed.unless]
-            item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
-            for name in re.findall(r"under '(\w+)", words):
-                words = words.replace(f"under '{name}", f"under '{item}.{name}") if name in own else words
-        return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
-        faults = list(error.faults)
-        for place, fault in enumerate(faults):
-            if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
-                name, item, *inner = fault.path
-                listed = mapping.get(self.listed.unless)
+        unless = self.listed.unless if self.listed else ""
+        faults = []
+        for fault in error.faults:
+            name, item, *inner = (*fault.path, "", "")[: max(len(fault.path), 2)]
+            if unless and name == unless and isinstance(item, int):
+                listed = mapping.get(unless)
                 head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
-                faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
+                fault = fault._replace(path=(*head, *inner))
+            faults.append(fault)
         return RuleError(*faults)
 
 
@@ -217,17 +202,12 @@ def too_extreme(record: Any, values: Tree) -> Any:
 
     values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
     """
-
-    def numbers(of: Tree) -> dict[str, Any]:
-        return {name: one for name, one in of.items() if is_number(one) or isinstance(one, np.ndarray)}
-
-    given_infinite: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
+    endless = [vars(type(record)).get(name) for name in vars(record)]
+    infinite: Any = any(one == math.inf for one in (*values.values(), *endless) if is_number(one))
     broken: Any = False
-    for name, value in numbers(vars(record)).items():
-        if isinstance(value, np.ndarray) and isinstance(record, Indivisible):
-            continue
-        infinite = (value == math.inf) & (given_infinite | (vars(type(record)).get(name) == math.inf))
-        broken = broken | ~np.asarray(np.isfinite(value) | infinite)
+    for value in vars(record).values():
+        if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
+            broken = broken | ~(np.isfinite(value) | (infinite & (value == math.inf)))
     return broken
 
 
@@ -403,19 +383,19 @@ class Keyed(Form):
                 if name not in known and (meant := near(name, (*known, *cases))) in cases:
                     return reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
             return self.otherwise.read(reading, value, path)
-        inside = value[deciding]
-        if isinstance(inside, dict):
-            case = cases[deciding]
-            keys = case.keys if isinstance(case, RecordForm) else {}
-            moved = {name: value[name] for name in self.beside if name in value and name in keys and name not in inside}
-            inside, value = {**inside, **moved}, {name: one for name, one in value.items() if name not in moved}
-        for name in value:
-            if name != deciding:
-                place = reading.where_it_belongs(name, path) or "leave it out"
-                fix = "leave one of them out" if name in known or name in cases else place
-                reading.fault((*path, name), f"cannot be combined with '{deciding}'; {fix}", at_key=True)
-        inner = cases[deciding].read(reading, inside, (*path, deciding))
-        return inner if len(value) == 1 else REFUSED
+        case, inside = cases[deciding], value[deciding]
+        moved: Tree = {}
+        if isinstance(inside, dict) and isinstance(case, RecordForm):
+            own = [name for name in self.beside if name in case.keys and name not in inside]
+            moved = {name: value[name] for name in own if name in value}
+            inside = {**inside, **moved}
+        others = [name for name in value if name != deciding and name not in moved]
+        for name in others:
+            place = "" if name in known or name in cases else reading.where_it_belongs(name, path) or "leave it out"
+            message = f"cannot be combined with '{deciding}'; {place or 'leave one of them out'}"
+            reading.fault((*path, name), message, at_key=True)
+        inner = case.read(reading, inside, (*path, deciding))
+        return REFUSED if others else inner
 
 
 def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
