@@ -31,7 +31,7 @@ from kurbel.machine.origin import Origin
 from kurbel.machine.parts import Piston
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
-from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
+from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, Load, Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
@@ -48,7 +48,7 @@ def _names(cylinders: Sequence[Cylinder]) -> list[str]:
     return [one.name or f"cylinder {number}" for number, one in enumerate(cylinders, 1)]
 
 
-def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
+def _shaft_faults(parts: Sequence[ShaftPart], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
     names = _names(cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders)
     return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
 
@@ -160,7 +160,7 @@ class Machine(Record):
         Locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(ShaftPart))),
+        SHAFT,
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, one pair "
         "of gears, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
@@ -217,7 +217,7 @@ class Machine(Record):
         cylinder: Cylinder | None = None,
         cylinders: tuple[Cylinder, ...] | EqualCylinders = (),
         firing_order: tuple[int, ...] | None = None,
-        shaft: tuple[ShaftPart | str, ...] | None = None,
+        shaft: tuple[ShaftPart, ...] | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""

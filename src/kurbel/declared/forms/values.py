@@ -244,11 +244,11 @@ class Choice(Form):
     """
 
     def __init__(
-        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, bool] | None = None
+        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, Any] | None = None
     ) -> None:
         self.words, self.also, self.means = words, also or {}, means or {}
         every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
-        schema: Schema = {"type": "boolean"} if means else {"enum": list(words)}
+        schema: Schema = {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
         super().__init__(" or ".join(every), words[0], written, schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
