@@ -28,7 +28,6 @@ from kurbel.machine.ideal_cards import Diesel, Otto
 from kurbel.machine.indicator import Rectangle
 from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
-from kurbel.machine.parts import Piston
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
@@ -44,13 +43,9 @@ FORMAT = 1
 STANDARD_ATMOSPHERE = 101325.0
 
 
-def _names(cylinders: Sequence[Cylinder]) -> list[str]:
-    return [one.name or f"cylinder {number}" for number, one in enumerate(cylinders, 1)]
-
-
-def _shaft_faults(parts: Sequence[ShaftPart], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
-    names = _names(cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders)
-    return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
+def _names(cylinders: Sequence[Cylinder] | EqualCylinders) -> list[str]:
+    each = cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders
+    return [one.name or f"cylinder {number}" for number, one in enumerate(each, 1)]
 
 
 class LoadCase(Record):
@@ -222,7 +217,7 @@ class Machine(Record):
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         given = (cylinder,) if cylinder else cylinders
-        faults = _shaft_faults(shaft, given) if shaft else []
+        faults = shaft_faults(shaft, _names(given)) if shaft else []
         try:
             given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
             if shaft:
@@ -239,7 +234,7 @@ class Machine(Record):
         """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
         shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        known = _shaft_faults(shaft, cylinders) if isinstance(shaft, tuple) and not unknown else []
+        known = shaft_faults(shaft, _names(cylinders)) if isinstance(shaft, tuple) and not unknown else []
         return super().faults_of_some(given) + known
 
     def rules(self) -> Iterator[Rule]:
@@ -255,7 +250,6 @@ class Machine(Record):
                 inside = ("tandem", number - 1) if number else ()
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
-        for index, cylinder in enumerate(self.cylinders):
             of_yoke = cylinder.mechanism.pin_diameter if isinstance(cylinder.mechanism, ScotchYoke) else None
             rubbing = cylinder.friction.rules_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
             yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
@@ -341,15 +335,12 @@ class Machine(Record):
     def strength_obstacle(self) -> str:
         """Why the strength of the crankshaft cannot be examined, or an empty text."""
         if self.crankshaft is None:
-            return (
-                "no 'crankshaft' is given; its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
-            )
-        if len(self.cylinders) != 1:
-            return (
-                f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
-                if self.cylinders
-                else "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
-            )
+            lengths = "its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
+            return f"no 'crankshaft' is given; {lengths}"
+        if not self.cylinders:
+            return "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+        if len(self.cylinders) > 1:
+            return f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
         cylinder = self.cylinders[0]
         if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
             return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
@@ -363,21 +354,20 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
     cycle = 360 * machine.revolutions
     found = []
     for number, cylinder in enumerate(machine.cylinders, 1):
-        centres = cylinder.mechanism.dead_centres
-        each: list[tuple[int, float]] = []  # of every end that fires the length of its cycle, and its dead centre
+        mechanism, each = cylinder.mechanism, list[tuple[int, bool]]()  # of every end that fires its turns, and which
         four = machine.cycle_of(cylinder) == "four-stroke"
-        if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
-            each.append((720, centres()[0]))
+        if four and mechanism.slides and not any(one.chambers for one in cylinder.pistons):
+            each.append((2, False))
         for index, piston in enumerate(cylinder.pistons):
             turns = CYCLES[machine.cycle_of_piston(cylinder, index)]
             for end, chamber in piston.chambers.items():
                 # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
                 idle = isinstance(chamber, Rectangle) and chamber.mean <= 0
                 if isinstance(chamber, (Otto, Diesel)) or (turns == 2 and not idle):
-                    each.append((360 * turns, centres()[end == "crank_end"]))
-        for length, angle in each:
-            firing = (turn + angle + cylinder.crank_position for turn in range(0, cycle, length))
-            found += [(within_cycle(one, float(cycle)), number) for one in firing]
+                    each.append((turns, end == "crank_end"))
+        for turns, outer in each:
+            first = mechanism.dead_centres()[outer] + cylinder.crank_position
+            found += [(within_cycle(turn + first, float(cycle)), number) for turn in range(0, cycle, 360 * turns)]
     return sorted(found)
 
 
@@ -386,27 +376,23 @@ def of_cycle(machine: Machine, number: int) -> Machine:
 
     Raises UsageError if no trace has several cycles, or one has fewer.
     """
-    counts = [len(trace.over(period).samples) for trace, period in _of_several(machine)]
+    counts: list[int] = []
+    alone: dict[int, Trace] = {}  # a mirrored end stays the same trace
+    cylinders = []
+    for cylinder in machine.cylinders:
+        pistons = []
+        for index, piston in enumerate(cylinder.pistons):
+            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
+            ends: dict[str, Any] = {}
+            for end, chamber in piston.chambers.items():
+                if isinstance(chamber, Trace) and (count := len(chamber.over(period).samples)) > 1:
+                    counts.append(count)
+                    ends[end] = alone.setdefault(id(chamber), chamber.of_cycle(min(number, count), period))
+            shown = replace(piston.indicator, **ends) if piston.indicator else None
+            pistons.append(replace(piston, indicator=shown))
+        cylinders.append(replace(cylinder, pistons=tuple(pistons)))
     if not counts:
         raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")
     if number > min(counts):
         raise UsageError(f"--cycle {number}: there are {min(counts)} cycles, counted from 1")
-    # a mirrored end stays the same trace
-    alone: dict[int, Any] = {id(trace): trace.of_cycle(number, period) for trace, period in _of_several(machine)}
-
-    def changed(piston: Piston) -> Piston:
-        ends = {end: alone[id(chamber)] for end, chamber in piston.chambers.items() if id(chamber) in alone}
-        return replace(piston, indicator=replace(piston.indicator, **ends)) if piston.indicator else piston
-
-    cylinders = (replace(one, pistons=tuple(map(changed, one.pistons))) for one in machine.cylinders)
     return replace(machine, cylinders=tuple(cylinders))
-
-
-def _of_several(machine: Machine) -> Iterator[tuple[Trace, float]]:
-    """Yield the traces of several cycles, each with the length of a cycle in degrees."""
-    for cylinder in machine.cylinders:
-        for index, piston in enumerate(cylinder.pistons):
-            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
-            for chamber in piston.chambers.values():
-                if isinstance(chamber, Trace) and len(chamber.over(period).samples) > 1:
-                    yield chamber, period

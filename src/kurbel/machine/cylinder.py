@@ -13,7 +13,17 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
+from kurbel.machine.parts import (
+    ConnectingRod,
+    Friction,
+    GasOnRings,
+    Masses,
+    Moment,
+    Piston,
+    RamForce,
+    RodPoint,
+    TandemPiston,
+)
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -141,7 +151,11 @@ class Cylinder(Record):
         yield from at_point
         if not any(rule.broken for rule in at_point):
             yield from _of_output(self)
-            yield from _of_rod(self) if self.mechanism.slides else ()
+            rod = self.masses.connecting_rod if self.masses else None
+            if self.friction and self.mechanism.slides:
+                yield from (rule.below("friction") for rule in _of_friction(self.friction, self))
+            if rod and self.mechanism.slides:
+                yield from (rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism))
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
@@ -187,49 +201,44 @@ _INSTEAD = {
 """What else to do where nothing slides that could have this key."""
 
 
-def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
-    """Friction of a crosshead needs a side force N and a guide for it; the mass of a rod needs a rod."""
-    mechanism, masses, friction = cylinder.mechanism, cylinder.masses, cylinder.friction
+def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
+    """A crosshead needs a side force and a guide, rings a bore, pins a rod; a yoke must not lock."""
+    mechanism, pistons, rings = cylinder.mechanism, cylinder.pistons, friction.rings
     kind, has_rod = mechanism.name, mechanism.has_rod
-    if friction is not None:
-        on_bore = friction.rings is not None and not cylinder.pistons
-        yield Rule(("friction", "rings"), on_bore, "rings rub on the bore; give the cylinder a 'bore'")
-        by_gas = friction.rings is not None and isinstance(friction.rings.pressure, GasOnRings)
-        without = by_gas and bool(cylinder.pistons) and cylinder.pistons[0].indicator is None
-        yield Rule(("friction", "rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
-        reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
-        unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
-        yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
-        yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
-        for key in friction.of_pins:
-            without = not has_rod and (yoke is None or key == "crosshead_pin")
-            yield Rule(("friction", key), without, f"a {kind} has no connecting rod; leave '{key}' out")
-        yield from _of_yoke(yoke, friction, kind)
-    rod = masses.connecting_rod if masses else None
-    if rod is not None:
-        message = f"a {kind} has no connecting rod; give the reciprocating mass as 'other'"
-        yield Rule(("masses", "connecting_rod"), not has_rod, message)
-        if has_rod and rod.center_of_gravity is not None:
-            place, length = ("masses", "connecting_rod", "center_of_gravity"), mechanism.rod_length
-            endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
-            yield Rule(place, np.isinf(length), endless)
-            # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
-            beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
-            numbers = {"at": rod.center_of_gravity, "length": length}
-            yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
-
-
-def _of_yoke(yoke: ScotchYoke | None, friction: Friction, kind: str) -> Iterator[Rule]:
-    """Only the yoke has a block and a pair of guides, whose distance must be known; they must not lock it."""
+    yield Rule("rings", rings is not None and not pistons, "rings rub on the bore; give the cylinder a 'bore'")
+    by_gas = rings is not None and isinstance(rings.pressure, GasOnRings)
+    without = by_gas and bool(pistons) and pistons[0].indicator is None
+    yield Rule(("rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
+    reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
+    unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
+    yield Rule("crosshead", unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+    yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
+    for key in friction.of_pins:
+        without = not has_rod and (yoke is None or key == "crosshead_pin")
+        yield Rule(key, without, f"a {kind} has no connecting rod; leave '{key}' out")
     for key, given in (("block", friction.block), ("guides", friction.guides)):
-        if yoke is None:
-            yield Rule(("friction", key), given is not None, f"a {kind} is no scotch-yoke; leave '{key}' out")
+        without = yoke is None and given is not None
+        yield Rule(key, without, f"a {kind} is no scotch-yoke; leave '{key}' out")
     if yoke is not None and friction.guides is not None:
         apart = yoke.guide_length
-        yield Rule(("friction", "guides"), apart is None, "'guides' needs their distance; give 'guide_length'")
+        yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
         locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
         message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
-        yield Rule(("friction", "guides"), locks, message)
+        yield Rule("guides", locks, message)
+
+
+def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
+    """The mass of a rod needs a rod, and its centre of gravity lies on it."""
+    message = f"a {mechanism.name} has no connecting rod; give the reciprocating mass as 'other'"
+    yield Rule((), not mechanism.has_rod, message)
+    if mechanism.has_rod and rod.center_of_gravity is not None:
+        length = mechanism.rod_length
+        endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        yield Rule("center_of_gravity", np.isinf(length), endless)
+        # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
+        beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
+        numbers = {"at": rod.center_of_gravity, "length": length}
+        yield Rule("center_of_gravity", rod.center_of_gravity > length, beyond, numbers)
 
 
 _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")

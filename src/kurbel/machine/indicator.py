@@ -1,9 +1,9 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Union
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
-from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
+from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.measured import Measured
+from kurbel.traces.correct import Trace
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,19 +75,6 @@ class Drawn(Record):
 
 
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
-
-
-class Chamber(Protocol):
-    """The pressure in one end of a cylinder: a card, an ideal card or a trace."""
-
-    @property
-    def cycles(self) -> tuple[str, ...]:
-        """The working cycles that it can be part of."""
-        ...
-
-    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,18 +158,18 @@ class Card(Record):
         cycle = "four-stroke" if {"intake", "exhaust"} & given.keys() else "two-stroke"
         missing = [name for name in STROKES[cycle] if name not in given]
         faults = [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
-        faults += _line_faults(given, whole, paper)
         if interpolate == "polytropic" and not clearance:
-            needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
-            faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
+            needed = "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0"
+            faults.append(Fault(("interpolate",), needed))
         for name, points in given.items():
-            faults += (fault.below((name,)) for fault in size_faults(points, factor, "pressure"))
+            large = size_faults(points, factor, "pressure")
+            faults += (fault.below((name,)) for fault in _line_faults(points, whole, paper) + large)
         refuse(*faults)
         lines, notes = [], []
-        for index, name in enumerate(STROKES[cycle]):
-            points, start = given[name], index % 2
+        for start, name in zip((0, 1, 0, 1), STROKES[cycle]):
+            points = given[name]
             ordered = points if (points[0][0] <= points[-1][0]) == (start == 0) else points[::-1]
-            kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
+            kept = [point for before, point in zip([None, *ordered], ordered) if point != before]
             if len(kept) < len(points):
                 notes.append(f"{name}: a point given twice counts once")
             pressures = tuple(p * factor[0] / factor[1] for _, p in kept)
@@ -213,30 +201,24 @@ class Card(Record):
             yield Rule((), lowest + lift < 0, below, numbers)
 
 
-def _line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
-    """Return the faults of lines that do not run once through the whole stroke; points outside are reported once.
+def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
+    """Return the first fault of a line that does not run once through the whole stroke.
 
     whole: the stroke in a unit of the paper, '' for fractions of it.
     """
-    place, of = (f"{{:g}} {unit}", f" {unit}") if unit else ("fraction {:g}", " of the stroke")
-    faults = []
-    for name, points in lines.items():
-        beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
-        if beyond:
-            x = points[beyond[0]][0]
-            message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
-            if not unit:
-                hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and len(beyond) > 1 else ""
-                message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
-            return [Fault((name, beyond[0]), message)]
-        low, high = sorted((points[0][0], points[-1][0]))
-        own = "0 is this chamber's own dead centre, where it is smallest"
-        if (low, high) != (0.0, whole):
-            reach = f"the line must reach from 0 to {whole:g}{of}; it runs from {low:g} to {high:g}{of}; {own}"
-            faults.append(Fault((name,), reach))
-        else:
-            faults += (fault.below((name,)) for fault in order_faults(points, place))
-    return faults
+    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
+    if beyond:
+        x = points[beyond[0]][0]
+        message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
+        if not unit:
+            hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and len(beyond) > 1 else ""
+            message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
+        return [Fault((beyond[0],), message)]
+    low, high = sorted((points[0][0], points[-1][0]))
+    if (low, high) == (0.0, whole):
+        return order_faults(points, f"{{:g}} {unit}" if unit else "fraction {:g}")
+    of, own = unit or "of the stroke", "0 is this chamber's own dead centre, where it is smallest"
+    return [Fault((), f"the line must reach from 0 to {whole:g} {of}; it runs from {low:g} to {high:g} {of}; {own}")]
 
 
 class Constant(Record):
@@ -273,6 +255,8 @@ _CHAMBER = Keyed(
 _ONE_PRESSURE = NumberForm(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
 )
+Chamber = Union[Rectangle, Card, IdealCard, Trace]
+"""The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
 def _loaded(chamber: Any) -> Any:

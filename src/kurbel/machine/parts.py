@@ -8,7 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Form, NumberForm
+from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
 from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
@@ -44,15 +44,12 @@ class ConnectingRod(Record):
 
     def at_crosshead(self, length: float) -> float:
         """Reciprocating mass in kg: the share, or m (1 − a/L) with the length L of the rod in m."""
-        if self.center_of_gravity is None:
-            return self.mass * self.share
-        return self.mass * (1 - self.center_of_gravity / length)
+        share = self.share if self.center_of_gravity is None else 1 - self.center_of_gravity / length
+        return self.mass * share
 
     def at_pin(self, length: float) -> float:
         """Mass in kg that turns with the crank pin: what the share leaves, or m a/L with the length L in m."""
-        if self.center_of_gravity is None:
-            return self.mass * (1 - self.share)
-        return self.mass * self.center_of_gravity / length
+        return self.mass - self.at_crosshead(length)
 
     def excess_inertia(self, length: float) -> float:
         """I_r − m a (L − a) in kg m²: what the two masses have too little of; for an exact rod of length L in m.
@@ -65,29 +62,9 @@ class ConnectingRod(Record):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-_ONE_OR_MORE: Form = OneOf(NumberForm("mass", least=0), Listing(NumberForm("mass", least=0)))
-_PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
-
-
-def _sum(given: Values) -> dict[str, Any]:
-    """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
-    each = {name: given[name] for name in _PARTS if given.get(name) is not None}
-    sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
-    return {
-        "parts": total(*sums.values()),
-        "crosshead": sums.get("crosshead"),
-        "undivided": "reciprocating" in sums,
-        "pistons": each["piston"] if isinstance(each.get("piston"), tuple) else (),
-    }
-
-
-def _rod(given: Values) -> dict[str, Any]:
-    rod = given["connecting_rod"]
-    return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
-
-
 def _part(text: str) -> Key:
-    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum)
+    each = NumberForm("mass", least=0)
+    return alternative(OneOf(each, Listing(each)), text, instead="reciprocating")
 
 
 class Masses(Record):
@@ -104,7 +81,6 @@ class Masses(Record):
         "Total reciprocating mass, including its share of the connecting rod; instead of the parts",
         "m",
         least=0,
-        gives=_sum,
     )
     _piston = _part("Piston, or a list of pistons")
     _piston_rod = _part("Piston rod")
@@ -115,7 +91,6 @@ class Masses(Record):
         "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),
-        gives=_rod,
     )
 
     parts: float = 0.0
@@ -135,6 +110,23 @@ class Masses(Record):
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
         yield Rule((), not given, none)
+
+    @classmethod
+    def of_keys(
+        cls, connecting_rod: float | ConnectingRod | None = None, rotating: float = 0.0, **parts: Any
+    ) -> "Masses":
+        """Return the masses of these keys; each part is a mass or a tuple of masses."""
+        sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
+        if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
+            connecting_rod = ConnectingRod(connecting_rod)
+        return cls(
+            parts=total(*sums.values()),
+            connecting_rod=connecting_rod,
+            rotating=rotating,
+            crosshead=sums.get("crosshead"),
+            undivided="reciprocating" in sums,
+            pistons=piston if isinstance(piston := parts.get("piston"), tuple) else (),
+        )
 
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""

@@ -189,13 +189,13 @@ def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
         elif name in seen:
             faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
         seen.add(name)
-    if REFUSED in parts:
-        return faults
     absent = [name for name in cylinders if name not in seen]
-    if absent and not seen - set(cylinders):
-        item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
-        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
-    return [*faults, *(Fault(place, message) for broken, place, message in _of_order(parts) if broken)]
+    if REFUSED not in parts:
+        if absent and not seen - set(cylinders):
+            item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
+            faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
+        faults += (Fault(place, message) for broken, place, message in _of_order(parts) if broken)
+    return [fault.below(("shaft",)) for fault in faults]
 
 
 def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indivisible
+from kurbel.arrays import Array, Indivisible, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.keys import Rule
 from kurbel.errors import refused
@@ -110,7 +110,7 @@ class Trace(Indivisible):
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
         return tuple(cycle for cycle, turns in CYCLES.items() if 360.0 * turns in joins)
 
-    def rules_in(self, cycle: str, lift: float) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine."""
         other = next(name for name in CYCLES if name != cycle)
         covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * CYCLES[cycle]:g} deg"
