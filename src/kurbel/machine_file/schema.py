@@ -126,16 +126,17 @@ def _of_figures(form: Figures, known: Mapping[str, Quantity], definitions: Schem
     # a symbol of several, or of one and the id of another, names none
     named = Counter(name for one in known.values() for name in {one.id, one.symbol, one.ascii_symbol})
     properties: Schema = {}
-    of_one: Schema = {}  # of those with a prefix, by pattern
+    names: dict[str, list[str]] = {}  # of those of one schema, which have one pattern below a scope
+    schemas: dict[str, Schema] = {}
     for id, quantity in known.items():
         for name in (id, quantity.symbol, quantity.ascii_symbol):
-            if not quantity.listed and (name == id or named[name] == 1):
+            if not quantity.listed and (name == id or named[name] == 1) and name not in properties:
                 schema = _of(form.figure_of(quantity), definitions)
-                properties.setdefault(name, {**schema, "description": quantity.text})
-                # re.escape escapes more than the patterns of JSON Schema allow
-                escaped = re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name)
-                of_one.setdefault(f"^.+\\.{escaped}$", schema)
-    return {**_mapping(properties), "patternProperties": of_one}
+                properties[name] = {**schema, "description": quantity.text}
+                schemas[repr(schema)] = schema
+                names.setdefault(repr(schema), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
+    patterns = {f"^.+\\.({'|'.join(names[text])})$": schema for text, schema in schemas.items()}
+    return {**_mapping(properties), "patternProperties": patterns}
 
 
 def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
