@@ -191,13 +191,6 @@ class Effort:
     files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
-    @classmethod
-    def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
-        """Return the diagram of the value of `points` in a machine file; raises RuleError."""
-        refuse(*(fault.below(("points",)) for fault in _angle_faults(points) or size_faults(points, unit, "torque")))
-        up, down = unit
-        return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
-
     def cycle_fault(self, cycle: str, turns: int) -> str:
         """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
         last, whole = self.angles[-1], 360.0 * turns
@@ -226,22 +219,6 @@ class Harmonics:
     terms: tuple[tuple[float, float, float], ...]
 
     key: ClassVar[str] = "harmonics"
-
-    @classmethod
-    def of_keys(cls, unit: Factor, mean: float, terms: list[tuple[float, float, float]]) -> "Harmonics":
-        """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
-        up, down = unit
-        for index, (order, _, _) in enumerate(terms):
-            if not 0 < order <= _HIGHEST:
-                message = (
-                    f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
-                )
-                refused(message, "harmonics", index, 0)
-        bare = isinstance(mean, InUnit)
-        sizes = [(0.0, mean if bare else 0.0), *((order, abs(c) + abs(s)) for order, c, s in terms)]
-        refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
-        level = mean * up / down if bare else mean
-        return cls(level, tuple((n, c * up / down, s * up / down) for n, c, s in terms))
 
     def cycle_fault(self, cycle: str, turns: int) -> str:
         """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
@@ -302,8 +279,46 @@ class _MeanTorque(OneOf):
         return InUnit(found) if bare and isinstance(found, float) else found
 
 
-MEAN_TORQUE = _MeanTorque()
-HARMONICS = Points("order", "cos", "sin", least=1)
+UNIT = alternative(unit_name("torque"), "Unit of the torques")
+POINTS = alternative(
+    Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
+)
+MEAN = alternative(_MeanTorque(), "Mean torque, bare in the unit of the harmonics", "M_m")
+HARMONICS = alternative(
+    Points("order", "cos", "sin", least=1),
+    "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
+    needs="mean",
+    instead="points",
+)
+
+
+def harmonics_need_a_unit(given: Values) -> Rule:
+    """Return the rule that coefficients of harmonics have the unit of their key."""
+    return Rule("harmonics", "harmonics" in given and "unit" not in given, "'harmonics' needs 'unit' beside it")
+
+
+def points_of(unit: Factor, points: list[Point]) -> Effort:
+    """Return the diagram of the value of `points` in a machine file; raises RuleError."""
+    refuse(*(fault.below(("points",)) for fault in _angle_faults(points) or size_faults(points, unit, "torque")))
+    up, down = unit
+    return Effort(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
+
+
+def harmonics_of(unit: Factor, mean: float, terms: list[Point]) -> Harmonics:
+    """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
+    for index, (order, *_) in enumerate(terms):
+        if not 0 < order <= _HIGHEST:
+            most = f"it must be more than 0, at most {_HIGHEST}"
+            refused(f"order {order:g} is no number of periods per turn; {most}", "harmonics", index, 0)
+    sizes = [(0.0, mean if isinstance(mean, InUnit) else 0.0), *((n, abs(c) + abs(s)) for n, c, s in terms)]
+    refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
+    up, down = unit
+    return Harmonics(in_unit(mean, unit), tuple((n, c * up / down, s * up / down) for n, c, s in terms))
+
+
+def in_unit(mean: float, unit: Factor) -> float:
+    """Return a mean torque in N m, where a bare number is in this unit."""
+    return mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean
 
 
 class Load(Record):
@@ -317,26 +332,11 @@ class Load(Record):
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(unit_name("torque"), "Unit of the torques")
-    _points = alternative(
-        Points("deg", "torque"),
-        "Torque over the crank angle; two points at one angle are a jump",
-        "M",
-        needs="unit",
-        gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
-    )
-    _mean = alternative(
-        MEAN_TORQUE,
-        "Mean torque, added to the harmonics, in the unit",
-        "M_m",
-        needs="harmonics",
-    )
-    _harmonics = alternative(
-        HARMONICS,
-        "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
-        needs="unit",
-        instead="points",
-        gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
+    _unit = UNIT
+    _points = POINTS._replace(gives=lambda given: {"diagram": points_of(given["unit"], given["points"])})
+    _mean = MEAN._replace(needs="harmonics")
+    _harmonics = HARMONICS._replace(
+        gives=lambda given: {"diagram": harmonics_of(given["unit"], given["mean"], given["harmonics"])}
     )
     diagram: Effort | Harmonics | None = None
 
@@ -344,7 +344,7 @@ class Load(Record):
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         lone = "unit" in given and not {"points", "harmonics"} & given.keys()
         yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
-        yield Rule("harmonics", "harmonics" in given and "mean" not in given, "'harmonics' needs 'mean' beside it")
+        yield harmonics_need_a_unit(given)
 
     def rules(self) -> Iterator[Rule]:
         forms = {"power_law": self.power, "slip": self.slip, self.key: self.diagram}
