@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby, pairwise, product
+from itertools import groupby, product
 
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
@@ -134,8 +134,6 @@ _TOGETHER = 12
 """Cylinders of which all combinations of turns are compared; of more, those of one crank pin after another."""
 _ON_A_PIN = 9
 """Cylinders that are compared together where there are more: a row of a large radial engine."""
-_EQUAL = 1e-9
-"""Share by which sums of squared intervals differ that are equal but for rounding."""
 
 
 def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: str) -> tuple[Cylinder, ...]:
@@ -149,41 +147,31 @@ def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: st
     angles = {place: cylinders[place].crank_position for place in firing}
     fixed = {place: angle for place, angle in angles.items() if place not in choosing}
     for pin in _pins(cylinders, choosing) if len(firing) > _TOGETHER else [choosing] if choosing else []:
-        fixed = _most_even(fixed, {place: angles[place] for place in pin})
+        turns = product(*((angles[place], angles[place] + 360.0) for place in pin))
+        fixed = min(({**fixed, **dict(zip(pin, chosen))} for chosen in turns), key=_unevenness)
     return tuple(
         replace(one, crank_position=fixed[place]) if place in choosing else one for place, one in enumerate(cylinders)
     )
 
 
-def _pins(cylinders: Sequence[Cylinder], places: Iterable[int]) -> list[list[int]]:
+def _pins(cylinders: Sequence[Cylinder], places: Sequence[int]) -> list[list[int]]:
     """Return the places in the list of the cylinders that share a crank pin, pin by pin along the shaft."""
-
-    def pin(place: int) -> tuple[float, float]:
+    pins = {}
+    for place in places:
         one = cylinders[place]
-        return one.axial_position or 0.0, round((one.bank_angle - one.crank_position) % 360.0, 6) % 360.0
+        turned = round((one.bank_angle - one.crank_position) % 360.0, 6) % 360.0
+        pins[place] = one.axial_position or 0.0, turned
+    along = sorted(places, key=lambda place: pins[place][0])
+    each = [list(group) for _, group in groupby(along, lambda place: pins[place])]
+    return [one[start : start + _ON_A_PIN] for one in each for start in range(0, len(one), _ON_A_PIN)]
 
-    along = sorted(places, key=lambda place: pin(place)[0])
-    pins = [list(group) for _, group in groupby(along, pin)]
-    return [one[start : start + _ON_A_PIN] for one in pins for start in range(0, len(one), _ON_A_PIN)]
 
-
-def _most_even(fixed: Mapping[int, float], open_: Mapping[int, float]) -> dict[int, float]:
-    """Return the angles of those that are fixed and of those of which each may fire a turn later."""
-    sums: list[float] = []
-    choices = [(angle, angle + 360.0) for angle in open_.values()]
-    here = [within_cycle(angle, 720.0) for angle in fixed.values()]
-    for angles in product(*([within_cycle(angle, 720.0) for angle in both] for both in choices)):
-        along = sorted([*here, *angles])
-        sums.append(sum((after - one) ** 2 for one, after in pairwise((*along, along[0] + 720.0))))
-    least = min(sums) * (1 + _EQUAL)
-    found = ({**fixed, **dict(zip(open_, angles))} for angles, size in zip(product(*choices), sums) if size <= least)
-
-    def order(angles: Mapping[int, float]) -> list[int]:
-        """Return the cylinders in the order in which they fire, from the first one on."""
-        first = angles[min(angles)]
-        return sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
-
-    return min(found, key=order)
+def _unevenness(angles: Mapping[int, float]) -> tuple[float, list[int]]:
+    """Return the sum of the squared firing intervals, and the cylinders in the order in which they fire."""
+    # rounded, since equal sums may differ by rounding
+    squares = round(sum(one * one for one in intervals(angles.values(), 720.0)), 6)
+    first = angles[min(angles)]
+    return squares, sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
 
 
 def within_cycle(angle: float, cycle: float) -> float:

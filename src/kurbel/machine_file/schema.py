@@ -107,7 +107,7 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
             "examples": [form.example],
         }
         number = _reference(name)
-    others: list[Any] = [word for word, _ in form.words] + [0] * form.zero
+    others: list[Any] = [*form.words] + [0] * form.zero
     return {"anyOf": [number, {"enum": others}]} if others else number
 
 

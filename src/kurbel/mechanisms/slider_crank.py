@@ -14,7 +14,7 @@ from kurbel.declared.record import Rule, Values, alternative, field
 from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
-_INFINITE = (("infinite", math.inf),)
+_INFINITE = {"infinite": math.inf}
 
 
 def crank_field() -> Any:

@@ -89,7 +89,7 @@ class SlottedLever(Mechanism):
         "l",
         default=math.inf,
         above=0,
-        words=(("infinite", math.inf),),
+        words={"infinite": math.inf},
         absent="fork head sliding along the ram",
     )
     ram_height: float | None = field(

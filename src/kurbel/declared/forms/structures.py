@@ -29,7 +29,7 @@ from kurbel.declared.reading import (
     shown,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Path, RuleError, refused
+from kurbel.errors import Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -171,20 +171,20 @@ def no_mapping(form: Form, value: Node) -> NoReturn:
     refused(f"expected {form.expected}, got {kind_of(value)}{glued_hint(value)}")
 
 
-def places(form: Form, path: str = "", words: str = "at the top of the file") -> Iterator[tuple[str, str]]:
-    """Yield (description of the mapping, key) for every key below a mapping of this form; path: of that mapping."""
+def places(form: Form, path: Path = (), words: str = "at the top of the file") -> Iterator[tuple[str, Path, str]]:
+    """Yield (description, path, key) for every key below a mapping of this form; both are of the key's mapping."""
     if isinstance(form, RecordForm) and form.inline_too:
         return
     for name, inner in form.parts:
         if isinstance(inner, Inline):
             yield from places(inner, path, inner.item if inner.unless else words)
             continue
-        below = f"{path}.{name}" if path and name else path or name
+        below: Path = (*path, name) if name else path
         if name:
-            yield words, name
+            yield words, path, name
         if isinstance(inner, Variant):
-            yield from ((f"to '{name}: {word}'", one) for word, case in inner.cases.items() for one in case.keys)
-        yield from places(inner, below, f"under '{below}'" if name else words)
+            yield from ((f"to '{name}: {word}'", (), one) for word, case in inner.cases.items() for one in case.keys)
+        yield from places(inner, below, f"under '{path_text(below)}'" if name else words)
 
 
 def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:

@@ -5,8 +5,8 @@ import operator
 import os
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -150,7 +150,7 @@ class NumberForm(Form):
     least: float | None = None
     below: float | None = None
     most: float | None = None
-    words: tuple[tuple[str, float], ...] = ()
+    words: Mapping[str, float] = field(default_factory=dict)
     zero: bool = False
     whole: bool = False
     share_of: str = ""
@@ -159,7 +159,7 @@ class NumberForm(Form):
     apart: bool = False
 
     def __post_init__(self) -> None:
-        instead, bare = [word for word, _ in self.words], self.kind == "ratio"
+        bare = self.kind == "ratio"
         if self.whole:
             sample, expected = str(max(self.least or 0, 3) if self.most is None else self.least), "a whole number"
         elif bare:
@@ -167,17 +167,16 @@ class NumberForm(Form):
         else:
             sample = example(self.kind)
             expected = f"a number with its unit, such as '{sample}'"
-        written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in instead)
-        super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
+        written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in self.words)
+        super().__init__(expected + "".join(f" or '{word}'" for word in self.words), sample, written)
         self.number = None if self.whole or self.apart else self
         self.unread = None if self.number is None or self.becomes else math.nan
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the number, and compare it with its bounds."""
         text = one_line(value, self.expected)
-        for word, number in self.words:
-            if text == word:
-                return number
+        if text in self.words:
+            return self.words[text]
         if (self.words and text.strip()[0].isalpha()) or (self.or_else and not NUMBER.match(plain(text))):
             refused(f"expected {self.expected}{self.or_else}, got '{shown(text)}'")
         try:
