@@ -10,8 +10,8 @@ import click
 from kurbel.cli.group import Progress, to_stderr
 from kurbel.cli.options import format_of
 from kurbel.designs.chosen import pareto_front, read_aim, read_condition, summary, summary_heads
-from kurbel.designs.plan import MOST_ROWS, shard
-from kurbel.designs.sweep import Design, Spec, Sweep
+from kurbel.designs.plan import MOST_ROWS, read_axis, shard
+from kurbel.designs.sweep import Design, Head, Spec, Sweep
 from kurbel.designs.workers import likely_jobs, rows_of
 from kurbel.machine_file import source
 from kurbel.render import Look
@@ -65,19 +65,20 @@ def run(wanted: SweepOptions) -> None:
     origin = source.read(wanted.file)._replace(case=wanted.case_name).set_over(wanted.overrides)
     spec = Spec(
         origin,
-        wanted.vary,
+        tuple(map(read_axis, wanted.vary)),
         wanted.side_by_side,
         wanted.sample,
         wanted.seed,
+        None if wanted.yes else MOST_ROWS,
+        wanted.cases,
         wanted.columns or (),
         wanted.with_angles,
         wanted.units or ("si" if written in (*_LINES, "parquet") else "metric"),
-        most=None if wanted.yes else MOST_ROWS,
-        cases=wanted.cases,
     )
     sweep = Sweep(spec)
     rows = shard(wanted.shard, sweep.rows) if wanted.shard else range(sweep.rows)
-    conditions = [read_condition(one, sweep.heads, sweep.texts) for one in wanted.conditions]
+    every = (*sweep.heads, *map(Head, sweep.texts))
+    conditions = [read_condition(one, every) for one in wanted.conditions]
     aims = [read_aim(one, sweep.heads, "--pareto") for one in wanted.pareto or ()]
     order = read_aim(wanted.sort, sweep.heads, "--sort") if wanted.sort else None
     for_people = written in ("table", "markdown")

@@ -41,9 +41,10 @@ def sweep(
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
     origin = _read(machine)
-    given = tuple(_inputs(origin, inputs))
+    start = tuple(written_texts(origin, tuple(inputs)))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
-    found = Sweep(Spec(origin, given=given, side_by_side=True, columns=names, with_angles=with_angles))
+    axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
+    found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
     return _arrays(found, list(rows_of(found, range(found.rows))))
 
 
@@ -86,18 +87,14 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the inputs with their values as texts of the machine file."""
+def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
+    """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
     columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
     count = max(map(len, columns.values()), default=0)
     columns = {key: np.repeat(one, count) if np.ndim(inputs[key]) == 0 else one for key, one in columns.items()}
-    lengths = {key: len(column) for key, column in columns.items()}
-    counts = set(lengths.values())
-    if len(counts) != 1 or 0 in counts or any(column.ndim != 1 for column in columns.values()):
-        each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
+    if not count or any(column.shape != (count,) for column in columns.values()):
+        each = ", ".join(f"{key} has {len(column)}" for key, column in columns.items())
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
-    keys = tuple(columns)
-    binder = Binder(origin, keys, written_texts(origin, keys))
     for (key, column), kind in zip(columns.items(), binder.kinds):
         unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
         yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
@@ -106,14 +103,13 @@ def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
 def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
-        if head.input:
-            continue
         if any(isinstance(one, tuple) for one in values):
             arrays[head.id] = np.empty(len(values), dtype=object)
             arrays[head.id][:] = values
-        else:
-            arrays[head.id] = np.array([np.nan if one is None else one for one in values], dtype=float)
-    arrays["failure"] = np.array([row.failure for row in rows])
-    if found.limited:
-        arrays["keeps"] = np.array([bool(row.keeps) for row in rows])
+        elif not head.input:
+            arrays[head.id] = np.array(values, dtype=float)
+    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
+    arrays["failure"] = np.array(texts["failure"])
+    if "keeps" in texts:
+        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
     return arrays

@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_at, is_slow
+from kurbel.designs.answers import Answer, answered, is_slow, texts_of
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, Path, UnitError, UsageError
@@ -151,7 +151,7 @@ def _drawn(inputs: Inputs, bent: Sequence[Uncertain], counted: Counted) -> list[
     if not bent:
         return []
     requested = [one.answer for one in bent]
-    slow = any(is_slow(inputs.binder.machine, one) for one in requested)
+    slow = is_slow(inputs.binder.machine, requested)
     count, held = (SLOW_SAMPLE, _FEW_HELD) if slow else (SAMPLE, _HELD)
     normal = np.vectorize(NormalDist().inv_cdf)
     shifts = normal(latin_hypercube(count, len(inputs.keys), 0))
@@ -176,7 +176,8 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
 
     shifts: (machines, inputs), in uncertainties.
     """
-    every = answers_at(inputs.binder, inputs.values + shifts * inputs.spreads, requested)
+    texts = texts_of(inputs.binder, inputs.values + shifts * inputs.spreads)
+    every = answered(inputs.binder, texts, requested)
     found = np.full((len(every), len(requested)), math.nan)
     for row, each in enumerate(every):
         if not isinstance(each, str):

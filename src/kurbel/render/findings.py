@@ -51,8 +51,7 @@ def as_json(found: Solutions) -> dict[str, object]:
         "machine": found.machine,
         "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
         "wanted": [
-            {"id": name, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value}
-            for name, one in zip(found.names, found.wanted)
+            {"id": one.id, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value} for one in found.wanted
         ],
         "found": [solution(one) for one in found.found],
         "range": ranges[0] if len(ranges) == 1 else ranges,
@@ -64,7 +63,7 @@ def as_json(found: Solutions) -> dict[str, object]:
 def picture(found: Solutions, system: str) -> Picture:
     """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
     key, wanted = found.varied[0], found.wanted[0]
-    numbers, values, kind = found.places[:, 0], found.values[:, 0], wanted.answer.kind
+    numbers, values, kind = found.places[:, 0], found.values[:, wanted.place], wanted.answer.kind
     unit = shown_unit(kind, system, float(np.nanmax(np.abs(values))))
     # one nan at a jump, two for a design that fails
     numbers, values = (np.repeat(one, 1 + np.isnan(values)) for one in (numbers, values))
@@ -74,14 +73,16 @@ def picture(found: Solutions, system: str) -> Picture:
     symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
     if wanted.value is not None:
-        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text.strip())))
+        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text)))
     name = Words(key.key.rpartition(".")[2])
-    places = [(key.in_unit(one.values[0]), float(convert(one.key_values[0], kind, unit))) for one in found.found]
+    places = [
+        (key.in_unit(one.values[0]), float(convert(one.key_values[wanted.place], kind, unit))) for one in found.found
+    ]
     marks = tuple(Mark(*place, PageFigure(name, place[0], key.unit)) for place in places)
     across = Axis(Words(key.key), unit=key.unit, low=key.in_unit(key.low), high=key.in_unit(key.high))
     panel = Panel(across, Axis(symbol, unit=unit), tuple(curves), marks=marks)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
-    return Picture("find", f"{found.names[0]} over {key.key}", text, (panel,), found.machine)
+    return Picture("find", f"{wanted.id} over {key.key}", text, (panel,), found.machine)
 
 
 def remarks(found: Solutions) -> list[str]:
@@ -89,10 +90,9 @@ def remarks(found: Solutions) -> list[str]:
     key = found.varied[0]
     lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
     for one in found.jumps:
-        place = f"{key.key} = {key.in_unit(one.values[0]):.9g} {key.unit}".rstrip()
-        lines.append(f"{found.wanted[0].text.strip()}: passed by a jump at {place}")
+        place = key.written(one.values[0], figures=9)
+        lines.append(f"{found.wanted[0].text}: passed by a jump at {key.key} = {place}")
     for part in found.failed:
-        ends = [f"{key.in_unit(end):.6g}" for end in (part.low, part.high)]
-        where = f"at {ends[0]}" if ends[0] == ends[1] else f"from {ends[0]} to {ends[1]}"
-        lines.append(f"{key.key} {where} {key.unit}".rstrip() + f": designs fail: {part.why}")
+        where = "at" if part.low == part.high else f"from {key.in_unit(part.low):.6g} to"
+        lines.append(f"{key.key} {where} {key.written(part.high)}: designs fail: {part.why}")
     return lines

@@ -55,7 +55,7 @@ class Titles(NamedTuple):
 
     def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
-        return [row.number, *row.values, *map(row.text, self.last)]
+        return [row.number, *row.values, *row.texts]
 
 
 # rows as lines of text
@@ -77,8 +77,9 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
         heads = titles.whole
 
         def json_row(row: Design) -> str:
-            texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-            found = {name: texts.get(name, value) for name, value in zip(heads, titles.values(row))}
+            texts = {"": None, "yes": True, "no": False}
+            found = dict(zip(heads, titles.values(row)))
+            found |= {name: texts.get(text, text) for name, text in zip(titles.last, row.texts)}
             return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
         return "", json_row
