@@ -23,7 +23,7 @@ WATERWORKS = CONFIGS["waterworks"]
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = uncertainties(read_inputs(source.read(WATERWORKS), spreads)[0], asked)
+    found = uncertainties(read_inputs(source.read(WATERWORKS), [*spreads.items()])[0], asked)
     return {one.answer.quantity.id: one for one in found}
 
 
