@@ -36,9 +36,45 @@ def number(text: str | float) -> float:
 
 def numbers(text: str) -> tuple[float, ...]:
     """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
-    found = tuple(map(number, text.replace(":", ",").split(",")))
-    # 3 · 0.1 is written 0.3
-    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5")) if ":" in text else found
+    return _each(text, number, "0.5:12:0.5")
+
+
+def speeds(text: str) -> tuple[float, ...]:
+    """Return speeds in revolutions per second, in the order given.
+
+    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
+    """
+    unit = written_unit(text.replace(":", ",").rpartition(",")[2])
+
+    def speed(one: str) -> float:
+        found = _read(parse_quantity, one if written_unit(one) else f"{one} {unit}".strip(), "speed")
+        if not found > 0:
+            raise click.BadParameter(f"'{text}': it must be more than 0")
+        return found
+
+    return _each(text, speed, "300:1500:10 rpm")
+
+
+def frequency(text: str) -> float:
+    """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
+    first, *others = speeds(text)
+    if others:
+        raise click.BadParameter(f"'{text}' is more than one frequency")
+    return first
+
+
+def _each(text: str, read: Callable[[str], float], sample: str) -> tuple[float, ...]:
+    """Return what is read between commas, or the numbers from, to, by steps."""
+    found = tuple(map(read, text.replace(":", ",").split(",")))
+    if ":" not in text:
+        return found
+    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
+        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
+    low, high, step = found
+    if (high - low) / step > _MOST_STEPS:
+        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
+    count = int((high - low) / step + 1e-9) + 1
+    return tuple(float(f"{low + step * index:.15g}") for index in range(count))  # 3 · 0.1 is written 0.3
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -60,40 +96,6 @@ def columns(text: str) -> tuple[str, ...]:
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
-
-
-def speeds(text: str) -> tuple[float, ...]:
-    """Return speeds in revolutions per second, in the order given.
-
-    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
-    """
-    each = text.replace(":", ",").split(",")
-    unit = written_unit(each[-1])
-    texts = (one if written_unit(one) else f"{one} {unit}".strip() for one in each)
-    found = tuple(_read(parse_quantity, one, "speed") for one in texts)
-    if ":" in text:
-        found = _stepped(found, text, "300:1500:10 rpm")
-    if not all(speed > 0 for speed in found):
-        raise click.BadParameter(f"'{text}': a speed is more than 0")
-    return found
-
-
-def frequency(text: str) -> float:
-    """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
-    found = _read(parse_quantity, text, "speed")
-    if not found > 0:
-        raise click.BadParameter(f"'{text}': a frequency is more than 0")
-    return found
-
-
-def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, ...]:
-    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
-        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
-    low, high, step = found
-    count = (high - low) / step
-    if count > _MOST_STEPS:
-        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
-    return tuple(low + step * index for index in range(int(count + 1e-9) + 1))
 
 
 def spread(text: str) -> tuple[str, str]:
@@ -196,6 +198,12 @@ def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
     return click.option(*names, shell_complete=complete_key_values, **how)
 
 
+def format_option(*formats: str, said: str = "") -> Callable[[Command], Command]:
+    """Return the option of the output format; said: what its help begins with."""
+    text = f"{said}By the suffix of --output, or table, if not given."
+    return click.option("--format", "-f", "format", type=click.Choice(formats), help=text)
+
+
 case_option = click.option(
     "--case",
     "case_name",
@@ -270,8 +278,10 @@ output_option = click.option(
 number_options = stacked(
     click.option(
         "--decimal",
+        "comma",
         type=click.Choice(["point", "comma"]),
         default="point",
+        callback=lambda ctx, param, value: value == "comma",
         help="Decimal sign; a comma makes csv use ';'.",
     ),
     click.option(
@@ -282,13 +292,7 @@ _look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
-    click.option(
-        "--format",
-        "-f",
-        "format",
-        type=click.Choice(FORMATS),
-        help="By the suffix of --output, or table, if not given.",
-    ),
+    format_option(*FORMATS),
     output_option,
     number_options,
     width_option,
@@ -334,8 +338,13 @@ _OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
 """Suffixes that a table may have, and those of machine files, which are refused where they are read."""
 
 
-def format_of(requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
-    """Return the requested format, or that of the suffix of the file; raises UsageError if they contradict."""
+def format_of(
+    requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES, comma: bool = False
+) -> str:
+    """Return the requested format, or that of the suffix of the file.
+
+    Raises UsageError if they contradict each other, or the decimal comma.
+    """
     suffix = os.path.splitext(file_name or "")[1].lower()
     of_suffix = suffixes.get(suffix)
     if not (requested or of_suffix or suffix in _OF_NO_FORMAT):
@@ -345,7 +354,10 @@ def format_of(requested: str | None, file_name: str | None, suffixes: Mapping[st
         raise click.UsageError(
             f"--format {requested} contradicts the name {file_name}, which means {of_suffix}; change one of them."
         )
-    return requested or of_suffix or "table"
+    written = requested or of_suffix or "table"
+    if comma and written in ("json", "parquet"):
+        raise click.UsageError(f"--decimal comma: {written} has the decimal point only.")
+    return written
 
 
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -356,15 +368,13 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
         layout: str,
         format: str | None,
         file_name: str | None,
-        decimal: str,
+        comma: bool,
         digits: int | None,
         width: int | None,
         **others: Any,
     ) -> Any:
-        written = format_of(format, file_name)
-        if decimal == "comma" and written == "json":
-            raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        return command(output=Output(Look(written, layout, decimal == "comma", digits, width), file_name), **others)
+        look = Look(format_of(format, file_name, comma=comma), layout, comma, digits, width)
+        return command(output=Output(look, file_name), **others)
 
     return _look_options(with_output)
 

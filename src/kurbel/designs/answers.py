@@ -70,64 +70,50 @@ def requested_answers(
     case = Case(machine)
     once: dict[tuple[str, str], list[Answer]] = {}
     with np.errstate(all="ignore"):
-        declared = every_quantity().all_key_values
-        named = (one for name in joined(names, declared) for one in _named(case, name, option))
-        for one, value in named if names else _usual(case):
-            # other designs may have a value with an angle where this one has an error
-            with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
-            each = [one, one._replace(angle=True)] if with_angle else [one]
-            once.setdefault((one.subject, one.quantity.id), each)
+        if names:
+            known = joined(names, every_quantity().all_key_values)
+            found = [one for name in known for one in _named(case, name, option)]
+        else:
+            found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
+    for one, value in found:
+        # other designs may have a value with an angle where this one has an error
+        with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
+        each = [one, one._replace(angle=True)] if with_angle else [one]
+        once.setdefault((one.subject, one.quantity.id), each)
     return tuple(part for each in once.values() for part in each)
 
 
-def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
-    """Yield the key values that a command prints by default, each with its value for this machine: see `_answer`."""
-    command = "forces" if case.machine.cylinders else "flywheel"
-    for subject in subjects_of(case, command):
-        for quantity in subject.lists.key_values(command).values():
-            if not quantity.residual and (value := _answer(subject, quantity, default=True)) is not None:
-                yield Answer(quantity, command, subject.name), value
-
-
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
-    """Return (key value, its value for this machine: see `_answer`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
+    """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
     owner, _, own = name.rpartition(".")
     ids = called(own, declared)
     if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"{option}: {ambiguity(own, ids) or f'no key value {shown(name)!r}{near}'}")
-    owners = ("whole machine", owner) if owner == MACHINE else (owner,)
     commands = every_quantity().commands_of(ids[0])
     for command in ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands:
-        found = [
-            (Answer(quantity, command, subject.name, alone=bool(owner)), value)
-            for subject in subjects_of(case, command, pistons=bool(owner))
-            if (not owner or subject.name in owners)
-            and (quantity := subject.lists.key_values(command).get(ids[0]))
-            and (value := _answer(subject, quantity)) is not None
-        ]
-        if found:
+        if found := [*_holding(case, command, ids[0], "whole machine" if owner == MACHINE else owner)]:
             return found
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
 
 
-def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
-    """Return the value of a key value, None if there is none; or the error, since other designs may have a value."""
-    try:
-        return None if default and not subject.is_printed(quantity) else subject.answer(quantity)
-    except KurbelError as error:
-        return error
+def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
+    """Yield a key value of every subject of a command that has it, or of its owner; without id all that it prints.
 
-
-def names_of(answers: Sequence[Answer]) -> list[str]:
-    """Return the names of columns: the id, after the name of the subject if it is one of several or requested alone."""
-    ids = [one.quantity.id for one in answers if not one.angle]
-    names = []
-    for one in answers:
-        owner = f"{one.subject}." if one.alone or ids.count(one.quantity.id) > 1 else ""
-        names.append(f"{owner}{one.quantity.id}{'_at' if one.angle else ''}")
-    return names
+    Each comes with its value for this machine, or the error, since other designs may have a value.
+    """
+    for subject in subjects_of(case, command, pistons=bool(owner)):
+        for quantity in subject.lists.key_values(command).values():
+            if owner not in ("", subject.name) or (quantity.id != id if id else quantity.residual):
+                continue
+            value: Any
+            try:
+                value = subject.answer(quantity) if id or subject.is_printed(quantity) else None
+            except KurbelError as error:
+                value = error
+            if value is not None:
+                yield Answer(quantity, command, subject.name, alone=bool(owner)), value
 
 
 # their values

@@ -11,7 +11,8 @@ from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.sweep import Design, Spec, Sweep
+from kurbel.designs.study import Design
+from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -89,25 +90,22 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
 
 def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
     """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
-    columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
-    count = max(map(len, columns.values()), default=0)
-    columns = {key: np.repeat(one, count) if np.ndim(inputs[key]) == 0 else one for key, one in columns.items()}
-    if not count or any(column.shape != (count,) for column in columns.values()):
-        each = ", ".join(f"{key} has {len(column)}" for key, column in columns.items())
+    columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
+    count = max(map(len, columns), default=0)
+    if not count or any(column.shape not in ((count,), (1,)) for column in columns):
+        each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
-    for (key, column), kind in zip(columns.items(), binder.kinds):
+    for key, column, kind in zip(inputs, columns, binder.kinds):
         unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
-        yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
+        yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
 
 
 def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
-    for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
-        if any(isinstance(one, tuple) for one in values):
-            arrays[head.id] = np.empty(len(values), dtype=object)
-            arrays[head.id][:] = values
-        elif not head.input:
-            arrays[head.id] = np.array(values, dtype=float)
+    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
+        if not head.input:
+            listed = any(isinstance(one, tuple) for one in values)
+            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
     texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
     arrays["failure"] = np.array(texts["failure"])
     if "keeps" in texts:

@@ -12,11 +12,10 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, names_of, texts_of
+from kurbel.designs.answers import Answer, texts_of
 from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
-from kurbel.designs.study import Study
-from kurbel.designs.sweep import Design, Head
+from kurbel.designs.study import Design, Head, Study
 from kurbel.errors import NoSolutionError, UnitError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
@@ -51,13 +50,12 @@ class Varied(NamedTuple):
 class Target(NamedTuple):
     """A key value that is to have a value in SI (aim `=`), or to be the `least` or the `greatest`.
 
-    id: of the key value; place: among the key values of a solution.
+    place: among the key values of a solution.
     """
 
     text: str
-    id: str
+    head: Head
     place: int
-    answer: Answer
     aim: str
     value: float | None
 
@@ -81,14 +79,15 @@ class Failed(NamedTuple):
 class Solutions(NamedTuple):
     """Solutions in the order of the first key, and jumps: places where a key value jumps across the wanted value.
 
-    machine: its name. names, answers: of the key values of a solution. met: least and greatest value of each wanted key
-    value. places (n, keys), values (n, answers): all designs that were computed, in SI, in the order of the keys.
+    machine: its name. heads, answers: of the key values of a solution, in SI. met: least and greatest value of each
+    wanted key value. places (n, keys), values (n, answers): all designs that were computed, in SI, in the order of the
+    keys.
     """
 
     machine: str
     varied: tuple[Varied, ...]
     wanted: tuple[Target, ...]
-    names: tuple[str, ...]
+    heads: tuple[Head, ...]
     answers: tuple[Answer, ...]
     found: tuple[Solution, ...]
     jumps: tuple[Solution, ...]
@@ -163,17 +162,14 @@ class _Search:
         asked = [name for number, name in enumerate(names) if number < len(wanted) or name not in keys]
         ends = product(*((low, high) for _, low, high, _ in spans))
         self.study = Study(origin, keys, ends, asked, option="find")
-        answers = self.study.answers
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
-        heads = [Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied]
-        for name, one in zip(names_of(answers), answers):
-            heads.append(Head(name, SI[one.kind], one.kind, listed=one.quantity.listed))
+        heads = [*(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied), *self.study.heads("si")]
+        self.heads = tuple(heads[len(keys) :])
         self.wanted: list[Target] = []
         for text, name, (_, equals, value) in zip(wanted, names, parts):
             place = place_of(name, heads, "find")
             number = _parsed(text, value.strip(" ="), heads[place].kind) if equals else None
-            own = place - len(keys)
-            self.wanted.append(Target(text.strip(), heads[place].id, own, answers[own], "=" if equals else aim, number))
+            self.wanted.append(Target(text.strip(), heads[place], place - len(keys), "=" if equals else aim, number))
         self.conditions = [(one, read_condition(one, heads)) for one in conditions]
         self.excluded = 0
         """Solutions that break a condition."""
@@ -256,10 +252,8 @@ class _Search:
         """Return what was found together with what was computed."""
         computed = sorted(self.computed)
         values = np.array([one.values for one in computed])
-        met = []
-        for target in self.wanted:
-            column = values[:, target.place][np.isfinite(values[:, target.place])]
-            met.append((float(column.min()), float(column.max())) if len(column) else (np.nan, np.nan))
+        columns = [values[:, one.place] for one in self.wanted]
+        met = [(np.nanmin(one, initial=np.inf), np.nanmax(one, initial=-np.inf)) for one in columns]
         failed: list[Failed] = []
         for fails, part in groupby(computed, key=lambda one: bool(one.failure)):
             if fails and len(self.varied) == 1:
@@ -269,7 +263,7 @@ class _Search:
             self.study.binder.machine.name,
             tuple(self.varied),
             tuple(self.wanted),
-            tuple(names_of(self.study.answers)),
+            self.heads,
             self.study.answers,
             tuple(sorted(solutions)),
             tuple(jumps),
@@ -290,14 +284,12 @@ def _nothing(found: Solutions, excluded: int) -> str:
         return f"{ranges}: no design has {wanted}: {found.failed[0].why if found.failed else 'all fail'}"
     if found.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
-    met = " and ".join(
-        f"{one.id} is {show(low, one.answer.kind)} to {show(high, one.answer.kind)}"
-        for one, (low, high) in zip(found.wanted, found.met)
-        if np.isfinite(low)
-    )
+    met = []
+    for one, (low, high) in zip(found.wanted, found.met):
+        met.append(f"{one.head.id} is {show(low, one.head.kind)} to {show(high, one.head.kind)}")
     more = "; it is passed by a jump" if found.jumps else ""
     more += f"; --where leaves out {excluded} that {'has' if excluded == 1 else 'have'} it" if excluded else ""
-    return f"{ranges}: no design has {wanted}: {met}{more}"
+    return f"{ranges}: no design has {wanted}: {' and '.join(met)}{more}"
 
 
 def _varied(span: tuple[str, str, str, str], kind: str) -> Varied:

@@ -1,18 +1,45 @@
 """A machine file of which keys vary: the key values that are requested of its designs, and the limits they break."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from functools import cached_property
+from typing import NamedTuple, Union
 
 import numpy as np
 
 from kurbel.declared.forms.figures import scoped
-from kurbel.designs.answers import Answer, Value, answered, requested_answers
+from kurbel.declared.unit_systems import units_of
+from kurbel.designs.answers import Answer, Value, answered, answered_alone, requested_answers
 from kurbel.designs.binding import Binder
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.numerics.extreme import size_of
 from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
+
+Cell = Union[Value, str]
+"""A value of a row; a text for an input that is a word."""
+
+
+class Head(NamedTuple):
+    """A column of a table of designs: its id, and the unit of its values, '' for none.
+
+    kind: of the values, '' of texts; input: whether it is a key that varies; listed: each value is a list.
+    """
+
+    id: str
+    unit: str = ""
+    kind: str = ""
+    input: bool = False
+    listed: bool = False
+
+
+class Design(NamedTuple):
+    """A row of a table of designs: its number from 1, the values of the columns, and the texts after them."""
+
+    number: int
+    values: tuple[Cell, ...]
+    texts: tuple[str, ...] = ()
 
 
 class Limit(NamedTuple):
@@ -65,6 +92,27 @@ class Study:
                 if isinstance(error, UsageError) and str(error) in map(str, failed[:-1]):
                     raise  # the request is wrong, not these texts
         raise UsageError(str(failed[0])) if isinstance(failed[0], MachineFileError) else failed[0]
+
+    @cached_property
+    def first(self) -> Sequence[Value]:
+        """The key values of the first valid machine."""
+        found = answered_alone(self.binder.machine, self.answers)
+        return [None] * len(self.answers) if isinstance(found, str) else found
+
+    def heads(self, system: str) -> list[Head]:
+        """Return the heads of the key values in a system of units, which the values of the first machine decide.
+
+        An id has the name of its subject before it if it is one of several, or was requested of this subject alone.
+        """
+        sizes = [0.0] * len(self.answers) if system == "si" else map(size_of, self.first)
+        units = units_of([(one.kind, one.quantity.family, size) for one, size in zip(self.answers, sizes)], system)
+        ids = [one.quantity.id for one in self.answers if not one.angle]
+        heads = []
+        for one, unit in zip(self.answers, units):
+            id = f"{one.quantity.id}_at" if one.angle else one.quantity.id
+            owned = one.alone or ids.count(one.quantity.id) > 1
+            heads.append(Head(f"{one.subject}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
+        return heads
 
     def of(self, rows: Sequence[Sequence[str]]) -> list[Found]:
         """Return what the designs with these texts (rows, keys) give; for the same digits give the same rows."""

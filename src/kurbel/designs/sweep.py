@@ -5,21 +5,19 @@ from collections.abc import Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from itertools import chain
-from typing import NamedTuple, Union
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.declared.unit_systems import convert, shown_unit, units_of
+from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Value, answers_of, is_slow, names_of
-from kurbel.designs.binding import Batch
+from kurbel.designs.answers import Value, is_slow
 from kurbel.designs.plan import Input, Plan
-from kurbel.designs.study import Found, Study
+from kurbel.designs.study import Cell, Design, Found, Head, Study
 from kurbel.errors import KurbelError
 from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
-from kurbel.numerics.extreme import size_of
 from kurbel.report.alike import grouped, together
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
@@ -29,9 +27,6 @@ _FIRST = 20
 _STARTS = 100
 """Rows in which the first valid machine is searched for."""
 _GOLDEN = (5**0.5 - 1) / 2
-
-Cell = Union[Value, str]
-"""A value of a row; a text for an input that is a word."""
 
 
 class Spec(NamedTuple):
@@ -54,27 +49,6 @@ class Spec(NamedTuple):
     start: tuple[str, ...] = ()
 
 
-class Head(NamedTuple):
-    """A column of the table: its id, and the unit of its values, '' for none.
-
-    kind: of the values, '' of texts; input: whether it is an input of the sweep; listed: each value is a list.
-    """
-
-    id: str
-    unit: str = ""
-    kind: str = ""
-    input: bool = False
-    listed: bool = False
-
-
-class Design(NamedTuple):
-    """One design: its number from 1, the values of the columns, and the texts after them, see `Sweep.texts`."""
-
-    number: int
-    values: tuple[Cell, ...]
-    texts: tuple[str, ...] = ()
-
-
 class Sweep:
     """The rows of one machine file. Raises UsageError for options that define no sweep."""
 
@@ -95,24 +69,13 @@ class Sweep:
         first that is not; why there are no values, or which limits cannot be judged."""
 
     @cached_property
-    def _first(self) -> Sequence[Value]:
-        """The key values of the first valid machine."""
-        (found,) = answers_of([Batch(self._study.binder.machine, (0,))], self._study.answers).values()
-        return [None] * len(self._study.answers) if isinstance(found, str) else found
-
-    @cached_property
     def heads(self) -> tuple[Head, ...]:
-        """The heads of the columns, with units that are chosen by the values of the first machine."""
-        system, answers = self.spec.system, self._study.answers
+        """The heads of the columns, with units that are chosen by the first values."""
         heads = []
         for key, text, kind in zip(self._keys, self.plan.texts(0), self._study.binder.kinds):
-            unit = shown_unit(kind, system, _number(text, kind) or 0.0) if kind else ""
+            unit = shown_unit(kind, self.spec.system, _number(text, kind) or 0.0) if kind else ""
             heads.append(Head(key, unit, kind, input=True))
-        sizes = [0.0] * len(answers) if system == "si" else map(size_of, self._first)
-        units = units_of([(one.kind, one.quantity.family, size) for one, size in zip(answers, sizes)], system)
-        for name, unit, one in zip(names_of(answers), units, answers):
-            heads.append(Head(name, unit, one.kind, listed=one.quantity.listed))
-        return tuple(heads)
+        return (*heads, *self._study.heads(self.spec.system))
 
     @cached_property
     def shown(self) -> list[tuple[str, int]]:
@@ -128,7 +91,7 @@ class Sweep:
         count, answers = len(self._keys), self._study.answers
 
         def content(place: int) -> Hashable:
-            one, value = answers[place], self._first[place]
+            one, value = answers[place], self._study.first[place]
             what, _, owner = one.subject.rpartition(" of ")
             if owner not in alike or not isinstance(value, float):
                 return place
@@ -144,10 +107,11 @@ class Sweep:
 
     def types(self) -> list[str]:
         """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
-        inputs = zip(self.plan.inputs, self._study.binder.kinds)
-        wordy = [any(_number(text, kind) is None for text in one.texts) for one, kind in inputs]
-        answers = ["list" if one.quantity.listed else "number" for one in self._study.answers]
-        return [*("text" if one else "number" for one in wordy), *answers]
+        types = ["list" if head.listed else "number" for head in self.heads]
+        for place, one in enumerate(self.plan.inputs):
+            if any(_number(text, self.heads[place].kind) is None for text in one.texts):
+                types[place] = "text"
+        return types
 
     def blocks(self, rows: range) -> Iterator[range]:
         """Yield the blocks of rows, counted from 0, that have any of these rows.

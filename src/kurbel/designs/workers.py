@@ -13,7 +13,8 @@ from functools import lru_cache
 from itertools import cycle, islice
 from typing import Any
 
-from kurbel.designs.sweep import Design, Spec, Sweep
+from kurbel.designs.study import Design
+from kurbel.designs.sweep import Spec, Sweep
 from kurbel.errors import KurbelError, UsageError
 
 _FOR_ONE = 5_000
@@ -27,14 +28,14 @@ _ANSWERS_WITHIN = 10.0
 
 
 def rows_of(
-    sweep: Sweep, rows: range, jobs: int = 1, dask: str = "", note: Callable[[str], None] = lambda _: None
+    sweep: Sweep, rows: range, jobs: int = 1, dask: str | None = None, note: Callable[[str], None] = lambda _: None
 ) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
     jobs: processes on this computer; dask: address of a cluster; note: is called with messages for the user.
     Raises UsageError for an address that does not answer, KurbelError where a process or the cluster is lost.
     """
-    if dask:
+    if dask is not None:
         blocks = _of_cluster(sweep, rows, dask, note)
     else:
         blocks = _of_processes(sweep, rows, jobs) if jobs > 1 else map(sweep.block, sweep.blocks(rows))

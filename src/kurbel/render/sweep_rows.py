@@ -16,7 +16,8 @@ from itertools import chain, islice
 from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Cell, Design, Sweep
+from kurbel.designs.study import Cell, Design
+from kurbel.designs.sweep import Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
