@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from kurbel.cli.options import (
-    complete_key_values,
+    complete_ids,
     complete_override,
     format_option,
     key_value_option,
@@ -102,7 +102,7 @@ def sweep(**options: Any) -> None:
 
 @click.command()
 @machine_file
-@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_key_values)
+@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_ids)
 @click.option(
     "--vary",
     multiple=True,

@@ -3,17 +3,20 @@
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import Lists, ambiguity, called, joined
+from kurbel.quantity import ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.render.formats import write_report
 from kurbel.report.tables import Report
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
@@ -29,9 +32,9 @@ def _read(parse: Callable[..., float], *given: str) -> float:
         raise click.BadParameter(str(error)) from None
 
 
-def number(text: str | float) -> float:
+def number(text: str) -> float:
     """Return a finite number with a decimal point, also 10/3 or 75 %."""
-    return _read(parse_ratio, text) if isinstance(text, str) else text  # the default is a number
+    return _read(parse_ratio, text)
 
 
 def numbers(text: str) -> tuple[float, ...]:
@@ -87,8 +90,10 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
+    from kurbel.quantities import every_quantity
+
     named = words(text)
-    known = [column for column in _quantities().all_columns if column.commands]
+    known = [column for column in every_quantity().all_columns if column.commands]
     ids = []
     for name in joined(named, known):
         found = called(name, known)
@@ -111,12 +116,6 @@ def spread(text: str) -> tuple[str, str]:
 # --- what a shell completes, looked up when TAB is pressed
 
 
-def _quantities() -> Lists:
-    from kurbel.quantities import every_quantity
-
-    return every_quantity()
-
-
 def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable[..., list[str]]:
     """Return the completion of an option from words, which are looked up when TAB is pressed."""
 
@@ -129,29 +128,27 @@ def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable
     return complete
 
 
+def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
+    from kurbel.quantities import every_quantity
+
+    columns = every_quantity().columns(ctx.info_name or "")
+    before, comma, _ = begun.rpartition(",")
+    ids = dict.fromkeys(columns or (one.id for one in every_quantity().all_key_values))
+    return [before + comma + one for one in ids if one not in before.split(",")]
+
+
 def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
     from kurbel.report.keys import every_place
 
     return every_place()
 
 
-def _listed(ids: Callable[[str], Iterable[str]]) -> Callable[..., list[str]]:
-    """Return the completion of a list of ids of a command by those that are not in the list yet."""
-
-    def following(ctx: click.Context, begun: str) -> Iterable[str]:
-        before, comma, _ = begun.rpartition(",")
-        return [before + comma + one for one in ids(ctx.info_name or "") if one not in before.split(",")]
-
-    return completing(following)
-
-
-def _names(ctx: click.Context, of: str) -> list[str]:
-    """Return the names of cylinders, or else load cases, of the machine file on the line."""
+def _machine(ctx: click.Context) -> "Machine":
+    """Return the machine of the file on the line, which is not read to its end if it ends in an option."""
     from kurbel.machine_file import load
 
-    file = next(iter(ctx.args), "-")  # a line that ends in an option is not read to its end
-    machine = load(file) if file != "-" else None
-    return [one.name for one in (machine.cylinders if of == "cylinders" else machine.cases)] if machine else []
+    return load(next((word for word in ctx.args if word != "-"), ""))
 
 
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
@@ -160,11 +157,11 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     return (*(one.id for one in PICTURES), "all")
 
 
-complete_columns = _listed(lambda command: _quantities().columns(command))
-complete_key_values = _listed(lambda _: dict.fromkeys(one.id for one in _quantities().all_key_values))
+complete_ids = completing(_ids)
 complete_key = completing(_keys)
 complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
-complete_cylinder = completing(lambda ctx, _: _names(ctx, "cylinders"))
+complete_cylinder = completing(lambda ctx, _: [one.name for one in _machine(ctx).cylinders])
+complete_case = completing(lambda ctx, _: [one.name for one in _machine(ctx).cases])
 complete_picture = completing(_pictures)
 
 
@@ -195,7 +192,7 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
 
 def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
     """Return an option that is completed by ids of key values."""
-    return click.option(*names, shell_complete=complete_key_values, **how)
+    return click.option(*names, shell_complete=complete_ids, **how)
 
 
 def format_option(*formats: str, said: str = "") -> Callable[[Command], Command]:
@@ -209,7 +206,7 @@ case_option = click.option(
     "case_name",
     default="",
     metavar="NAME",
-    shell_complete=completing(lambda ctx, _: _names(ctx, "cases")),
+    shell_complete=complete_case,
     help="This load case of FILE; --set sets values over those of the case.",
 )
 set_option = click.option(
@@ -229,7 +226,7 @@ angle_options = stacked(
     click.option(
         "--step",
         type=number,
-        default=10.0,
+        default="10",
         metavar="DEGREES",
         help="Step of the crank angle; 10 if not given.",
     ),
@@ -247,7 +244,7 @@ columns_option = click.option(
     type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
-    shell_complete=complete_columns,
+    shell_complete=complete_ids,
 )
 cylinder_option = click.option(
     "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder

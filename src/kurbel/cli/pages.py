@@ -26,7 +26,7 @@ from kurbel.cli.options import (
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
-@click.option("--step", type=number, default=15.0, metavar="DEGREES", help="Step of the tables; 15 if not given.")
+@click.option("--step", type=number, default="15", metavar="DEGREES", help="Step of the tables; 15 if not given.")
 @click.option("--title", help="Title of the page; the name of the machine if not given.")
 @units_option
 @number_options

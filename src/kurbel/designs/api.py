@@ -72,10 +72,13 @@ def find(
     (1.5,)
     """
     origin = _read(machine)
-    numeric = [key for key, ends in vary.items() if not all(isinstance(one, str) for one in ends)]
-    kinds = Binder(origin, numeric, written_texts(origin, numeric)).kinds if numeric else ()
-    units = dict(zip(numeric, (SI.get(kind, "") for kind in kinds)))
-    texts = [f"{key}={low}:{high} {units.get(key, '')}".rstrip() for key, (low, high) in vary.items()]
+    texts = []
+    for key, (low, high) in vary.items():
+        unit = ""
+        if not (isinstance(low, str) and isinstance(high, str)):
+            (kind,) = Binder(origin, [key], written_texts(origin, [key])).kinds
+            unit = SI.get(kind, "")
+        texts.append(f"{key}={low}:{high} {unit}".rstrip())
     equations, conditions = ([one] if isinstance(one, str) and one else [*one] for one in (wanted, where))
     return find_in(origin, texts, equations, least, greatest, conditions)
 

@@ -62,23 +62,22 @@ def parts_of(text: str) -> tuple[str, str, str]:
     return name, relation, written
 
 
-def read_condition(text: str, heads: Sequence[Head]) -> Condition:
+def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> Condition:
     """Read `c_max < 5 m/s` or, for a column of words, `keeps = yes`; raises UsageError."""
     name, relation, written = parts_of(text)
-    place = place_of(name, heads, "--where")
+    place, where = place_of(name, heads, option), f"{option} {shown(text)}"
     head = heads[place]
     if not head.kind:
         if relation not in _OF_WORDS:
-            no_order = f"{name} has words, of which none is less than another; write = or !="
-            raise UsageError(f"--where {shown(text)}: {no_order}")
+            raise UsageError(f"{where}: {name} has words, of which none is less than another; write = or !=")
         if name == "keeps" and written not in ("yes", "no", ""):
-            raise UsageError(f"--where {shown(text)}: keeps is yes, no, or empty where a limit cannot be judged")
+            raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
         return Condition(place, relation, written)
     try:
         value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
-        raise UsageError(f"--where {shown(text)}: {error}") from None
-    return Condition(place, relation, convert(value, head.kind, head.unit))
+        raise UsageError(f"{where}: {error}") from None
+    return Condition(place, relation, float(convert(value, head.kind, head.unit)))
 
 
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from itertools import groupby, product
 from typing import NamedTuple
@@ -16,11 +17,12 @@ from kurbel.designs.answers import Answer, texts_of
 from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
 from kurbel.designs.study import Design, Head, Study
-from kurbel.errors import NoSolutionError, UnitError, UsageError
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
 from kurbel.numerics.search import common_roots, lowest, roots
 
+_EQUATION = re.compile("[^<>≤≥≠!=]+==?[^=]+")
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
 _ASIDE = 1e-6
@@ -128,14 +130,17 @@ def find(
     Raises UsageError for what cannot be read, and NoSolutionError, with what was met, where nothing is found.
     """
     extreme = least or greatest
-    if wrong := next((one for one in equations if "=" not in one), ""):
+    if wrong := next((one for one in equations if not _EQUATION.fullmatch(one)), ""):
         raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    search = _Search(origin, vary, equations or [extreme], "least" if least else "greatest", conditions, progress)
-    solutions, jumps = search.extreme(1.0 if least else -1.0) if extreme else search.solved()
-    found = search.findings(solutions, jumps)
-    if not solutions:
+    search = _Search(origin, vary, [extreme] if extreme else equations, conditions, progress)
+    if extreme:
+        search.find_extreme("least" if least else "greatest")
+    else:
+        search.solve()
+    found = search.findings()
+    if not found.found:
         raise NoSolutionError(_nothing(found, search.excluded))
     return found
 
@@ -148,32 +153,32 @@ class _Search:
         origin: Origin,
         vary: Sequence[str],
         wanted: Sequence[str],
-        aim: str,
         conditions: Sequence[str],
-        progress: Callable[[str], None] | None = None,
+        progress: Callable[[str], None] | None,
     ) -> None:
         self.progress = progress
         spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         if len({path_of(key) for key in keys}) < len(keys):
             raise UsageError(f"--vary {keys[-1]}: this key is varied twice")
-        parts = [one.partition("=") for one in wanted]
-        names = [*(name.strip() for name, _, _ in parts), *(parts_of(one)[0] for one in conditions)]
-        asked = [name for number, name in enumerate(names) if number < len(wanted) or name not in keys]
+        names = [one.partition("=")[0].strip() for one in wanted]
+        names += [name for name in (parts_of(one)[0] for one in conditions) if name not in keys]
         ends = product(*((low, high) for _, low, high, _ in spans))
-        self.study = Study(origin, keys, ends, asked, option="find")
+        self.study = Study(origin, keys, ends, names, option="find")
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
         heads = [*(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied), *self.study.heads("si")]
         self.heads = tuple(heads[len(keys) :])
         self.wanted: list[Target] = []
-        for text, name, (_, equals, value) in zip(wanted, names, parts):
+        for text, name in zip(wanted, names):
             place = place_of(name, heads, "find")
-            number = _parsed(text, value.strip(" ="), heads[place].kind) if equals else None
-            self.wanted.append(Target(text.strip(), heads[place], place - len(keys), "=" if equals else aim, number))
+            value = None if text == name else float(read_condition(text, heads, "find").value)
+            self.wanted.append(Target(text.strip(), heads[place], place - len(keys), "=", value))
         self.conditions = [(one, read_condition(one, heads)) for one in conditions]
+        self.computed: list[_Design] = []
+        self.found: list[Solution] = []
+        self.jumps: list[Solution] = []
         self.excluded = 0
         """Solutions that break a condition."""
-        self.computed: list[_Design] = []
 
     def at(self, places: Array) -> list[_Design]:
         """Return the designs at places (n, keys)."""
@@ -191,8 +196,8 @@ class _Search:
         self.computed += found
         return found
 
-    def solved(self) -> tuple[list[Solution], list[Solution]]:
-        """Return where all equations hold, and, for a single equation, where the key value jumps across its value."""
+    def solve(self) -> None:
+        """Find where all equations hold, and, for a single equation, where the key value jumps across its value."""
         columns = [one.place for one in self.wanted]
         wanted = np.array([one.value for one in self.wanted], dtype=float)
 
@@ -205,17 +210,16 @@ class _Search:
         else:
             places = common_roots(left)
             jumps = np.zeros(len(places), dtype=bool)
-        solutions: list[Solution] = []
-        passed: list[Solution] = []
-        for one, jump in zip(self.at(places) if len(places) else (), jumps.tolist()):
+        for one, jump in zip(self.at(places) if len(places) else (), jumps):
             self.excluded += bool(one.unmet)
             if not one.unmet:
                 notes = (f"breaks {one.broken}",) if one.broken else ()
-                (passed if jump else solutions).append(Solution(one.numbers, one.values, notes))
-        return solutions, passed
+                (self.jumps if jump else self.found).append(Solution(one.numbers, one.values, notes))
 
-    def extreme(self, sign: float) -> tuple[list[Solution], list[Solution]]:
-        """Return the design whose key value is the least (sign 1) or greatest (−1) within all limits; or none."""
+    def find_extreme(self, aim: str) -> None:
+        """Find the design whose key value is the `least` or the `greatest` within all limits, if there is one."""
+        sign = 1.0 if aim == "least" else -1.0
+        self.wanted = [self.wanted[0]._replace(aim=aim)]
         column = self.wanted[0].place
 
         def cost(places: Array) -> Array:
@@ -223,10 +227,9 @@ class _Search:
             return np.array([np.nan if one.broken or one.unmet else sign * one.values[column] for one in found])
 
         place, best = lowest(cost, len(self.varied))
-        if not np.isfinite(best):
-            return [], []
-        (design,) = self.at(place[None])
-        return [Solution(design.numbers, design.values, self._bounds(place, best * sign))], []
+        if np.isfinite(best):
+            (one,) = self.at(place[None])
+            self.found.append(Solution(one.numbers, one.values, self._bounds(place, best * sign)))
 
     def _bounds(self, place: Array, best: float) -> tuple[str, ...]:
         """Return at which bounds an extreme is, and over which range of the only key it is as good."""
@@ -248,7 +251,7 @@ class _Search:
                     notes.append(f"as good from {key.in_unit(level[0]):.6g} to {key.written(level[-1])}")
         return tuple(notes)
 
-    def findings(self, solutions: Sequence[Solution], jumps: Sequence[Solution]) -> Solutions:
+    def findings(self) -> Solutions:
         """Return what was found together with what was computed."""
         computed = sorted(self.computed)
         values = np.array([one.values for one in computed])
@@ -265,8 +268,8 @@ class _Search:
             tuple(self.wanted),
             self.heads,
             self.study.answers,
-            tuple(sorted(solutions)),
-            tuple(jumps),
+            tuple(sorted(self.found)),
+            tuple(self.jumps),
             tuple(failed),
             tuple(met),
             np.array([one.numbers for one in computed]),
@@ -280,8 +283,8 @@ def _nothing(found: Solutions, excluded: int) -> str:
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.written(one.high)}" for one in found.varied
     )
     wanted = " and ".join(one.text for one in found.wanted)
-    if not np.isfinite(found.met).any():
-        return f"{ranges}: no design has {wanted}: {found.failed[0].why if found.failed else 'all fail'}"
+    if not np.isfinite(found.met).all():
+        return f"{ranges}: no design has {wanted}: {found.failed[0].why if found.failed else 'it has no value there'}"
     if found.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
     met = []
@@ -296,14 +299,7 @@ def _varied(span: tuple[str, str, str, str], kind: str) -> Varied:
     key, low, high, unit = span
     if not kind:
         raise UsageError(f"--vary {key}: only a number has a range; kurbel sweep compares words")
-    ends = [_parsed(f"--vary {key}", text, kind) for text in (low, high)]
+    ends = [parse_quantity(text, kind) for text in (low, high)]
     if not ends[0] < ends[1]:
         raise UsageError(f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first")
     return Varied(key, ends[0], ends[1], "" if unit == "%" else unit, kind)  # a share is printed as a sweep prints it
-
-
-def _parsed(where: str, text: str, kind: str) -> float:
-    try:
-        return parse_quantity(text, kind)
-    except UnitError as error:
-        raise UsageError(f"{shown(where)}: {error}") from None

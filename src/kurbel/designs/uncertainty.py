@@ -21,7 +21,6 @@ from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import located
 from kurbel.machine_file.overrides import path_of, tree_of
 from kurbel.report.frame import subjects_of
@@ -78,7 +77,7 @@ class Inputs(NamedTuple):
 
 
 def given_uncertainty(machine: Machine, more: Spreads = ()) -> Inputs | None:
-    """Return the uncertain inputs of a machine's file, and those given outside it (`more`); None where there are none.
+    """Return the inputs that are uncertain by `0.2 mm` or `2 %`, in a machine's file or outside it; None without any.
 
     Raises MachineFileError or UsageError with all faults.
     """
@@ -86,18 +85,7 @@ def given_uncertainty(machine: Machine, more: Spreads = ()) -> Inputs | None:
     spreads = [*(one for one in machine.uncertainty if path_of(one[0]) not in outside), *more]
     if not spreads or origin is None:
         return None
-    inputs, wrong = read_inputs(origin, spreads)
-    if faults := [f"--uncertainty {shown(key)}: {wrong[key]}" for key in dict(more) if key in wrong]:
-        raise UsageError("; ".join(faults))
-    if wrong:
-        raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
-    return inputs
-
-
-def read_inputs(origin: Origin, spreads: Spreads) -> tuple[Inputs, dict[str, str]]:
-    """Return the inputs that are uncertain by `0.2 mm` or `2 %`, and what is wrong with any, by key."""
-    tree, wrong = tree_of(origin), dict[str, str]()
-    texts: dict[str, str] = {}
+    tree, wrong, texts = tree_of(origin), dict[str, str](), dict[str, str]()
     paths = [path_of(key) for key, _ in spreads]
     for key, _ in spreads:
         try:
@@ -106,8 +94,7 @@ def read_inputs(origin: Origin, spreads: Spreads) -> tuple[Inputs, dict[str, str
             wrong[key] = str(error)
         if paths.count(path_of(key)) > 1:
             wrong[key] = "this key is given twice"
-    binder = Binder(origin, tuple(texts), list(texts.values()))
-    found = []
+    binder, found = Binder(origin, tuple(texts), list(texts.values())), []
     for (key, text), kind in zip(texts.items(), binder.kinds):
         spread = dict(spreads)[key]
         try:
@@ -118,8 +105,11 @@ def read_inputs(origin: Origin, spreads: Spreads) -> tuple[Inputs, dict[str, str
                 wrong[key] = f"it must be more than 0, got {spread}"
         except (UnitError, KeyError) as error:
             wrong[key] = str(error) if kind else f"{shown(text)!r} is not a number that could be uncertain"
-    values, sizes = np.array(found).reshape(-1, 2).T
-    return Inputs(binder, tuple(texts), values, sizes), wrong
+    if faults := [f"--uncertainty {shown(key)}: {wrong[key]}" for key in dict(more) if key in wrong]:
+        raise UsageError("; ".join(faults))
+    if wrong:
+        raise origin.error(*located(origin.text, [Fault(("uncertainty", key), wrong[key]) for key in wrong]))
+    return Inputs(binder, tuple(texts), *np.array(found).T)
 
 
 def uncertainties(inputs: Inputs, requested: Sequence[Answer], counted: Counted = iter) -> list[Uncertain]:
