@@ -174,7 +174,7 @@ def _panel(
     kind: str, places: dict[str, complex], values: dict[str, float], **lines: Sequence[Sequence[complex] | ComplexArray]
 ) -> Panel:
     """Return a panel of lines by their kinds, with named places and the values of some; what is found is a `line`."""
-    curves = [curve(one, *each, look=2 if one == "line" else None) for one, every in lines.items() for each in every]
+    curves = [curve(one, *each, look=1 if one == "line" else None) for one, every in lines.items() for each in every]
     marks = [Mark(at.real, at.imag, PageFigure(Words(name), values.get(name))) for name, at in places.items()]
     axis = Axis(NO_NAME, kind)
     return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)
