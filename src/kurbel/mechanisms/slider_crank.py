@@ -111,9 +111,7 @@ class SliderCrank(Mechanism):
         known = given.get("stroke"), given.get("offset"), rod
         if not (any(one is None for one in known) or has_refused(known)):
             crank = _crank_of_stroke(given)
-            remedy = (
-                "no crank has this stroke with {offset:length} and so short a rod; give a longer one, or less offset"
-            )
+            remedy = "no crank has this stroke with {offset:length} and such a rod; give a longer one, or less offset"
             yield Rule("offset", crank != crank, remedy, given)
 
     def rules(self) -> Iterator[Rule]:
