@@ -33,13 +33,6 @@ def test_loss_over_the_way_is_half_as_much_again() -> None:
     assert forces.loss_crosshead == pytest.approx(expected, rel=1e-13)
 
 
-def test_three_forms_of_his_mean() -> None:
-    """D 5 exactly, D 5 with cos β = 1 and sin β = β, D 6: 0.8242 %, 0.8280 %, 0.8333 %."""
-    assert rules.redtenbacher_logarithm(1 / 6, 0.1) == pytest.approx(0.008242, abs=5e-7)
-    assert rules.mean_friction_over_rod_angle(1 / 6, 0.1) == pytest.approx(0.008280, abs=5e-7)
-    assert rules.redtenbacher_loss(1 / 6, 0.1) == pytest.approx(0.008333, abs=5e-7)
-
-
 def test_guide_force_while_driving_and_while_driven() -> None:
     """D 3 on the outstroke; pushed back against its motion, the friction changes sides and N grows."""
     lam_sin, f = 1 / 6, 0.1
