@@ -374,12 +374,10 @@ def _exponents(reading: TraceReading) -> str:
         return ""
     seen, sensible = f"its compression goes by p V^{compression.value:.3g}", _is_sensible(compression)
     sure = _APART + 2 * math.hypot(compression.error, expansion.error if expansion else 0.0)
-    if expansion and abs(compression.value - expansion.value) > sure:
-        seen += f" and its expansion by p V^{expansion.value:.3g}"
-    elif sensible:
+    parted = expansion if expansion and abs(compression.value - expansion.value) > sure else None
+    if sensible and not parted:
         return ""
-    else:
-        seen += ", where air has 1.2 to 1.4"
+    seen += f" and its expansion by p V^{parted.value:.3g}" if parted else ", where air has 1.2 to 1.4"
     now, next_to = _apart(reading, 0.0), _apart(reading, 1.0)
     later = now / (now - next_to or math.nan)  # where both exponents would be one
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
