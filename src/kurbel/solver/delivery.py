@@ -92,10 +92,10 @@ def _displaced(
 
     head, crank: whether that end counts.
     """
-    head_area, crank_area = piston.gas.areas
-    areas = head_area * (piston.head and head), crank_area * (piston.crank and crank)
+    own = state.drive.cylinder.pistons[piston.number]  # of many machines its numbers are those of the angles
+    areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
     # a piston that a lever moves against the crosshead draws in where another one delivers
-    outward, back = areas if draws != piston.gas.turned else areas[::-1]
+    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
     return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
 
 
