@@ -456,20 +456,13 @@ class MachineDelivery:
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
-    """Return the stages that ends make, in the order of their suction pressures; those without any last."""
-    groups: list[list[CompressorEnd]] = []
+    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last."""
+    groups: dict[Any, list[CompressorEnd]] = {}
     for end in ends:
-        alike = (group for group in groups if _in_one_stage(group[0], end))
-        group = next(alike, None)
-        groups.append([end]) if group is None else group.append(end)
-    stages = [CompressorStage(group) for group in groups]
+        pressures = () if end.suction is None else (end.suction, end.delivery)
+        groups.setdefault(tuple(f"{np.mean(one):.9g}" for one in pressures) or end.owner, []).append(end)
+    stages = [CompressorStage(group) for group in groups.values()]
     stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
     for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
         stage.name = f"stage {number}"
     return tuple(stages)
-
-
-def _in_one_stage(one: CompressorEnd, other: CompressorEnd) -> bool:
-    if one.suction is None or other.suction is None:
-        return one.suction is other.suction and one.owner == other.owner
-    return _agreed((abs(one.suction - other.suction) <= 1e-9 * one.suction) & (one.delivery == other.delivery))
