@@ -9,8 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
 from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refused
 from kurbel.machine.ideal_cards import CLEARANCE
@@ -51,7 +50,7 @@ class Columns(Record):
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         """Yield the rules on keys of the layout that contradict one another."""
-        if "file" not in given or has_refused(given.values()):
+        if "file" not in given:
             return
         key = f"{cls.what}_columns" if f"{cls.what}_columns" in given else f"{cls.what}_column"
         columns, own = given.get(key, 2), given.get("angle_column", 1)
@@ -72,7 +71,6 @@ class Columns(Record):
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
 
 
-@record
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 

@@ -189,8 +189,11 @@ class Mechanism(Record, ABC):
     lacks: ClassVar[Any] = ()
     """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
     crank: float
-    offset: float = 0.0
-    """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
+
+    @property
+    def offset(self) -> float:
+        """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
+        return 0.0
 
     @abstractmethod
     def coordinate(self, angle: CrankAngle) -> Number:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field, record
+from kurbel.declared.record import Rule, field
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
@@ -65,7 +65,6 @@ class Closure(NamedTuple):
     foot: Number
 
 
-@record
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 

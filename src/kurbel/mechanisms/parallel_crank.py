@@ -5,7 +5,7 @@ from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import field, record
+from kurbel.declared.record import field
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
@@ -89,7 +89,6 @@ COUPLER_VALUES = (
 )
 
 
-@record
 class ParallelCrank(Mechanism):
     """Two equal cranks, joined by a coupler of the length of the frame: the coupled wheels of a locomotive.
 

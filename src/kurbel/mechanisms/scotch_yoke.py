@@ -4,7 +4,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import field, record
+from kurbel.declared.record import field
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
@@ -27,7 +27,6 @@ _N_PAIR = force_column(
 )
 
 
-@record
 class ScotchYoke(Mechanism):
     """A crank pin whose block slides in a yoke square to the stroke line.
 

@@ -10,12 +10,11 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Rule, Values, alternative, field, record
+from kurbel.declared.record import Rule, Values, alternative, field
 from kurbel.mechanisms import PIN, TURNING, Mechanism, Offer, Sketch, Turning, requested_column
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
-_INFINITE = (("infinite", math.inf),)
+_INFINITE = {"infinite": math.inf}
 
 
 def crank_field() -> Any:
@@ -54,7 +53,6 @@ ROD_OFFERS: tuple[Offer, ...] = (
 )
 
 
-@record
 class SliderCrank(Mechanism):
     """A crank, a connecting rod and a crosshead on a straight guide.
 
@@ -90,7 +88,6 @@ class SliderCrank(Mechanism):
         "Offset of the stroke line from the shaft, positive toward the side of the outstroke",
         "e",
         default=0.0,
-        absent="0",
     )
 
     name = "slider-crank"
@@ -100,11 +97,11 @@ class SliderCrank(Mechanism):
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         rod = given.get("rod") if given.get("rod") is not None else given.get("rod_ratio")
-        known = given.get("stroke"), given.get("offset"), rod
-        if not (any(one is None for one in known) or has_refused(known)):
-            crank = _crank_of_stroke(given)
+        stroke, offset = given.get("stroke"), given.get("offset")
+        if not (stroke is None or offset is None or rod is None):
+            crank, known = _crank_of_stroke(given), stroke + offset + rod
             remedy = "no crank has this stroke with {offset:length} and such a rod; give a longer one, or less offset"
-            yield Rule("offset", crank != crank, remedy, given)
+            yield Rule("offset", (crank != crank) & (known == known), remedy, given)
 
     def rules(self) -> Iterator[Rule]:
         crank, rod, offset = self.crank, self.rod, abs(self.offset)

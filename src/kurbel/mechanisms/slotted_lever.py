@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, alternative, field, record
+from kurbel.declared.record import Rule, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
@@ -47,7 +47,6 @@ class Ram(NamedTuple):
     bend: Number
 
 
-@record
 class SlottedLever(Mechanism):
     """A crank pin that slides in a slotted lever, whose end drives a ram square to the line of the two pivots.
 
@@ -86,7 +85,7 @@ class SlottedLever(Mechanism):
         "l",
         default=math.inf,
         above=0,
-        words=(("infinite", math.inf),),
+        words={"infinite": math.inf},
         absent="fork head sliding along the ram",
     )
     ram_height: float | None = field(

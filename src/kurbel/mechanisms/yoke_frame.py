@@ -9,7 +9,7 @@ from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import field, record
+from kurbel.declared.record import field
 from kurbel.mechanisms import Offer, force_column
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.arithmetic import some
@@ -49,7 +49,6 @@ BENDING_OFFERS = (
 )
 
 
-@record
 class YokeFrame(SliderCrank):
     """A slider-crank whose crosshead pin is held by the piston rod alone.
 

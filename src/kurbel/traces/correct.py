@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indivisible
+from kurbel.arrays import Array, Indivisible, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Record, Rule, field, record
+from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
@@ -37,7 +37,6 @@ def at_equal_steps(angles: Array) -> bool:
     return bool(np.abs(steps - steps.mean()).max() <= _EVEN * steps.mean())
 
 
-@record
 class KnownLevel(Record):
     """Where the level of a trace is known, in degrees and Pa: piezoelectric sensors measure changes only."""
 
@@ -108,7 +107,7 @@ class Trace(Indivisible):
         joins = (self.period, 2 * self.period) if len(self.samples) > 1 else (self.period,)
         return tuple(cycle for cycle, turns in CYCLES.items() if 360.0 * turns in joins)
 
-    def rules_in(self, cycle: str, lift: float) -> Iterator[Rule]:
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle of the machine."""
         other = next(name for name in CYCLES if name != cycle)
         covers = f"the trace covers {self.period:g} deg, a {cycle} cycle has {360.0 * CYCLES[cycle]:g} deg"
