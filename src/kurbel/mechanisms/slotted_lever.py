@@ -149,10 +149,6 @@ class SlottedLever(Mechanism):
         """R_l in m, where there is a ram."""
         return self.lever or 0.0
 
-    @property
-    def _gap(self) -> float:
-        return self.frame - self.crank
-
     @cached_property
     def _kappa(self) -> tuple[float, float]:
         """κ, the shorter of r and e over the longer, and √(1 − κ²)."""
@@ -172,7 +168,7 @@ class SlottedLever(Mechanism):
 
         Sums that may cancel are those of e − r, as they were given, and 1 + cos φ.
         """
-        crank, frame, gap = self.crank, self.frame, self._gap
+        crank, frame, gap = self.crank, self.frame, self.frame - self.crank
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         along_crank = (frame * angle.vercosine - gap) / reach  # (r + e cos φ)/ρ
         bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (reach * reach * reach * reach)
@@ -215,7 +211,7 @@ class SlottedLever(Mechanism):
         With a link on the rotating lever they are where link and lever lie in line: φ = θ + arcsin(κ sin θ).
         """
         kappa, root = self._kappa
-        if math.isinf(self.link) or not self.rotates:
+        if not self.rotates:
             end = 180.0 - bearing(root, kappa)
             return -end, end
         inner, outer = (
