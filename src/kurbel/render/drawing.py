@@ -4,17 +4,18 @@ import importlib.util
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Literal
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.output import opened, stdout_look, write_coloured, write_out
+from kurbel.render.output import opened, stdout_look, write_lines
 from kurbel.render.svg import svg_file
-from kurbel.render.text import BLANK, plain
+from kurbel.render.text import BLANK
 from kurbel.report.picture import Picture
 
-_SHEET = b"""#set document(date: none)
+_SHEET = """#set document(date: none)
 #set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg")"""
 _DOTS_PER_INCH = 192.0
@@ -37,11 +38,13 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
 
 
 def draw(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
-    """Draw pictures to a file, or to standard output where none is named."""
-    if file_name is None:
-        draw_stdout(pictures, look)
-    else:
+    """Draw pictures to a file, or as characters to standard output where none is named."""
+    if file_name is not None:
         draw_file(list(pictures), look, file_name)
+        return
+    look = stdout_look(look)
+    lines = (line for picture in pictures for line in (BLANK, *braille(picture, look)))
+    write_lines(islice(lines, 1, None), look)
 
 
 def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
@@ -49,17 +52,15 @@ def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
     kind, look = check_file(file_name), replace(look, encoding="utf-8")
     drawn = svg_file(pictures, look, paper=kind != "svg").encode()
     if kind != "svg":
-        import typst
-
-        kind_of_page: Literal["png", "pdf"] = "png" if kind == "png" else "pdf"
-        drawn = typst.compile(_SHEET, format=kind_of_page, ppi=_DOTS_PER_INCH, sys_inputs={"svg": drawn.decode()})
+        drawn = typeset(_SHEET, file_name, svg=drawn.decode())
     with opened(file_name) as file:
         file.write(drawn)
 
 
-def draw_stdout(pictures: Iterable[Picture], look: Look) -> None:
-    """Draw pictures as characters to standard output, in colour on a terminal unless colours are not wanted."""
-    look = stdout_look(look)
-    lines = [line for picture in pictures for line in (BLANK, *braille(picture, look))][1:]
-    if not write_coloured(lines, look):
-        write_out(plain(lines), None)
+def typeset(document: str, file_name: str, **inputs: str) -> bytes:
+    """Return a document of typst as svg, png or pdf, as the name of a file ends; inputs: texts that it reads."""
+    import typst
+
+    formats: dict[str, Literal["svg", "png", "pdf"]] = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+    kind = formats[os.path.splitext(file_name)[1].lower()]
+    return typst.compile(document.encode(), format=kind, ppi=_DOTS_PER_INCH, sys_inputs=inputs)

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterable
+from decimal import Decimal
 from typing import NamedTuple
 
 from kurbel.report.tables import Value
@@ -12,6 +13,7 @@ DIGITS = 4
 
 _LARGE = 7  # from 1e7 on, and below 1e-4, a row gets its power of ten into the head
 _SMALL = -4
+_LONG = re.compile(r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))")
 
 
 class Scale(NamedTuple):
@@ -36,8 +38,8 @@ def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
         return Scale(0)
     power = _power(largest, digits or DIGITS)
     exponent = 0 if _SMALL <= power < _LARGE else 3 * math.floor(power / 3)
-    least = 0 if digits is None else -_LARGE
-    return Scale(max(least, (digits or DIGITS) - 1 - power + exponent), exponent)
+    decimals = (digits or DIGITS) - 1 - power + exponent
+    return Scale(decimals if digits else max(0, decimals), exponent)
 
 
 def angle_scale(values: Iterable[Value]) -> Scale:
@@ -51,45 +53,30 @@ def _power(value: float, digits: int) -> int:
     return int(f"{abs(value):.{digits - 1}e}".partition("e")[2])
 
 
-def cell(value: Value, scale: Scale, comma: bool = False) -> str:
+def cell(value: Value, scale: Scale) -> str:
     """Return the value as a table shows it; an exact zero is `0` as in the book, no value is empty.
 
-    >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(0.5, Scale(3), comma=True)
-    ('-0.014', '0.000', '0', '0,500')
-    >>> cell(81134.0, Scale(-3))
-    '81000'
+    >>> cell(-0.0142, Scale(3)), cell(-0.0001, Scale(3)), cell(0.0, Scale(3)), cell(81134.0, Scale(-3))
+    ('-0.014', '0.000', '0', '81000')
     """
-    if value is None:
-        return ""
-    if value == 0:
-        return "0"
-    if scale.exponent < 0:  # two steps: 10.0 ** 324 is no float
-        half = -scale.exponent // 2
-        value = value * 10.0**half * 10.0 ** (-scale.exponent - half)
-    else:
-        value /= 10.0**scale.exponent
+    if not value:
+        return "" if value is None else "0"
+    if scale.exponent:
+        value = float(Decimal(value).scaleb(-scale.exponent))
     # adding 0.0 turns -0.0 into 0.0
-    return decimal(f"{round(value, scale.decimals) + 0.0:.{max(0, scale.decimals)}f}", comma)
+    return f"{round(value, scale.decimals) + 0.0:.{max(0, scale.decimals)}f}"
 
 
-_LONG = re.compile(r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))")
-
-
-def in_thousands(text: str, space: str = "\N{NARROW NO-BREAK SPACE}") -> str:
+def in_thousands(text: str) -> str:
     """Return a text in which numbers from 10,000 on have thin spaces.
 
-    >>> in_thousands("J = 18066.25, -1234567; 1234, 0.123456, run-10000.csv", "_")
+    >>> in_thousands("J = 18066.25, -1234567; 1234, 0.123456, run-10000.csv").replace("\N{NARROW NO-BREAK SPACE}", "_")
     'J = 18_066.25, -1_234_567; 1234, 0.123456, run-10000.csv'
     """
-    return _LONG.sub(lambda found: f"{int(found[0]):_}".replace("_", space), text)
+    return _LONG.sub(lambda found: f"{int(found[0]):_}".replace("_", "\N{NARROW NO-BREAK SPACE}"), text)
 
 
-def decimal(text: str, comma: bool) -> str:
-    """Return a number with the decimal sign that is wanted."""
-    return text.replace(".", ",") if comma else text
-
-
-def single(value: float, digits: int | None = None, comma: bool = False, own: int = 0) -> tuple[str, int]:
+def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, int]:
     """Return a single value, and its power of ten.
 
     own: digits of a value among others of quite another size, which has a power of ten sooner.
@@ -106,17 +93,17 @@ def single(value: float, digits: int | None = None, comma: bool = False, own: in
     small, large = (-2, 5) if own else (_SMALL, _LARGE)
     exponent = 0 if small <= power < large else power
     decimals = count - 1 - power + exponent
-    return cell(value, Scale(decimals if digits and not own else max(0, decimals), exponent), comma), exponent
+    return cell(value, Scale(decimals if digits and not own else max(0, decimals), exponent)), exponent
 
 
-def angle(value: float, comma: bool = False, decimals: int = 2) -> str:
+def angle(value: float, decimals: int = 2) -> str:
     """Return an angle in degrees with so many decimals at most.
 
     >>> angle(79.10014), angle(180.0)
     ('79.1', '180')
     """
     text = f"{round(value, decimals) + 0.0:.{decimals}f}"
-    return decimal(text.rstrip("0").rstrip("."), comma)
+    return text.rstrip("0").rstrip(".")
 
 
 def rounded(value: Value, digits: int | None) -> Value:

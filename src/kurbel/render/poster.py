@@ -2,19 +2,17 @@
 
 import json
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.drawing import check_file
-from kurbel.render.numbers import DIGITS, single
+from kurbel.render.drawing import check_file, typeset
+from kurbel.render.numbers import DIGITS
 from kurbel.render.output import opened
-from kurbel.render.picture import printed
 from kurbel.render.svg import poster_svg
 from kurbel.render.text import subscripts
-from kurbel.report.picture import Facts, Picture
+from kurbel.report.picture import Fact, Facts, Picture
 
 SIZES = ("A0", "A1", "A2", "A3", "A4", "A5")
 _MOST_FACTS = 6
@@ -65,8 +63,6 @@ def check_poster(size: str, file_name: str | None) -> str:
 
 def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str) -> None:
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
-    import typst
-
     look, panel = replace(look, encoding="utf-8"), picture.panels[0]
     x, y = (axis._replace(low=None, high=None) for axis in (panel.x, panel.y))  # no room for forces, which are left out
     panel = panel._replace(x=x, y=y, curves=(), title="")
@@ -79,20 +75,15 @@ def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name
         "size": size,
         "wide": wide,
         "large": min(5.2, 150.0 * (1.4 if wide else 1.0) / max(len(title), 1)),
-        "facts": [
-            {
-                "title": look.text(one.title),
-                "value": printed(look.counted(*single(one.value, look.digits or DIGITS, look.comma)), look)
-                + "°" * (one.unit == "deg"),
-                "unit": look.unit(one.unit) if one.unit != "deg" else "",
-                "symbol": subscripts(look.text(one.symbol)),
-                "where": f" {look.text(one.where)}",
-            }
-            for one in facts.facts[:_MOST_FACTS]
-        ],
+        "facts": [_fact(one, look) for one in facts.facts[:_MOST_FACTS]],
     }
-    inputs = {"words": json.dumps(words), "svg": poster_svg(panel, look, wide)}
-    kind: Literal["pdf", "svg"] = "svg" if file_name.lower().endswith(".svg") else "pdf"
-    drawn = typst.compile(_SHEET.encode(), format=kind, sys_inputs=inputs)
+    drawn = typeset(_SHEET, file_name, words=json.dumps(words), svg=poster_svg(panel, look, wide))
     with opened(file_name) as file:
         file.write(drawn)
+
+
+def _fact(one: Fact, look: Look) -> dict[str, object]:
+    value, unit = look.measured(one.value, one.unit, DIGITS)
+    symbol = subscripts(look.text(one.symbol))
+    where = f" {look.text(one.where)}"
+    return {"title": look.text(one.title), "value": look.fine(value), "unit": unit, "symbol": symbol, "where": where}

@@ -10,6 +10,7 @@ from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.quantity import GREEK
+from kurbel.render.numbers import angle, in_thousands, single
 
 FORMATS = ("table", "csv", "json", "markdown", "html", "latex")
 LAYOUTS = ("book", "rows")
@@ -26,7 +27,11 @@ _CONTROL = dict.fromkeys((*range(32), *range(127, 160), 0xFFFE, 0xFFFF), "�")
 TURNING = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 """Characters that turn the direction of writing: a name with one could make a line read backward."""
 _TURNING = dict.fromkeys(TURNING, "�")
-_NO_BREAK = "\N{NO-BREAK SPACE}"
+_NO_BREAK, _THIN = "\N{NO-BREAK SPACE}", "\N{NARROW NO-BREAK SPACE}"
+_POINT = re.compile(r"(?<=\d)\.(?=\d)")
+_HYPHEN = re.compile(r"(?<![\w.-])-(?=\d)")
+_DEGREE = re.compile(r"(?<=\d) deg\b")
+_SQUARE = re.compile(r"(?<=[a-z])\^2")
 _SUBSCRIPT = re.compile(
     "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;]+?)(?=[,.]?\\s|[,.]?$|[|()/;])"
 )
@@ -71,6 +76,43 @@ class Look:
             return text
         plain = (normalize("NFKD", c).encode("ascii", "ignore").decode() for c in text)
         return "".join(c if self.has(c) else _ASCII.get(c) or other or "?" for c, other in zip(text, plain))
+
+    def sentence(self, text: str) -> str:
+        """Return a sentence for people, its numbers as they are wanted."""
+        return self.number(self.text(_SQUARE.sub("²", text)))
+
+    def number(self, text: str) -> str:
+        """Return a text whose numbers have the decimal sign that is wanted; in HTML and LaTeX see `fine`."""
+        if self.format in ("html", "latex"):
+            return self.fine(text)
+        return _POINT.sub(",", text) if self.comma else text
+
+    def fine(self, text: str) -> str:
+        """Return a text whose numbers have thin spaces, minus signs and degrees as signs, where the output has them.
+
+        >>> Look(comma=True).fine("J = 18066.25, -1.5 and run-10000.csv").replace("\N{NARROW NO-BREAK SPACE}", "_")
+        'J = 18_066,25, −1,5 and run-10000.csv'
+        """
+        if self.has("−" + _THIN):
+            text = _DEGREE.sub("°", _HYPHEN.sub("−", in_thousands(text)))
+        return _POINT.sub(",", text) if self.comma else text
+
+    def value(self, value: float, digits: int | None = None) -> str:
+        """Return a single value with its power of ten, to so many digits if no others are wanted."""
+        return self.number(self.counted(*single(value, self.digits or digits)))
+
+    def measured(self, value: float, unit: str, digits: int | None = None) -> tuple[str, str]:
+        """Return a single value and its unit as printed; a degree is at its number.
+
+        >>> Look().measured(87.7, "kN"), Look().measured(22.02, "deg")
+        (('87.70', 'kN'), ('22.02°', ''))
+        """
+        number, printed = self.value(value, digits), self.unit(unit)
+        return (number + printed, "") if printed == "°" else (number, printed)
+
+    def degrees(self, value: float) -> str:
+        """Return an angle with its unit."""
+        return self.number(angle(value)) + self.text("°")
 
     def symbol(self, symbol: str, ascii_symbol: str) -> str:
         """Return the textbook symbol, or its ASCII name."""
@@ -125,6 +167,11 @@ def line(text: str, role: str = "text") -> Line:
     return (Piece(text, role),)
 
 
+def paragraph(text: str, cells: int | None, role: str = "text") -> list[Line]:
+    """Return a text in lines of so many cells; see `folded`."""
+    return [line(one, role) for one in folded(text, cells)]
+
+
 def plain(lines: Iterable[Line]) -> Iterator[str]:
     """Yield the lines as text, without blanks at their ends."""
     for pieces in lines:
@@ -149,7 +196,8 @@ def measures() -> re.Pattern[str]:
     of_kinds = [each for system in SYSTEMS.values() for each in system.values()]
     units = {unit for each in of_kinds for unit in ([each] if isinstance(each, str) else each)}
     printed = {"%", "°", *units, *map(Look().unit, units)} - {""}
-    return re.compile(rf"\S*\d  ?(?:{'|'.join(map(re.escape, sorted(printed, key=len, reverse=True)))})(?!\w)")
+    longest_first = "|".join(map(re.escape, sorted(printed, key=len, reverse=True)))
+    return re.compile(rf"(?:\S|{_THIN})*\d  ?(?:{longest_first})(?!\w)")
 
 
 def subscripts(text: str) -> list[str]:
