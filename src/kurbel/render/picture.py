@@ -202,18 +202,19 @@ class PanelFrame:
         """Return the places of points."""
         return np.asarray(self.x.place(x) + 1j * self.y.place(y))
 
-    def ticks_across(self, most: int, start: float, end: float) -> Iterator[tuple[float, float, str]]:
-        """Yield the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
+    def ticks_across(self, most: int, start: float, end: float) -> list[tuple[float, float, str]]:
+        """Return the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
 
         start, end: how far texts may reach.
         """
-        letter, every = self.medium.letter, ticks(self.panel.x, self.x, most, self.look)
+        every, found = ticks(self.panel.x, self.x, most, self.look), []
+        wide = [width(text) * self.medium.letter for _, text in every]
         apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
-        widest = max((width(text) for _, text in every), default=0)
-        of_each = max(math.ceil((widest + 1) * letter / apart), 1)
+        of_each = max(math.ceil((max(wide, default=0.0) + self.medium.letter) / apart), 1)
         for number, (place, text) in enumerate(every):
-            wide = width(text) * letter
-            yield place, max(min(place - wide / 2, end - wide), start), "" if number % of_each else text
+            left = max(min(place - wide[number] / 2, end - wide[number]), start)
+            found.append((place, left, "" if number % of_each else text))
+        return found
 
     def labels(self, named: bool) -> list[Label]:
         """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.

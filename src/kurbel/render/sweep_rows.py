@@ -5,14 +5,14 @@ stays until then, and an interrupted run leaves what it has, which `--resume` co
 """
 
 import codecs
-import csv
 import json
 import math
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import chain, islice
+from itertools import chain, islice, zip_longest
 from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
@@ -32,6 +32,9 @@ _WIDTH_OF = 20
 """Rows that decide the widths of the columns of a table; a wider cell further down moves its row."""
 _COMPARED_AT_ONCE = 100
 """Rows of a file whose inputs are compared together."""
+_NUMBER = re.compile(rb'(?:\{"row": )?(\d+)\b')
+_WORD = re.compile(r'[^,;\s"{}\[\]]+')
+"""The number of a row at the beginning of its line, and the names, numbers and words in it, in csv and in json."""
 _SAME = 1e-9
 """By how much two processors may differ in a number, relatively and in SI: they round otherwise, in the same sweep."""
 
@@ -74,14 +77,7 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
         )
 
     if look.format == "json":
-        heads = titles.whole
-
-        def json_row(row: Design) -> str:
-            texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-            found = {name: texts.get(name, value) for name, value in zip(heads, titles.values(row))}
-            return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
-
-        return "", json_row
+        return "", lambda row: _json_row(titles, row)
 
     def cells(row: Design) -> list[str]:
         return [_cell(value, look) for value in titles.values(row)]
@@ -89,14 +85,9 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
     names = [titles.row, *(look.text(name) for name, _ in titles.names), *titles.last]
     units = ["", *(look.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
     if look.format == "markdown":
-
-        def markdown_row(cells: Iterable[str]) -> str:
-            escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
-            return f"| {' | '.join(escaped)} |\n"
-
+        named = [f"{name} ({unit})" if unit else name for name, unit in zip(names, units)]
         rules = ["--:"] * (len(titles.names) + 1) + ["---"] * len(titles.last)
-        named = (f"{name} ({unit})" if unit else name for name, unit in zip(names, units))
-        return markdown_row(named) + markdown_row(rules), lambda row: markdown_row(cells(row))
+        return _markdown_row(named) + _markdown_row(rules), lambda row: _markdown_row(cells(row))
 
     # a table: numbers flush right, with heads and units over them
     widths = [max(map(len, column)) for column in zip(names, units, *map(cells, first))]
@@ -111,6 +102,17 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
     return f"{above}{rule}\n", lambda row: table_row(cells(row))
 
 
+def _json_row(titles: Titles, row: Design) -> str:
+    texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
+    found = {name: texts.get(name, value) for name, value in zip(titles.whole, titles.values(row))}
+    return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def _markdown_row(cells: Iterable[str]) -> str:
+    escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
+    return f"| {' | '.join(escaped)} |\n"
+
+
 def _cell(value: Cell, look: Look) -> str:
     """Return a value as people read it, its number to four digits."""
     if isinstance(value, str):
@@ -119,8 +121,8 @@ def _cell(value: Cell, look: Look) -> str:
         return " ".join(_cell(one, look) for one in value)
     if value is None:
         return ""
-    text, power = single(value, look.digits, look.comma)
-    return f"{text}e{power}" if power else text
+    text, power = single(value, look.digits)
+    return look.number(f"{text}e{power}" if power else text)
 
 
 # where they go
@@ -228,13 +230,14 @@ def kept_rows(
     """Return what a file, or the part of it that an early end left, has of these rows, and those still to be computed.
 
     Raises UsageError for a file that begins otherwise, or that has rows that this sweep has not, or with other inputs
-    or other answers: the inputs of each are compared, and the answers of the last one that has any.
+    or other answers: the inputs of each row are compared, and the answers of the last one.
     """
     path = part if os.path.isfile(part := _part_of(file_name)) else file_name
     if not os.path.isfile(path):  # a device or a pipe, which may have no end, keeps nothing
         return Kept(), rows
     heads, line_of = lines_of(titles, look)
-    head = heads if rows.start == 0 else ""
+    head = heads.encode() if rows.start == 0 else b""
+    begin_of = lines_of(Titles(titles.names[: len(sweep.plan.inputs)], row=titles.row), look)[1]
 
     def refuse(why: str) -> NoReturn:
         raise UsageError(
@@ -242,73 +245,56 @@ def kept_rows(
             "give the same machine and options, name another file, or leave --resume out to begin anew"
         )
 
-    def compare(cells: Sequence[str], now: Sequence[str]) -> None:
-        for name, there, here in zip(titles.whole, cells, now):
-            if there != here and not _same(there, here):
-                refuse(f"row {cells[0]} has {there or 'no'} {name} in it, and {here or 'none'} now")
+    def compare(row: int, there: list[str], here: list[str]) -> None:
+        for one, other in zip_longest(there, here, fillvalue="nothing"):
+            if not _same(one, other):
+                refuse(f"row {row} has {one} in it, and {other} now")
 
-    count, following, last = 0, rows.start, list[str]()
+    count, following, last = 0, rows.start, b""
     try:
         with open(path, "rb") as file:
             begin = next(file, b"")
-            opening = (head or '{"row": ' * (look.format == "json")).encode()
-            if begin[: len(opening)] != opening[: len(begin)] or not (opening or begin[:1] in b"0123456789"):
-                refuse(f"it begins with {begin.decode('utf-8', 'replace').rstrip(chr(10))[:60]!r}")
-            size = len(begin) if head and begin.endswith(b"\n") else 0
+            if not (head.startswith(begin) if head else _NUMBER.match(begin) or b'{"row": '.startswith(begin)):
+                refuse(f"it begins with {_shown(begin)}")
+            size = len(head) if begin == head else 0
             file.seek(size)
-
-            whole = (line for line in file if line.endswith(b"\n"))
-            while lines := list(islice(whole, _COMPARED_AT_ONCE)):
-                some = []
+            while lines := [line for line in islice(file, _COMPARED_AT_ONCE) if line.endswith(b"\n")]:
+                numbers = []
                 for line in lines:
-                    if not (cells := _cells(line.decode("utf-8", "replace"), titles, look)):
-                        refuse(f"it has a line {line.decode('utf-8', 'replace').rstrip()[:60]!r}")
-                    some.append((int(cells[0]) - 1, cells))
-                inputs = iter(sweep.inputs([row for row, _ in some if row in rows]))
-                for row, cells in some:
+                    number = _NUMBER.match(line) or refuse(f"it has a line {_shown(line)}")
+                    row = int(number[1]) - 1
                     if row not in rows:
                         refuse(f"it has row {row + 1}, these are rows {rows.start + 1} to {rows.stop}")
                     if row < following or (not conditions and row != following):
                         refuse(f"row {following + 1} is missing in it")
-                    compare(cells, [cells[0], *(_cell_text(one, look) for one in next(inputs))])
+                    numbers.append(row)
                     following = row + 1
-                    last = cells if any(cells[1 + len(sweep.plan.inputs) : 1 + len(sweep.heads)]) else last
-                count, size = count + len(lines), size + sum(map(len, lines))
+                for row, line, inputs in zip(numbers, lines, sweep.inputs(numbers)):
+                    here = _WORD.findall(begin_of(Design(row + 1, inputs)))
+                    compare(row + 1, _words(line)[: len(here)], here)
+                count, size, last = count + len(lines), size + sum(map(len, lines)), lines[-1]
     except OSError as error:
         raise UsageError(f"cannot read {path}: {error.strerror}") from None
 
     if last:
-        computed = next(rows_of(sweep, range(int(last[0]) - 1, int(last[0]))))
-        compare(last, _cells(line_of(computed), titles, look))
+        computed = next(rows_of(sweep, range(following - 1, following)))
+        compare(following, _words(last), _WORD.findall(line_of(computed)))
         if not all(one.holds(computed) for one in conditions):
-            refuse(f"row {last[0]} is in it, which --where leaves out")
+            refuse(f"row {following} is in it, which --where leaves out")
     return Kept(count, size), rows[following - rows.start :]
 
 
-def _cells(line: str, titles: Titles, look: Look) -> list[str]:
-    """Return the texts of the cells of a line; none of a line that no row of these titles has."""
+def _shown(line: bytes) -> str:
+    return repr(line.decode("utf-8", "replace").rstrip("\n")[:60])
+
+
+def _words(line: bytes) -> list[str]:
+    return _WORD.findall(line.decode("utf-8", "replace"))
+
+
+def _same(one: str, other: str) -> bool:
+    """Return whether two words are equal, or numbers but for their last digits."""
     try:
-        if look.format == "csv":
-            found = next(csv.reader([line], delimiter=";" if look.comma else ","), [])
-        else:
-            values = dict(json.loads(line))
-            each = [tuple(one) if isinstance(one, list) else one for one in values.values()]
-            found = [_cell_text(one, look) for one in each] if list(values) == titles.whole else []
-    except (csv.Error, ValueError, TypeError):
-        return []
-    return found if len(found) == len(titles.whole) and found[0].isdecimal() else []
-
-
-def _cell_text(value: Cell, look: Look) -> str:
-    cell = csv_cell(value, look)
-    return "" if cell is None else str(cell)
-
-
-def _same(there: str, here: str) -> bool:
-    """Return whether two cells have the same numbers, but for their last digits."""
-    try:
-        pairs = [[float(one.replace(",", ".")) for one in text.split()] for text in (there, here)]
+        return one == other or math.isclose(float(one), float(other), rel_tol=_SAME, abs_tol=_SAME)
     except ValueError:
         return False
-    alike = (math.isclose(*pair, rel_tol=_SAME, abs_tol=_SAME) for pair in zip(*pairs))
-    return len(pairs[0]) == len(pairs[1]) > 0 and all(alike)
