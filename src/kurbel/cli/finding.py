@@ -14,7 +14,7 @@ from kurbel.machine_file import source
 from kurbel.machine_file.overrides import rewritten
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw
-from kurbel.render.findings import as_json, as_rows, heads, picture, remarks
+from kurbel.render.findings import as_json, as_rows, columns, picture, remarks
 from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.sweep_rows import Titles, write_rows
 
@@ -80,7 +80,8 @@ def run(options: FindOptions) -> None:
         look = Look(
             written, comma=options.decimal == "comma", digits=options.digits or (None if written == "csv" else _DIGITS)
         )
-        write_rows(iter(as_rows(found, system)), Titles(heads(found, system)), look, options.file_name, to_stderr)
+        titles = Titles(tuple((name, unit) for name, unit, _ in columns(found, system)))
+        write_rows(iter(as_rows(found, system)), titles, look, options.file_name, to_stderr)
     for one in remarks(found):
         to_stderr(one)
 

@@ -12,8 +12,7 @@ from xml.etree import ElementTree
 from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.numbers import rounded, whole_if_integral
-from kurbel.render.text import TURNING
+from kurbel.render.text import TURNING, rounded, whole_if_integral
 from kurbel.report.tables import Column, Part, PlaceTable, Provenance, Report, Value
 
 FORMAT = 1

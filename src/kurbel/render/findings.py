@@ -7,28 +7,22 @@ from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.find import Solution, Solutions
 from kurbel.designs.sweep import Design
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
-from kurbel.report.picture_source import level
-
-Heads = tuple[tuple[str, str], ...]
+from kurbel.report.picture_source import in_units, level
 
 
-def heads(found: Solutions, system: str) -> Heads:
-    """Return names and units of the columns: the keys in the units of their ranges, and the key values."""
-    keys = [(one.key, one.unit) for one in found.varied]
-    largest = [max(abs(one.key_values[place]) for one in found.found) for place in range(len(found.answers))]
-    sized = zip(found.names, found.answers, largest)
-    return (*keys, *((name, shown_unit(one.kind, system, size)) for name, one, size in sized))
+def columns(found: Solutions, system: str) -> list[tuple[str, str, str]]:
+    """Return name, unit and kind of each column: the keys in the units of their ranges, and the key values."""
+    keys = [(one.key, one.unit, one.kind) for one in found.varied]
+    largest = np.max(np.abs([one.key_values for one in found.found]), axis=0)
+    answers = zip(found.names, (one.kind for one in found.answers), largest.tolist())
+    return [*keys, *((name, shown_unit(kind, system, size), kind) for name, kind, size in answers)]
 
 
 def as_rows(found: Solutions, system: str) -> list[Design]:
-    """Return a row for each solution, in the order and the units of the heads."""
-    kinds = [*(one.kind for one in found.varied), *(one.kind for one in found.answers)]
-    units = [unit for _, unit in heads(found, system)]
+    """Return a row for each solution, in the order and the units of the columns."""
+    units = [(kind, unit) for _, unit, kind in columns(found, system)]
     return [
-        Design(
-            number,
-            tuple(float(convert(value, *unit)) for value, *unit in zip((*one.values, *one.key_values), kinds, units)),
-        )
+        Design(number, tuple(float(convert(value, *of)) for value, of in zip((*one.values, *one.key_values), units)))
         for number, one in enumerate(found.found, 1)
     ]
 
@@ -64,22 +58,20 @@ def as_json(found: Solutions) -> dict[str, object]:
 def picture(found: Solutions, system: str) -> Picture:
     """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
     key, wanted = found.varied[0], found.wanted[0]
-    numbers, values, kind = found.places[:, 0], found.values[:, 0], wanted.answer.kind
-    unit = shown_unit(kind, system, float(np.nanmax(np.abs(values))))
+    places, values = found.places[:, 0], found.values[:, 0]
     # one nan at a jump, two for a design that fails
-    numbers, values = (np.repeat(one, 1 + np.isnan(values)) for one in (numbers, values))
-    jumps = np.searchsorted(numbers, [one.values[0] for one in found.jumps])
-    numbers, values = np.insert(numbers, jumps, np.nan), np.insert(values, jumps, np.nan)
-    x, y = np.where(np.isnan(values), np.nan, convert(numbers, key.kind, key.unit)), convert(values, kind, unit)
+    places, values = (np.repeat(one, 1 + np.isnan(values)) for one in (places, values))
+    jumps = np.searchsorted(places, [one.values[0] for one in found.jumps])
+    x, y = np.insert(places, jumps, np.nan), np.insert(values, jumps, np.nan)
+    x = np.where(np.isnan(y), np.nan, x)
     symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
     if wanted.value is not None:
-        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text.strip())))
+        curves.append(level(x, wanted.value, Words(wanted.text.strip())))
     name = Words(key.key.rpartition(".")[2])
-    places = [(key.in_unit(one.values[0]), float(convert(one.key_values[0], kind, unit))) for one in found.found]
-    marks = tuple(Mark(*place, PageFigure(name, place[0], key.unit)) for place in places)
-    across = Axis(Words(key.key), unit=key.unit, low=key.in_unit(key.low), high=key.in_unit(key.high))
-    panel = Panel(across, Axis(symbol, unit=unit), tuple(curves), marks=marks)
+    marks = [Mark(at, one.key_values[0], PageFigure(name, at), True) for one in found.found for at in one.values]
+    across, up = Axis(Words(key.key), key.kind, low=key.low, high=key.high), Axis(symbol, wanted.answer.kind)
+    panel = in_units(Panel(across, up, tuple(curves), marks=tuple(marks)), system)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
     return Picture("find", f"{found.names[0]} over {key.key}", text, (panel,), found.machine)
 

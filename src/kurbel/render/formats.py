@@ -8,8 +8,7 @@ from shutil import get_terminal_size
 
 from kurbel.render import Look
 from kurbel.render.data import csv_text, json_text
-from kurbel.render.html import html
-from kurbel.render.markup import Latex, Markdown, document
+from kurbel.render.markup import Latex, Markdown, document, html
 from kurbel.render.output import stdout_look, write_lines, write_out
 from kurbel.render.page import page
 from kurbel.render.text import Line, plain

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 
 from kurbel.render import Look
+from kurbel.render.style import page_css
 from kurbel.render.text import measures, subscripts
 from kurbel.render.text_tables import (
     MARK,
@@ -261,3 +262,22 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
             ]
             yield out.row(table, number, cells)
         yield out.table_end
+
+
+def html(report: Report, look: Look) -> Iterator[str]:
+    """Yield the report as a page of its own."""
+    yield from page(look.text(report.title), document(report, look, Html()), page_css())
+
+
+def page(title: str, main: Iterable[str], style: str) -> Iterator[str]:
+    """Yield a self-contained page: no script, nothing from elsewhere, which the browser enforces."""
+    yield (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+        'img-src data:">\n'
+        f'<meta name="color-scheme" content="light dark">\n<title>{escape(title)}</title>\n'
+        f"<style>\n{style}</style>\n</head>\n<body>\n<main>\n"
+    )
+    yield from main
+    yield "</main>\n</body>\n</html>\n"

@@ -8,8 +8,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.render import Look
-from kurbel.render.numbers import angle_scale, cell
-from kurbel.render.text import folded, width
+from kurbel.render.text import angle_scale, cell, folded, width
 from kurbel.report.picture import Axis, Curve, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)

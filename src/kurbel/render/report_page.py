@@ -6,11 +6,10 @@ from dataclasses import replace
 
 from kurbel import __version__
 from kurbel.render import Look
-from kurbel.render.html import page
-from kurbel.render.markup import Html, listed, of_places, over_angle, written
-from kurbel.render.numbers import DIGITS
+from kurbel.render.markup import Html, listed, of_places, over_angle, page, written
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
 from kurbel.render.svg import svg
+from kurbel.render.text import DIGITS
 from kurbel.render.text_tables import TextTable, key_value_table, part_name, place_table, texts
 from kurbel.report.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
 from kurbel.report.tables import PlaceTable, Provenance, Report

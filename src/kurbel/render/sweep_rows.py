@@ -21,8 +21,8 @@ from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.data import csv_cell, csv_line
-from kurbel.render.numbers import single
 from kurbel.render.output import opened, stdout_look
+from kurbel.render.text import single
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""
