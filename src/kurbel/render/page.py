@@ -31,7 +31,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         else:
             for name, columns in bands:
                 yield from (BLANK, line(name, "name")) if name else (BLANK,)
-                yield from _blocks(heads, columns, look, _ROW_GAP)
+                yield from blocks(heads, columns, look, _ROW_GAP)
 
     for table in report.printed_tables:
         shown = place_table(table, look)
@@ -42,7 +42,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         if len(side) > 1:
             repeated = zip(side[0].values, ("", *side[0].values))
             side[0] = side[0]._replace(values=["" if name == above else name for name, above in repeated])
-        yield from _blocks(side, shown.columns[len(side) :], look, _GAP)
+        yield from blocks(side, shown.columns[len(side) :], look)
 
     if notes := [note for note in (report.mirrored, *report.notes) if note]:
         yield from (BLANK, *(one for note in notes for one in sentence("", note, look)))
@@ -61,7 +61,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
 # a line for each row
 
 
-def _blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int) -> Iterator[Line]:
+def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
     blocks = [list(side)]
     for one in columns:

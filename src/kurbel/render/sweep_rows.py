@@ -11,7 +11,6 @@ import os
 import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 from itertools import chain, islice, zip_longest
 from typing import BinaryIO, NamedTuple, NoReturn
 
@@ -21,15 +20,16 @@ from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.data import csv_cell, csv_line
-from kurbel.render.output import opened, stdout_look
-from kurbel.render.text import single
+from kurbel.render.markup import Markdown, written
+from kurbel.render.output import opened, stdout_look, write_out
+from kurbel.render.page import blocks
+from kurbel.render.text import plain, single
+from kurbel.render.text_tables import TextTable, texts
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""
 _IN_A_GROUP = 10_000
 """Rows of a group of a Parquet file."""
-_WIDTH_OF = 20
-"""Rows that decide the widths of the columns of a table; a wider cell further down moves its row."""
 _COMPARED_AT_ONCE = 100
 """Rows of a file whose inputs are compared together."""
 _NUMBER = re.compile(rb'(?:\{"row": )?(\d+)\b')
@@ -64,53 +64,32 @@ class Titles(NamedTuple):
 # rows as lines of text
 
 
-def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[str, Callable[[Design], str]]:
-    """Return the lines of the heads, and what makes the line of a row.
-
-    first: rows that decide the widths of a table.
-    """
+def lines_of(titles: Titles, look: Look) -> tuple[str, Callable[[Design], str]]:
+    """Return the line of the heads, and what makes the line of a row, in csv or as JSON."""
     if look.format == "csv":
         csv_row = csv_line(look)
-        return (
-            csv_row([csv_cell(name, look) for name in titles.whole]),
-            lambda row: csv_row([csv_cell(value, look) for value in titles.values(row)]),
-        )
+        head = csv_row([csv_cell(name, look) for name in titles.whole])
+        return head, lambda row: csv_row([csv_cell(value, look) for value in titles.values(row)])
 
-    if look.format == "json":
-        return "", lambda row: _json_row(titles, row)
+    def json_row(row: Design) -> str:
+        said = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
+        found = {name: said.get(name, value) for name, value in zip(titles.whole, titles.values(row))}
+        return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
-    def cells(row: Design) -> list[str]:
-        return [_cell(value, look) for value in titles.values(row)]
+    return "", json_row
 
-    names = [titles.row, *(look.text(name) for name, _ in titles.names), *titles.last]
-    units = ["", *(look.unit(unit) for _, unit in titles.names), *("" for _ in titles.last)]
+
+def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[str]:
+    """Return rows as a table of text or of Markdown."""
+    heads = [(titles.row, ""), *titles.names, *((name, "") for name in titles.last)]
+    cells = [[_cell(value, look) for value in titles.values(row)] for row in rows]
+    columns = [
+        texts(look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number")
+        for k, (name, unit) in enumerate(heads)
+    ]
     if look.format == "markdown":
-        named = [f"{name} ({unit})" if unit else name for name, unit in zip(names, units)]
-        rules = ["--:"] * (len(titles.names) + 1) + ["---"] * len(titles.last)
-        return _markdown_row(named) + _markdown_row(rules), lambda row: _markdown_row(cells(row))
-
-    # a table: numbers flush right, with heads and units over them
-    widths = [max(map(len, column)) for column in zip(names, units, *map(cells, first))]
-    if titles.last:  # a reason may be long, and nothing follows it
-        widths[-1] = 0
-
-    def table_row(texts: Iterable[str]) -> str:
-        return "  ".join(text.rjust(width) for text, width in zip(texts, widths)).rstrip() + "\n"
-
-    rule = look.text("─") * (sum(widths) + 2 * (len(widths) - 1))
-    above = table_row(names) + (table_row(units) if any(units) else "")
-    return f"{above}{rule}\n", lambda row: table_row(cells(row))
-
-
-def _json_row(titles: Titles, row: Design) -> str:
-    texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-    found = {name: texts.get(name, value) for name, value in zip(titles.whole, titles.values(row))}
-    return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
-
-
-def _markdown_row(cells: Iterable[str]) -> str:
-    escaped = (cell.replace("\\", "\\\\").replace("|", "\\|") for cell in cells)
-    return f"| {' | '.join(escaped)} |\n"
+        return iter(["".join(written([TextTable("", columns, 1)], Markdown())).lstrip("\n")])
+    return plain(blocks(columns[:1], columns[1:], look))
 
 
 def _cell(value: Cell, look: Look) -> str:
@@ -149,18 +128,19 @@ def write_rows(
     headed: csv with its head; early: gets a sentence about what an early end leaves.
     """
     to_file = file_name is not None and file_name != "-"
-    if not to_file:
-        look = replace(look, encoding=stdout_look(look).encoding)
+    look = look if to_file else stdout_look(look)
     following = iter(rows)
     counts = [kept.rows]
     try:
-        # before anything is opened: there may be none, for whatever reason
-        first = list(islice(following, _WIDTH_OF if look.format == "table" else 1))
+        if look.format in ("table", "markdown"):
+            write_out(_for_people(titles, look, list(following)), file_name, look.encoding)
+            return
+        first = list(islice(following, 1))  # before anything is opened: there may be none, for whatever reason
         with opened(file_name, resumed=kept.size) as file:
             if look.format == "parquet":
                 _write_parquet(file, titles, chain(first, following), counts.append)
             else:
-                heads, line = lines_of(titles, look, first)
+                heads, line = lines_of(titles, look)
                 lines = map(line, chain(first, following))
                 _write_lines(file, heads if headed or look.format != "csv" else "", lines, look.encoding, counts.append)
     except BaseException:
