@@ -4,8 +4,9 @@ import numpy as np
 
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
-from kurbel.designs.find import Solution, Solutions
+from kurbel.designs.find import Solutions
 from kurbel.designs.sweep import Design
+from kurbel.render.data import FORMAT
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import in_units, level
 
@@ -30,25 +31,27 @@ def as_rows(found: Solutions, system: str) -> list[Design]:
 def as_json(found: Solutions) -> dict[str, object]:
     """Return the findings for JSON, all in SI."""
 
-    def solution(one: Solution) -> dict[str, object]:
-        key_values = [
-            {"id": name, "symbol": answer.quantity.symbol, "unit": SI[answer.kind], "value": value}
-            for name, answer, value in zip(found.names, found.answers, one.key_values)
-        ]
-        return {"values": list(one.values), "key_values": key_values, "notes": list(one.notes)}
-
+    answers = [
+        {"id": name, "symbol": one.quantity.symbol, "unit": SI[one.kind]}
+        for name, one in zip(found.names, found.answers)
+    ]
+    wanted = zip(found.names, found.wanted)
     ranges = [list(span) for span in found.met]
     return {
         "kurbel": kurbel.__version__,
-        "format": 1,
+        "format": FORMAT,
         "command": "find",
         "machine": found.machine,
         "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
-        "wanted": [
-            {"id": name, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value}
-            for name, one in zip(found.names, found.wanted)
+        "wanted": [{"id": id, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value} for id, one in wanted],
+        "found": [
+            {
+                "values": list(one.values),
+                "key_values": [{**answer, "value": value} for answer, value in zip(answers, one.key_values)],
+                "notes": list(one.notes),
+            }
+            for one in found.found
         ],
-        "found": [solution(one) for one in found.found],
         "range": ranges[0] if len(ranges) == 1 else ranges,
         "jumps": [list(one.values) for one in found.jumps],
         "failed": [{"low": one.low, "high": one.high, "failure": one.why} for one in found.failed],

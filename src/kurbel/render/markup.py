@@ -255,7 +255,7 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
         heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
         yield out.table_head(table, out.text(table.caption), heads)
         of_columns = [escapes[one.kind] for one in table.columns]
-        for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
+        for number, row in enumerate(zip(*(one.cells for one in table.columns))):
             cells = [
                 out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else escaped(text)
                 for escaped, text in zip(of_columns, map(str.strip, row))

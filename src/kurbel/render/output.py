@@ -147,9 +147,6 @@ def whole_file(file_name: str) -> str:
 
     Raises OSError where it may not be written.
     """
-    if not os.path.basename(file_name):
-        missing = errno.EISDIR if file_name else errno.ENOENT
-        raise OSError(missing, os.strerror(missing))
     with suppress(FileNotFoundError):
         old = os.stat(file_name)
         if not stat.S_ISREG(old.st_mode) or any(_is_same(old, descriptor) for descriptor in (1, 2)):

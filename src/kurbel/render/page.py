@@ -40,8 +40,8 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         hidden = shown.heads and not table.headed
         side = [one._replace(symbol="") if hidden else one for one in shown.columns[: shown.heads or 1]]
         if len(side) > 1:
-            repeated = zip(side[0].values, ("", *side[0].values))
-            side[0] = side[0]._replace(values=["" if name == above else name for name, above in repeated])
+            repeated = zip(side[0].cells, ("", *side[0].cells))
+            side[0] = side[0]._replace(cells=["" if name == above else name for name, above in repeated])
         yield from blocks(side, shown.columns[len(side) :], look)
 
     if notes := [note for note in (report.mirrored, *report.notes) if note]:
@@ -76,7 +76,7 @@ def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look
         if any(one.unit for one in block):
             yield _row(block, gap, [one.unit for one in block], "unit")
         yield rule
-        for cells in zip(*(one.cells() for one in block)):
+        for cells in zip(*(one.cells for one in block)):
             yield _row(block, gap, cells, "cell")
         yield rule
 
@@ -115,16 +115,19 @@ def _book(
         name = 0
     side = name + symbol + unit
 
-    def book_line(band: str, row: TextColumn, across: range, role: str = "symbol") -> Line:
+    def book_line(band: str, row: TextColumn, across: slice, role: str = "symbol") -> Line:
         label = padded(row.symbol, symbol - _GAP, role == "head") + " " * _GAP
         pieces = [Piece(padded(band, name), "name"), Piece(label, role), Piece(padded(row.unit, unit), "unit")]
         number = "head" if role == "head" else "cell"
-        return (*pieces, *(Piece(padded(text, cell, True), _role(text, row, number)) for text in row.cells(across)))
+        return (
+            *pieces,
+            *(Piece(padded(text, cell, True), _role(text, row, number)) for text in row.cells[across]),
+        )
 
-    start, count = 0, len(heads[0].values)
+    start, count = 0, len(heads[0].cells)
     for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
         yield from (BLANK,) if start else ()
-        across, rule = range(start, start + size), line(look.text("─") * (side + size * cell), "rule")
+        across, rule = slice(start, start + size), line(look.text("─") * (side + size * cell), "rule")
         yield from (book_line("", head, across, "head") for head in heads)
         for band, columns in bands:
             yield rule
@@ -154,7 +157,7 @@ def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[L
     """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together."""
     groups = headed(key_values)
     table = key_value_table("", [one for group in groups.values() for one in group], look)
-    symbols, shown, units, angles, meanings = (one.values for one in table.columns)
+    symbols, shown, units, angles, meanings = (one.cells for one in table.columns)
     numbers = _below_one_another(shown, table.lists)
     angles = [f"at {one}" if one else "" for one in angles]
     symbol, unit, angle = (max(map(width, each)) for each in (symbols, units, angles))

@@ -129,26 +129,32 @@ def write_rows(
     """
     to_file = file_name is not None and file_name != "-"
     look = look if to_file else stdout_look(look)
-    following = iter(rows)
-    counts = [kept.rows]
+    if look.format in ("table", "markdown"):
+        write_out(_for_people(titles, look, list(rows)), file_name, look.encoding)
+        return
+    count = kept.rows
+
+    def counted() -> Iterator[Design]:
+        nonlocal count
+        for row in rows:
+            yield row
+            count += 1  # it is written when the next one is wanted
+
+    following = counted()
     try:
-        if look.format in ("table", "markdown"):
-            write_out(_for_people(titles, look, list(following)), file_name, look.encoding)
-            return
         first = list(islice(following, 1))  # before anything is opened: there may be none, for whatever reason
         with opened(file_name, resumed=kept.size) as file:
             if look.format == "parquet":
-                _write_parquet(file, titles, chain(first, following), counts.append)
+                _write_parquet(file, titles, chain(first, following))
             else:
                 heads, line = lines_of(titles, look)
-                lines = map(line, chain(first, following))
-                _write_lines(file, heads if headed or look.format != "csv" else "", lines, look.encoding, counts.append)
+                texts = chain([heads] if headed else [], map(line, chain(first, following)))
+                _write_lines(file, texts, look.encoding)
     except BaseException:
-        count = sum(counts)
         some = f"{count} row{'s' * (count > 1)}"
         if count and not to_file:
             early(f"{some} written")
-        elif count and os.path.isfile(part := _part_of(str(file_name))):
+        elif count and look.format != "parquet" and os.path.isfile(part := _part_of(str(file_name))):
             early(f"{part} holds {some}")
         raise
 
@@ -157,30 +163,18 @@ def _part_of(file_name: str) -> str:
     return os.path.realpath(file_name) + ".part"
 
 
-def _write_lines(file: BinaryIO, heads: str, lines: Iterable[str], encoding: str, wrote: Callable[[int], None]) -> None:
-    """Write whole lines, those that are ready whenever some time has passed, and at an interrupt too."""
+def _write_lines(file: BinaryIO, lines: Iterable[str], encoding: str) -> None:
+    """Write lines, the first ones at once, and those that are ready whenever some time has passed."""
     encoder = codecs.getincrementalencoder(encoding)("replace")  # one byte order mark at most
-    file.write(encoder.encode(heads))
-    ready: list[bytes] = []
     due = 0.0
-
-    def put() -> None:
-        file.write(b"".join(ready))
-        file.flush()
-        wrote(len(ready))
-        ready.clear()
-
-    try:
-        for line in lines:
-            ready.append(encoder.encode(line))
-            if time.monotonic() >= due:
-                put()
-                due = time.monotonic() + _AT_LEAST_EVERY
-    finally:
-        put()
+    for line in lines:
+        file.write(encoder.encode(line))
+        if time.monotonic() >= due:
+            file.flush()
+            due = time.monotonic() + _AT_LEAST_EVERY
 
 
-def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design], wrote: Callable[[int], None]) -> None:
+def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> None:
     """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
     try:
         import pyarrow
@@ -198,7 +192,6 @@ def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design], wrote
                     column = tuple(None if one is None else str(one) for one in column)
                 arrays.append(pyarrow.array(column, type))
             writer.write_table(pyarrow.table(arrays, schema=schema))
-            wrote(len(group))
 
 
 # the rows that an interrupted sweep left

@@ -1,9 +1,8 @@
 """First pass of every printed format: the values of a report as tables of text, with their digits, units and marks."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
-from functools import partial
+from collections.abc import Collection, Iterator, Sequence
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
@@ -18,35 +17,23 @@ _FEW = 12
 
 
 class TextColumn(NamedTuple):
-    """A column as text. Its cells are made when they are read: a table of a million rows is never held.
-
-    width: of the widest cell; kind: `number`, `name`, `symbol` or `sentence`; marked: rows that end in MARK, where all
-    others end in `pad`.
-    """
+    """A column as text; width: of the widest cell; kind: `number`, `name`, `symbol` or `sentence`."""
 
     symbol: str
     unit: str
-    values: Sequence[Any]
+    cells: Sequence[str]
     width: int
-    text: Callable[[Any], str] = str
     kind: str = "number"
-    marked: Collection[int] = ()
-    pad: str = ""
 
     @property
     def words(self) -> bool:
         """Whether it holds words, which are flush left."""
         return self.kind != "number"
 
-    def cells(self, across: range | None = None) -> Iterator[str]:
-        """Yield the texts of these rows, of all by default."""
-        for row in range(len(self.values)) if across is None else across:
-            yield self.text(self.values[row]) + (MARK if row in self.marked else self.pad)
-
 
 def texts(symbol: str, unit: str, cells: Sequence[str], kind: str = "number") -> TextColumn:
     """Return a column of texts."""
-    return TextColumn(symbol, unit, cells, max(map(width, cells), default=0), kind=kind)
+    return TextColumn(symbol, unit, cells, max(map(width, cells), default=0), kind)
 
 
 class TextTable(NamedTuple):
@@ -74,28 +61,26 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], list[
             values = tuple(None if value is None else 360 - value for value in phi.values)
             symbol, ascii_symbol = f"360° − {phi.symbol}", f"360 - {phi.ascii_symbol}"
             angles.append(phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values))
-        heads = [_over_angle(one, angle_scale(one.values), look, pad) for one in angles]
+        heads = [_scaled(one, angle_scale(one.values), look, pad) for one in angles]
         bands = []
         for part in alike:
             scaled = [(one, scale_of((one.size,) if one.size else one.values, look.digits)) for one in part.columns[1:]]
-            columns = [_over_angle(one, scale, look, pad) for one, scale in scaled]
-            bands.append((part_name(report, part, look), columns))
+            bands.append((part_name(report, part, look), [_scaled(one, scale, look, pad) for one, scale in scaled]))
         yield heads, bands
 
 
-def _over_angle(column: Column, scale: Scale, look: Look, pad: str) -> TextColumn:
-    """Return a column whose cells all have the same decimals: the largest or the smallest value is the widest."""
+def _scaled(column: Column, scale: Scale, look: Look, pad: str = "", missing: str = "") -> TextColumn:
+    """Return a column whose cells all have the same decimals; pad: after those without a mark."""
     if column.decimals is not None:
         scale = Scale(column.decimals)
+    cells = [missing if value is None else look.number(cell(value, scale)) + pad for value in column.values]
+    for row in column.marked:
+        cells[row] = cells[row].removesuffix(pad) + MARK
+    return _headed(column, cells, look, scale.exponent)
 
-    def text(value: Value) -> str:
-        return look.number(cell(value, scale))
 
-    known = [value for value in column.values if value is not None]
-    wide = max((len(text(end(known))) for end in (min, max) if known), default=0) + len(pad)
-    symbol = look.symbol(column.symbol, column.ascii_symbol)
-    unit = look.unit(column.unit, scale.exponent)
-    return TextColumn(symbol, unit, column.values, wide, text, marked=frozenset(column.marked), pad=pad)
+def _headed(column: Column, cells: Sequence[str], look: Look, exponent: int = 0) -> TextColumn:
+    return texts(look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells)
 
 
 def part_name(report: Report, part: Part, look: Look) -> str:
@@ -120,26 +105,18 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     for one in table.columns:
         if one.decimals is None and not one.alone:
             sharing.setdefault(one.unit, []).extend(one.values)
+    missing = look.text("–")
     for one in table.columns:
-        text, exponent = _text_of_places(one, sharing.get(one.unit, []), look)
-        cells = [look.text("–") if value is None else look.number(text(value)) for value in one.values]
-        columns.append(texts(look.symbol(one.symbol, one.ascii_symbol), look.unit(one.unit, exponent), cells))
+        if one.decimals is None and (one.alone or one.unit == "deg"):
+            own = [None if value is None else _alone(value, one, look) for value in one.values]
+            columns.append(_headed(one, [missing if text is None else look.number(text) for text in own], look))
+        else:
+            columns.append(_scaled(one, scale_of(sharing.get(one.unit, []), look.digits), look, missing=missing))
     return TextTable(look.text(table.title), columns, len(table.heads))
 
 
-def _text_of_places(column: Column, sharing: Sequence[Value], look: Look) -> tuple[Callable[[float], str], int]:
-    """Return what makes the text of a value, and the power of ten in the head of its column.
-
-    sharing: the values of all columns with which it shares its scale.
-    """
-    if column.decimals is not None:
-        return partial(cell, scale=Scale(column.decimals)), 0
-    if column.alone:
-        return lambda value: look.counted(*single(value, look.digits, column.alone)), 0
-    if column.unit == "deg":
-        return angle, 0
-    scale = scale_of(sharing, look.digits)
-    return partial(cell, scale=scale), scale.exponent
+def _alone(value: float, column: Column, look: Look) -> str:
+    return look.counted(*single(value, look.digits, column.alone)) if column.alone else angle(value)
 
 
 def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> TextTable:
