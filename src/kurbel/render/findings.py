@@ -5,7 +5,7 @@ import numpy as np
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.find import Solutions
-from kurbel.designs.sweep import Design
+from kurbel.designs.study import Design
 from kurbel.render.data import FORMAT
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import in_units, level
@@ -14,9 +14,9 @@ from kurbel.report.picture_source import in_units, level
 def columns(found: Solutions, system: str) -> list[tuple[str, str, str]]:
     """Return name, unit and kind of each column: the keys in the units of their ranges, and the key values."""
     keys = [(one.key, one.unit, one.kind) for one in found.varied]
-    largest = np.max(np.abs([one.key_values for one in found.found]), axis=0)
-    answers = zip(found.names, (one.kind for one in found.answers), largest.tolist())
-    return [*keys, *((name, shown_unit(kind, system, size), kind) for name, kind, size in answers)]
+    largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
+    sized = zip(found.heads, largest)
+    return [*keys, *((one.id, shown_unit(one.kind, system, size), one.kind) for one, size in sized)]
 
 
 def as_rows(found: Solutions, system: str) -> list[Design]:
@@ -30,12 +30,8 @@ def as_rows(found: Solutions, system: str) -> list[Design]:
 
 def as_json(found: Solutions) -> dict[str, object]:
     """Return the findings for JSON, all in SI."""
-
-    answers = [
-        {"id": name, "symbol": one.quantity.symbol, "unit": SI[one.kind]}
-        for name, one in zip(found.names, found.answers)
-    ]
-    wanted = zip(found.names, found.wanted)
+    quantities = [one.quantity for one in found.answers]
+    answers = [{"id": one.id, "symbol": of.symbol, "unit": one.unit} for one, of in zip(found.heads, quantities)]
     ranges = [list(span) for span in found.met]
     return {
         "kurbel": kurbel.__version__,
@@ -43,7 +39,9 @@ def as_json(found: Solutions) -> dict[str, object]:
         "command": "find",
         "machine": found.machine,
         "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
-        "wanted": [{"id": id, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value} for id, one in wanted],
+        "wanted": [
+            {"id": one.head.id, "unit": one.head.unit, "aim": one.aim, "value": one.value} for one in found.wanted
+        ],
         "found": [
             {
                 "values": list(one.values),
@@ -61,22 +59,26 @@ def as_json(found: Solutions) -> dict[str, object]:
 def picture(found: Solutions, system: str) -> Picture:
     """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
     key, wanted = found.varied[0], found.wanted[0]
-    places, values = found.places[:, 0], found.values[:, 0]
+    places, values = found.places[:, 0], found.values[:, wanted.place]
     # one nan at a jump, two for a design that fails
     places, values = (np.repeat(one, 1 + np.isnan(values)) for one in (places, values))
     jumps = np.searchsorted(places, [one.values[0] for one in found.jumps])
     x, y = np.insert(places, jumps, np.nan), np.insert(values, jumps, np.nan)
     x = np.where(np.isnan(y), np.nan, x)
-    symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
+    quantity = found.answers[wanted.place].quantity
+    symbol = Words(quantity.symbol, quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
     if wanted.value is not None:
-        curves.append(level(x, wanted.value, Words(wanted.text.strip())))
+        curves.append(level(x, wanted.value, Words(wanted.text)))
     name = Words(key.key.rpartition(".")[2])
-    marks = [Mark(at, one.key_values[0], PageFigure(name, at), True) for one in found.found for at in one.values]
-    across, up = Axis(Words(key.key), key.kind, low=key.low, high=key.high), Axis(symbol, wanted.answer.kind)
-    panel = in_units(Panel(across, up, tuple(curves), marks=tuple(marks)), system)
+    marks = tuple(
+        Mark(one.values[0], one.key_values[wanted.place], PageFigure(name, one.values[0], kind=key.kind))
+        for one in found.found
+    )
+    across, up = Axis(Words(key.key), key.kind, low=key.low, high=key.high), Axis(symbol, wanted.head.kind)
+    panel = in_units(Panel(across, up, tuple(curves), marks=marks), system)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
-    return Picture("find", f"{found.names[0]} over {key.key}", text, (panel,), found.machine)
+    return Picture("find", f"{wanted.head.id} over {key.key}", text, (panel,), found.machine)
 
 
 def remarks(found: Solutions) -> list[str]:
@@ -84,10 +86,9 @@ def remarks(found: Solutions) -> list[str]:
     key = found.varied[0]
     lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
     for one in found.jumps:
-        place = f"{key.key} = {key.in_unit(one.values[0]):.9g} {key.unit}".rstrip()
-        lines.append(f"{found.wanted[0].text.strip()}: passed by a jump at {place}")
+        place = key.written(one.values[0], figures=9)
+        lines.append(f"{found.wanted[0].text}: passed by a jump at {key.key} = {place}")
     for part in found.failed:
-        ends = [f"{key.in_unit(end):.6g}" for end in (part.low, part.high)]
-        where = f"at {ends[0]}" if ends[0] == ends[1] else f"from {ends[0]} to {ends[1]}"
-        lines.append(f"{key.key} {where} {key.unit}".rstrip() + f": designs fail: {part.why}")
+        where = "at" if part.low == part.high else f"from {key.in_unit(part.low):.6g} to"
+        lines.append(f"{key.key} {where} {key.written(part.high)}: designs fail: {part.why}")
     return lines

@@ -284,15 +284,14 @@ def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:
 
 def thinned(places: ComplexArray) -> ComplexArray:
     """Return places x + iy (n,) without those that are on a straight line between their neighbours."""
-    while len(places) > 2:
-        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
-        share = (off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12)
-        dull = np.abs(off - np.minimum(np.maximum(share, 0.0), 1.0) * chord) <= _STRAIGHT
-        if not dull.any():
+    for parity in (0, 1) * 6:  # of neighbours every other one
+        if len(places) < 3:
             break
-        order = np.arange(len(dull))  # of neighbours every other one
-        dull &= (order - np.maximum.accumulate(np.where(dull, -1, order))) % 2 == 1
-        places = places[np.concatenate(([True], ~dull, [True]))]
+        off, chord = places[1:-1] - places[:-2], places[2:] - places[:-2]
+        share = np.clip((off * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12), 0.0, 1.0)
+        kept = np.abs(off - share * chord) > _STRAIGHT
+        kept[parity::2] = True
+        places = places[np.concatenate(([True], kept, [True]))]
     return places
 
 

@@ -15,7 +15,8 @@ from itertools import chain, islice, zip_longest
 from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Cell, Design, Sweep
+from kurbel.designs.study import Cell, Design
+from kurbel.designs.sweep import Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -58,7 +59,7 @@ class Titles(NamedTuple):
 
     def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
-        return [row.number, *row.values, *map(row.text, self.last)]
+        return [row.number, *row.values, *row.texts]
 
 
 # rows as lines of text
@@ -72,8 +73,9 @@ def lines_of(titles: Titles, look: Look) -> tuple[str, Callable[[Design], str]]:
         return head, lambda row: csv_row([csv_cell(value, look) for value in titles.values(row)])
 
     def json_row(row: Design) -> str:
-        said = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-        found = {name: said.get(name, value) for name, value in zip(titles.whole, titles.values(row))}
+        said = {"": None, "yes": True, "no": False}
+        found = dict(zip(titles.whole, titles.values(row)))
+        found |= {name: said.get(text, text) for name, text in zip(titles.last, row.texts)}
         return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
     return "", json_row
