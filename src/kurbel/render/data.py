@@ -74,7 +74,9 @@ def csv_text(report: Report, look: Look) -> Iterator[str]:
     else:
         blocks = [(part, [_of_key_values(part, look)]) for part in parts]
     named = len(blocks) + sum(bool(part.nowhere) for part in parts) > 1 or report.group in ("ratios", "scenes")
-    heads = list(dict.fromkeys(head for _, tables in blocks for cells in tables for head in cells))
+    names = {head for part in parts for one in part.place_tables for head in ("table", *one.heads)}
+    every = dict.fromkeys(head for _, tables in blocks for cells in tables for head in cells)
+    heads = sorted(every, key=lambda head: head not in names)  # otherwise in order of their first occurrence
     line = csv_line(look)
     yield line([_FIRST.get(report.group, "cylinder"), *heads] if named else heads)
     for part, tables in blocks:

@@ -209,7 +209,7 @@ class PanelFrame:
         every, found = ticks(self.panel.x, self.x, most, self.look), []
         wide = [width(text) * self.medium.letter for _, text in every]
         apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
-        of_each = max(math.ceil((max(wide, default=0.0) + self.medium.letter) / apart), 1)
+        of_each = max(math.ceil((max(wide, default=0.0) + self.medium.grain[0]) / apart), 1)
         for number, (place, text) in enumerate(every):
             left = max(min(place - wide[number] / 2, end - wide[number]), start)
             found.append((place, left, "" if number % of_each else text))
