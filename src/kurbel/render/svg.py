@@ -297,8 +297,8 @@ def thinned(places: ComplexArray) -> ComplexArray:
 
 def _path(places: ComplexArray) -> str:
     rounded = np.round(places, 1)
-    steps = " ".join(map(_both, np.diff(rounded)))
-    return f"M{_both(rounded[0])}{'l' if steps else ''}{steps}"
+    steps = (np.round(np.diff(rounded), 1) + 0.0).tolist()  # a call for each point would take long
+    return f"M{_both(rounded[0])}{'l' if steps else ''}{' '.join([f'{one.real:g} {one.imag:g}' for one in steps])}"
 
 
 def _dot(middle: complex, figure: int, radius: float = 2.4) -> str:
