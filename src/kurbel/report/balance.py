@@ -82,8 +82,8 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
         notes.append(f"Moments are taken about z = {show(balance.z_0, 'length')}.")
     if free.next_order and balance.omega is not None:
         notes.append(
-            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; all of "
-            "them are in forces and moments."
+            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; "
+            "forces and moments have them all."
         )
     if balance.counterweights or machine.balance_shafts:
         notes.append(

@@ -137,9 +137,9 @@ def throw_stress(source: Source) -> Iterator[Panel]:
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    gas, whole = (np.abs(one.amplitudes)[drawn] for one in (found.gas, found.whole))
+    gas, whole = (np.abs(one)[drawn] for one in (found.gas, found.whole))
     orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
-    inertia = np.abs(found.inertia.amplitudes)[drawn] if found.inertia else np.zeros(0)
+    inertia = np.zeros(0) if found.inertia is None else np.abs(found.inertia)[drawn]
     both = gas.any() and inertia.any()  # one alone is all
     if whole.any():
         yield _bars(orders, [whole], name, "torque", "all" if both else "")

@@ -265,8 +265,8 @@ class MainBearing(Bearing):
                 own, pin = line.machine.cylinders[throw.cylinders[0]], sum(pins[index] for index in throw.cylinders)
                 # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
                 angle = CrankAngle.of(degrees - np.fmod(own.crank_position, 360.0))
-                carried = line.carried(throw, pin, own, angle)[0 if self._number == throw.A else 1]
-                force -= np.conj(carried) * unit_vector(throw.angle)
+                on_bearing = line.carried(throw, pin, own, angle)[0 if self._number == throw.A else 1]
+                force -= np.conj(on_bearing) * unit_vector(throw.angle)
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:

@@ -167,14 +167,14 @@ class SupportedShaft:
         for one, following in pairwise(throws):
             _decided(one.place <= following.place)
         overhung, last = self.shaft.overhung, len(throws) - 1
-        # the second throw of an overhung shaft is at its other end
-        bearings = [(0, 1), (1, 0)] if overhung else [(number, number + 1) for number in range(len(throws))]
-        for number, (A, B) in enumerate(bearings[: len(throws)]):
-            throws[number] = throws[number]._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
-        for number, product, u in self._turning(throws):
+        for number, one in enumerate(throws):
+            # the second throw of an overhung shaft is at its other end
+            A, B = (1, 0) if overhung and number else (number, number + 1)
+            throws[number] = one._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
+        for number, product, beside in self._turning(throws):
             one = throws[number]
-            along, to_B = product * unit_vector(-one.angle), where(one.A < one.B, u, -u) - self.shaft.place_A
-            at_B = along * to_B / self.shaft.span
+            along, u = product * unit_vector(-one.angle), beside if one.A < one.B else -beside
+            at_B = along * (u - self.shaft.place_A) / self.shaft.span
             throws[number] = one._replace(at_A=one.at_A + along - at_B, at_B=one.at_B + at_B)
         self.throws, self.bearings = tuple(throws), 2 if overhung else len(throws) + 1
 

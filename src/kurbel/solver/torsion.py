@@ -244,23 +244,23 @@ class SegmentTorque(NamedTuple):
 
 
 class SegmentState(AtAngles):
-    """The columns of a segment at crank angles φ (n,) in degrees."""
+    """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
 
     commands = ("torsion",)
     M_shaft = value(
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.segment.torque_at(one.phi),
+        lambda one: one.segment and one.segment.torque_at(one.phi),
     )
     tau = value(
         "τ",
         "stress",
         "Torsional stress at the smallest section of the segment",
-        lambda one: one.segment.stress_of(one.M_shaft),
+        lambda one: one.segment and one.segment.stress_of(one.M_shaft),
     )
 
-    def __init__(self, segment: SegmentTorque, phi: Array) -> None:
+    def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
         self.segment, self.phi = segment, phi
 
 
@@ -358,7 +358,7 @@ class ShaftVibration(Results):
         self.obstacle = self._unexcited or undamped
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
-        raise UsageError("each segment of a shaft line has its own columns: ask one of case.torsion.pieces")
+        return SegmentState(None, phi)
 
     def piece_name(self, segment: int) -> str:
         """Return what a segment is between."""
