@@ -83,7 +83,7 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
     if free.next_order and balance.omega is not None:
         notes.append(
             f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; "
-            "forces and moments have them all."
+            "all of them are in forces and moments."
         )
     if balance.counterweights or machine.balance_shafts:
         notes.append(
