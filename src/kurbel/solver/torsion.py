@@ -182,8 +182,8 @@ class Vibration:
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
         pieces, torques = self.swings
-        ends = pieces.extremes(torques.reshape(-1, *pieces.degrees.shape))
-        return ((ends.largest - ends.smallest) / 2).reshape(torques.shape[:2])
+        high, low = _extremes(pieces, torques.reshape(-1, *pieces.degrees.shape))
+        return ((high - low) / 2).reshape(torques.shape[:2])
 
     @property
     def loss(self) -> Array:
@@ -193,6 +193,12 @@ class Vibration:
         of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
         of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
         return (of_masses + of_segments) / 2
+
+
+def _extremes(pieces: Pieces, torques: Array) -> tuple[Array, Array]:
+    """Return the largest and smallest of torques (q, nodes, pieces) of one machine, nan where some are no numbers."""
+    ends, known = pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
+    return np.where(known, ends.largest[:, 0], math.nan), np.where(known, ends.smallest[:, 0], math.nan)
 
 
 def _mean_inertia(drive: Drive) -> float:
@@ -474,9 +480,8 @@ class ShaftVibration(Results):
         else:
             assert self.steady
             pieces, torques = self.steady
-        ends, found = pieces.extremes(torques), []
-        rows = zip(self.vibration.means.tolist(), ends.largest[:, 0].tolist(), ends.smallest[:, 0].tolist(), torques)
-        for segment, (mean, high, low, swing) in enumerate(rows):
+        found, ends = [], (one.tolist() for one in _extremes(pieces, torques))
+        for segment, (mean, high, low, swing) in enumerate(zip(self.vibration.means.tolist(), *ends, torques)):
             factor = stress(self.line, segment)
             found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
         return tuple(found)
