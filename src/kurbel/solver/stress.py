@@ -399,12 +399,6 @@ class CrankshaftStrength(Results):
         return found
 
     @cached_property
-    def largest_torque(self) -> Extreme:
-        """The largest T in N, or the smallest where the machine is driven harder than it drives, and its angle."""
-        found = self._force_extremes("T")
-        return chosen(found.peak.degrees == found.largest.degrees, found.largest, found.smallest)
-
-    @cached_property
     def full_force(self) -> Extreme:
         """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
 
@@ -426,8 +420,8 @@ class CrankshaftStrength(Results):
 
     @property
     def at_largest_torque(self) -> tuple[Place, ...]:
-        """Every place in the position of the largest torque, of the only machine."""
-        degrees = self.largest_torque.degrees
+        """Every place in the position of the largest torque, driving or driven, of the only machine."""
+        degrees = self._force_extremes("T").peak.degrees
         body = self._beside([degrees])
         side = int(np.abs(body.pin.imag).argmax())
         return tuple(place.one_of(side, degrees) for place in places(body))
