@@ -12,8 +12,7 @@ import pytest
 import kurbel
 from command import run
 from kurbel.designs.answers import Answer
-from kurbel.designs.uncertainty import Uncertain, read_inputs, uncertainties
-from kurbel.machine_file import source
+from kurbel.designs.uncertainty import Uncertain, given_uncertainty, uncertainties
 from kurbel.quantities import every_quantity
 from representative import CONFIGS
 
@@ -23,7 +22,9 @@ WATERWORKS = CONFIGS["waterworks"]
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = uncertainties(read_inputs(source.read(WATERWORKS), spreads)[0], asked)
+    inputs = given_uncertainty(kurbel.load(WATERWORKS), [*spreads.items()])
+    assert inputs
+    found = uncertainties(inputs, asked)
     return {one.answer.quantity.id: one for one in found}
 
 

@@ -9,7 +9,6 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.parts import Friction, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver import friction as rules
 from machines import constant_pressure, one_cylinder
 
 FULL_ADMISSION = Constant.from_keys(expansion=6e5, compression=0.0)
