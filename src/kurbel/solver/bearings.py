@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
@@ -35,7 +35,7 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
+from kurbel.solver.shaft import Force, SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 HALF_CONTACT = 60.0
@@ -254,7 +254,7 @@ class MainBearing(Bearing):
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
         self._number, self._line = number, line
 
-    def _force(self, line: SupportedShaft, pins: dict[int, ComplexArray], degrees: Array) -> ComplexArray:
+    def _force(self, line: SupportedShaft, pins: Mapping[int, Force], degrees: Array) -> ComplexArray:
         """Return the force in N in the frame of crank 1, whose angles in degrees these are.
 
         line: with the numbers of the machines whose angles they are; pins: D + iT on the crank pin of each cylinder.
@@ -297,7 +297,7 @@ class MainBearing(Bearing):
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def _pin_load(state: State) -> Any:
+def _pin_load(state: State) -> Force:
     return on_pin(state).complex if state.drive.has_force else 0j
 
 
