@@ -167,12 +167,16 @@ class Vibration:
         reached -= reached @ counted / counted.sum()
         return reached[chain.around != 0] / self.ratios
 
+    def _turns(self, count: int) -> Pieces:
+        """Return the turns of so many machines in equal pieces, on each of which the waves are polynomials."""
+        pieces = Pieces.between(NOWHERE, count, self.acting.cycle)
+        parts = math.ceil(2 * pieces.half.max() * self.acting.orders.max() / _WAVE)
+        return pieces.parted(np.full(len(pieces.half), parts))
+
     @cached_property
     def swings(self) -> tuple[Pieces, Array]:
         """The torques in the segments less their mean in N m over the turn, (segments, s, nodes, pieces)."""
-        orders, pieces = self.acting.orders, Pieces.between(NOWHERE, 1, self.acting.cycle)
-        parts = math.ceil(2 * pieces.half.max() * orders.max() / _WAVE)
-        pieces = pieces.parted(np.full(len(pieces.half), parts))
+        orders, pieces = self.acting.orders, self._turns(1)
         # at a node the waves are those at the beginning of its piece times those of a piece from there on
         inside = unit_vector(np.multiply.outer(pieces.half[0] * (1 + pieces.rule.nodes), orders))
         begin = unit_vector(np.multiply.outer(orders, pieces.low))
@@ -181,9 +185,13 @@ class Vibration:
     @property
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        pieces, torques = self.swings
-        high, low = _extremes(pieces, torques.reshape(-1, *pieces.degrees.shape))
-        return ((high - low) / 2).reshape(torques.shape[:2])
+        torques = self.swings[1]
+        segments, speeds, nodes, _ = torques.shape
+        # each segment at each speed is searched as a machine of its own
+        rows = np.moveaxis(torques, 2, 0).reshape(nodes, -1)
+        ends = self._turns(segments * speeds).extremes(rows[None])
+        known = np.isfinite(self.torques).all(axis=2)
+        return np.where(known, ((ends.largest - ends.smallest) / 2).reshape(segments, speeds), math.nan)
 
     @property
     def loss(self) -> Array:
@@ -193,12 +201,6 @@ class Vibration:
         of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
         of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
         return (of_masses + of_segments) / 2
-
-
-def _extremes(pieces: Pieces, torques: Array) -> tuple[Array, Array]:
-    """Return the largest and smallest of torques (q, nodes, pieces) of one machine, nan where some are no numbers."""
-    ends, known = pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
-    return np.where(known, ends.largest[:, 0], math.nan), np.where(known, ends.smallest[:, 0], math.nan)
 
 
 def _mean_inertia(drive: Drive) -> float:
@@ -480,8 +482,9 @@ class ShaftVibration(Results):
         else:
             assert self.steady
             pieces, torques = self.steady
-        found, ends = [], (one.tolist() for one in _extremes(pieces, torques))
-        for segment, (mean, high, low, swing) in enumerate(zip(self.vibration.means.tolist(), *ends, torques)):
+        found, ends, known = [], pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
+        highs, lows = (np.where(known, one[:, 0], math.nan).tolist() for one in (ends.largest, ends.smallest))
+        for segment, (mean, high, low, swing) in enumerate(zip(self.vibration.means.tolist(), highs, lows, torques)):
             factor = stress(self.line, segment)
             found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
         return tuple(found)
