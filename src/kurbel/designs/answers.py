@@ -26,9 +26,10 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST, _MOST = 3, 250
-"""Fewest machines of a batch, fewer are computed as quickly one by one; and most: of the many quantities of bearings
-1000 would need a gigabyte."""
+_FEWEST, _MOST = 3, 500
+"""Fewest machines of a batch, fewer are computed as quickly one by one; and most: more would only need more memory."""
+_LARGE, _MOST_LARGE = {"stress", "bearings"}, 200
+"""Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
@@ -139,11 +140,12 @@ def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
 def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
     """Return the key values of each of many machines, by its row."""
     found: dict[int, Values] = {}
+    most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
     with np.errstate(all="ignore"):
         for batch in batches:
             if not is_slow(batch.machine, requested):
-                for start in range(0, len(batch.rows), _MOST):
-                    found |= _together(batch, np.arange(start, min(start + _MOST, len(batch.rows))), requested)
+                for start in range(0, len(batch.rows), most):
+                    found |= _together(batch, np.arange(start, min(start + most, len(batch.rows))), requested)
             for place, row in enumerate(batch.rows):
                 if row not in found:
                     found[row] = answered_alone(batch.one(place), requested)

@@ -219,7 +219,7 @@ def latin_hypercube(count: int, width: int, seed: int) -> Array:
     strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
     # neither 0 nor 1: a distribution has no value there
     within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
-    return np.asarray((strips + within) / count)
+    return (strips + within) / count
 
 
 def shard(text: str, rows: int) -> range:
