@@ -12,7 +12,7 @@ import pytest
 import kurbel
 from command import run
 from kurbel.designs.answers import Answer
-from kurbel.designs.uncertainty import Uncertain, data_uncertainty, given_uncertainty, uncertainties
+from kurbel.designs.uncertainty import Uncertain, given_uncertainty, uncertainties
 from kurbel.quantities import every_quantity
 from representative import CONFIGS
 
@@ -39,16 +39,6 @@ def test_first_order_is_that_of_closed_formulas() -> None:
     assert found["b_max"].shares == pytest.approx(((by_speed / size) ** 2, (by_ratio / size) ** 2), rel=1e-7)
     assert found["A_head"].spread <= 1e-15
     assert all(one.sample == 0 for one in found.values())
-
-
-def test_the_errors_of_the_data_are_those_of_the_file_too() -> None:
-    """`kurbel accuracy FILE`: without masses all that the gas does goes with bore², c_max with n, b_max with n²."""
-    machine = kurbel.loads("""
-        {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, indicator: {head_end: 9 bar, crank_end: 2 bar},
-         uncertainty: {bore: 0.9 mm, speed: 1 %}}
-        """)
-    found = data_uncertainty(machine)
-    assert found == pytest.approx({"c_max": 0.01, "b_max": 0.02, "T_max": 0.004, "ΔE": 0.004}, rel=1e-6)
 
 
 def test_a_point_of_a_card_may_be_off() -> None:

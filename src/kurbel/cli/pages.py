@@ -94,7 +94,7 @@ def check(format: str | None, file_name: str | None, **options: Any) -> int:
 @click.command()
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_options
-@click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")
+@click.option("--quick", is_flag=True, help="Fewer scenes and repeats: for CI.")
 @click.option("--extremes", is_flag=True, help="Run stiff and extreme machines instead.")
 @click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Also draw the picture.")
 @output_options
@@ -110,8 +110,7 @@ def accuracy(
     """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
 
     Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
-    and come from other methods than kurbel's. Numerical errors, errors of the model (the formulas of the book) and
-    errors of the data (0.1 deg of dead centre, 0.5 % noise, what the file gives as 'uncertainty') are listed apart.
+    and come from other methods than kurbel's. Then what is saved by leaving out friction, masses, cards and speed.
     """
     if (case_name or overrides) and file is None:
         raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
@@ -126,15 +125,13 @@ def accuracy(
         return int(not passed)
 
     from kurbel.cli.request import case_of
-    from kurbel.designs.uncertainty import data_uncertainty
     from kurbel.render.drawing import check_file, draw_file
 
     if picture is not None:
         check_file(picture, "--plot")
     machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
-    uncertain = data_uncertainty(machine) if machine and machine.uncertainty else {}
     with Progress("accuracy") as progress:
-        report = accuracy_report(machine, quick, loads, uncertain, progress)
+        report = accuracy_report(machine, quick, loads, progress)
     output.write(report)
     if picture is not None:
         draw_file([accuracy_picture(report)], output.look, picture)

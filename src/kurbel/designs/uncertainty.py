@@ -184,24 +184,6 @@ def with_uncertainty(report: Report, case: Case, more: Spreads, system: str, cou
     return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *notes))
 
 
-_COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))
-"""Command -> ids of the quantities whose errors of data are compared with other errors."""
-
-
-def data_uncertainty(machine: Machine) -> dict[str, float]:
-    """Return the relative uncertainties of motion, work and torques that come from those in a machine's file.
-
-    By symbol, of the first cylinder and of the whole machine; errors: see `given_uncertainty`.
-    """
-    inputs, case = given_uncertainty(machine), Case(machine)
-    if inputs is None:
-        return {}
-    requested = [one for command, ids in _COMPARED for one in _numeric_answers(case, command) if one.quantity.id in ids]
-    first = [one for one in requested if one.subject in (requested[0].subject, "whole machine")]
-    found = [one for one in uncertainties(inputs, first) if one.counts and one.value]
-    return {one.answer.quantity.symbol: one.spread / abs(one.value) for one in found}
-
-
 def _numeric_answers(case: Case, command: str) -> list[Answer]:
     """Return the key values of a command that are numbers and depend on the inputs."""
     return [
