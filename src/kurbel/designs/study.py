@@ -66,7 +66,8 @@ class Study:
     """Designs of a machine file by the texts under these keys, in their order.
 
     starts: rows of texts, of which the first that make a valid machine decide which key values there are; names: of
-    those that are requested, see `requested_answers`; cases: the first of the keys is the load case.
+    those that are requested, see `requested_answers`; cases: the first of the keys is the load case. Of the first valid
+    machine are `binder`, `answers`, `limits`, and `every`, the key values that are computed for both.
     Raises the error of the first texts if none are valid, or the first error that occurs for two of them.
     """
 
