@@ -58,6 +58,7 @@ class Answer(NamedTuple):
 # which key values are requested
 
 
+@np.errstate(all="ignore")
 def requested_answers(
     machine: Machine, names: Sequence[str], with_angles: bool = False, option: str = "--columns"
 ) -> tuple[Answer, ...]:
@@ -70,12 +71,11 @@ def requested_answers(
     """
     case = Case(machine)
     once: dict[tuple[str, str], list[Answer]] = {}
-    with np.errstate(all="ignore"):
-        if names:
-            known = joined(names, every_quantity().all_key_values)
-            found = [one for name in known for one in _named(case, name, option)]
-        else:
-            found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
+    if names:
+        known = joined(names, every_quantity().all_key_values)
+        found = [one for name in known for one in _named(case, name, option)]
+    else:
+        found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
     for one, value in found:
         # other designs may have a value with an angle where this one has an error
         with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
@@ -137,18 +137,18 @@ def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
     return [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
 
 
+@np.errstate(all="ignore")
 def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
     """Return the key values of each of many machines, by its row."""
     found: dict[int, Values] = {}
     most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
-    with np.errstate(all="ignore"):
-        for batch in batches:
-            if not is_slow(batch.machine, requested):
-                for start in range(0, len(batch.rows), most):
-                    found |= _together(batch, np.arange(start, min(start + most, len(batch.rows))), requested)
-            for place, row in enumerate(batch.rows):
-                if row not in found:
-                    found[row] = answered_alone(batch.one(place), requested)
+    for batch in batches:
+        if not is_slow(batch.machine, requested):
+            for start in range(0, len(batch.rows), most):
+                found |= _together(batch, np.arange(start, min(start + most, len(batch.rows))), requested)
+        for place, row in enumerate(batch.rows):
+            if row not in found:
+                found[row] = answered_alone(batch.one(place), requested)
     return found
 
 
@@ -191,6 +191,7 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
     return {batch.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
 
 
+@np.errstate(all="ignore")
 def answered_alone(machine: Machine, requested: Sequence[Answer]) -> Values:
     """Return the key values of a machine by itself."""
     try:

@@ -17,6 +17,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.units import written_unit
 from kurbel.errors import UsageError
 from kurbel.machine_file.overrides import path_of
 
@@ -99,26 +100,22 @@ def _list(text: str, parts: list[str]) -> tuple[str, ...]:
         raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
     if any(";" in part and NUMBER.match(part) for part in parts):
         raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
-    number, unit = _number_and_unit(parts[-1])
-    return tuple(f"{part} {unit}" if number and unit and NUMBER.fullmatch(part) else part for part in parts)
-
-
-def _number_and_unit(part: str) -> tuple[str, str]:
-    found = NUMBER.match(part)
-    return (found.group(), part[found.end() :].strip()) if found else ("", part)
+    unit = written_unit(parts[-1])
+    return tuple(f"{part} {unit}" if unit and NUMBER.fullmatch(part) else part for part in parts)
 
 
 def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tuple[list[str], str]:
     """Return so many numbers as they are written, and their unit; expected: what else is refused."""
-    pairs = [_number_and_unit(part.strip()) for part in parts]
-    if len(pairs) != count or not all(number for number, _ in pairs):
+    written = [written_unit(part) for part in parts]
+    numbers = [part.strip().removesuffix(unit).strip() for part, unit in zip(parts, written)]
+    if len(numbers) != count or not all(map(NUMBER.fullmatch, numbers)):
         raise _refused(text, expected)
-    units = {unit for _, unit in pairs if unit}
+    units = sorted({*written} - {""})
     if len(units) > 1:
-        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(sorted(units))}")
-    if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), ""):
+        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(units)}")
+    if large := next((number for number in numbers if abs(float(number)) > _LARGEST), ""):
         raise _refused(text, f"{shown(large)} is too large to compute with")
-    return [number for number, _ in pairs], "".join(units)
+    return numbers, "".join(units)
 
 
 def _range(text: str, values: str) -> tuple[str, ...]:
