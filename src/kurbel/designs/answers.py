@@ -87,16 +87,26 @@ def requested_answers(
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
-    owner, _, own = name.rpartition(".")
+    owner, own = parts_of_name(name)
     ids = called(own, declared)
     if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"{option}: {ambiguity(own, ids) or f'no key value {shown(name)!r}{near}'}")
     commands = every_quantity().commands_of(ids[0])
     for command in ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands:
-        if found := [*_holding(case, command, ids[0], "whole machine" if owner == MACHINE else owner)]:
+        if found := [*_holding(case, command, ids[0], owner)]:
             return found
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
+
+
+def parts_of_name(name: str) -> tuple[str, str]:
+    """Return the subject, '' for none, and the key value of `LP.c_max`, as a report names the subject.
+
+    >>> parts_of_name("machine.T_max")
+    ('whole machine', 'T_max')
+    """
+    owner, _, own = name.rpartition(".")
+    return ("whole machine" if owner == MACHINE else owner), own
 
 
 def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
