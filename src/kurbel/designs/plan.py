@@ -5,9 +5,8 @@ These are a grid of all values, or of values side by side, each with every point
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
-from functools import partial
 from itertools import chain
 from statistics import NormalDist
 from typing import NamedTuple
@@ -32,15 +31,23 @@ _NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
 _DISTRIBUTIONS = {"normal": "mean, deviation", "uniform": "least, most"}
 
 
-class Input(NamedTuple):
-    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit.
+class Uniform(NamedTuple):
+    """A distribution that is uniform from its least to its most."""
 
-    quantile: of the distribution, returns the value below which a share of all lies, 0 < share < 1.
-    """
+    least: float
+    most: float
+
+    def inv_cdf(self, share: float) -> float:
+        """Return the value below which this share of all lies."""
+        return self.least + share * (self.most - self.least)
+
+
+class Input(NamedTuple):
+    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit."""
 
     key: str
     texts: tuple[str, ...] = ()
-    quantile: Callable[[float], float] | None = None
+    distribution: NormalDist | Uniform | None = None
     unit: str = ""
 
 
@@ -54,7 +61,7 @@ def read_axis(text: str) -> tuple[Input, ...]:
     if len(parts) > 1 and not all(parts):
         raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
     together = tuple(map(read_input, parts))
-    if len(together) > 1 and any(one.quantile for one in together):
+    if len(together) > 1 and any(one.distribution for one in together):
         raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
     return together
 
@@ -133,7 +140,7 @@ def _range(text: str, values: str) -> tuple[str, ...]:
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 
 
-def _distribution(text: str, name: str, inside: str) -> tuple[Callable[[float], float], str]:
+def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
         known = ", ".join(f"{one}({words})" for one, words in _DISTRIBUTIONS.items())
         raise _refused(text, f"no distribution '{shown(name)}'; known are {known}")
@@ -144,11 +151,7 @@ def _distribution(text: str, name: str, inside: str) -> tuple[Callable[[float], 
         raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
     if name == "uniform" and second <= first:
         raise _refused(text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}")
-    return NormalDist(first, second).inv_cdf if name == "normal" else partial(_of_uniform, first, second), unit
-
-
-def _of_uniform(least: float, most: float, share: float) -> float:
-    return least + share * (most - least)
+    return NormalDist(first, second) if name == "normal" else Uniform(first, second), unit
 
 
 class Plan:
@@ -168,8 +171,8 @@ class Plan:
         most: int | None = None,
     ) -> None:
         self.inputs = tuple(chain(*axes))
-        self._drawn = [one for one in self.inputs if one.quantile]
-        listed = [axis for axis in axes if not axis[0].quantile]
+        self._drawn = [one for one in self.inputs if one.distribution]
+        listed = [axis for axis in axes if not axis[0].distribution]
         self._axes = [tuple(chain(*listed))] if side_by_side and listed else listed
         self._sample = sample or 1
         self._refuse(sample, "--zip" if side_by_side else "")
@@ -205,8 +208,8 @@ class Plan:
             combination, place = divmod(combination, len(axis[0].texts))
             found.update((one.key, one.texts[place]) for one in axis)
         for one, share in zip(self._drawn, self._points[point].tolist()):
-            assert one.quantile
-            found[one.key] = f"{one.quantile(share)!r} {one.unit}".rstrip()
+            assert one.distribution
+            found[one.key] = f"{one.distribution.inv_cdf(share)!r} {one.unit}".rstrip()
         return tuple(found[one.key] for one in self.inputs)
 
 
