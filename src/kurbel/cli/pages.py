@@ -4,7 +4,7 @@ import sys
 
 import click
 
-from kurbel.cli.group import Progress
+from kurbel.cli.group import Progress, kurbel
 from kurbel.cli.options import (
     Output,
     complete_picture,
@@ -23,7 +23,7 @@ from kurbel.render import Look
 from kurbel.render.output import refuse_overwriting
 
 
-@click.command()
+@kurbel.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
@@ -60,7 +60,7 @@ def report(
     write_page(files, case_name, overrides, file_name, step, title, units or "metric", look)
 
 
-@click.command()
+@kurbel.command()
 @click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
@@ -109,7 +109,7 @@ def plot(
     )
 
 
-@click.command()
+@kurbel.command()
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_options
 @click.option(
@@ -142,7 +142,7 @@ def check(
     return check_files(files, case_name, overrides, written, file_name, width)
 
 
-@click.command()
+@kurbel.command()
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--quick", is_flag=True, help="Fewer scenes, points and repeats: for CI.")

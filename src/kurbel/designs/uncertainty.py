@@ -24,7 +24,7 @@ from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import located
 from kurbel.machine_file.overrides import path_of, tree_of
-from kurbel.report.frame import subjects_of
+from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Row, place_table, report_on, subjects_of
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import balance_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import pin_warnings
@@ -69,41 +70,44 @@ _NOTHING = 1e-6
 """Degrees by which a direction may miss another by rounding."""
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
-def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
-    """Return what is unbalanced and what balances it; orders_only: no columns over the crank angle.
+def _balanced(case: Case, compare: bool = False) -> list[Subject]:
+    balance = MachineBalance(case.effort, compare=True) if compare else case.balance
+    return [Subject("whole machine", balance, None if case.machine.speed is None else balance.at)]
 
-    Raises UsageError if no masses move.
-    """
-    machine, balance = case.machine, case.balance
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def balance_report(case: Case, frame: Frame) -> Report:
+    """Return what is unbalanced and what balances it; raises UsageError if no masses move."""
+    (whole,) = _balanced(case, frame.compare)
+    whole = replace(
+        whole,
+        tables=(*_orders(case.balance, frame.system, frame.compare), *_weights(case.balance, frame.system)),
+        left_out=balance_left_out(case, frame.compare),
+        warnings=tuple(pin_warnings(case.machine)),
+    )
+    return report_on(frame, case.machine, "Balancing", (), whole, _notes(case.balance))
+
+
+BALANCE = Functions(_balanced, balance_report, lambda case: case.balance.cycle)
+
+
+def _notes(balance: MachineBalance) -> Iterator[str]:
     free, square = balance.free, (balance.omega or 0.0) ** 2
-    notes = ["φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."]
+    yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if free.moment is not None and balance.z_0 is not None:
-        notes.append(f"Moments are taken about z = {show(balance.z_0, 'length')}.")
+        yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
     if free.next_order and balance.omega is not None:
         most = f"{show(free.at_most(free.force) * square, 'force')} of the force"
         if free.moment is not None:
             most += f", {show(free.at_most(free.moment) * square, 'torque')} of the moment"
-        notes.append(
+        yield (
             f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on: "
             f"together at most {most}."
         )
-    if balance.counterweights or machine.balance_shafts:
-        notes.append(
-            "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
-        )
+    if balance.counterweights or balance.machine.balance_shafts:
+        yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
     if balance.roll is not None:
-        notes.append("M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft.")
-
-    (whole,) = subjects_of(case, "balance", frame.compare)
-    whole = replace(
-        whole,
-        tables=(*_orders(balance, frame.system, frame.compare), *_weights(balance, frame.system)),
-        at=None if orders_only or machine.speed is None else whole.at,
-        left_out=balance_left_out(case, frame.compare),
-        warnings=tuple(pin_warnings(machine)),
-    )
-    return report_on(frame, machine, "Balancing", (), whole, notes)
+        yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
 
 
 def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTable]:

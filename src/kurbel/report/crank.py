@@ -1,6 +1,6 @@
 """The reports of `kurbel motion`, `forces`, `stress` and `bearings`: each cylinder, and the shaft that it loads."""
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -8,8 +8,7 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.quantity import PHI, Quantity, by_id
-from kurbel.report.alike import equal_loads, grouped
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values, subjects_of
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import (
     bearing_left_out,
     bearings_left_out,
@@ -26,7 +25,7 @@ from kurbel.report.warnings import (
     guide_notes,
     of_machine,
     rod_ratio_notes,
-    shell_verdict,
+    shells,
 )
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -52,37 +51,58 @@ def motion_report(case: Case, frame: Frame) -> Report:
     notes = _mechanism_notes(case.machine, "motion")
     cylinders = [
         replace(one, left_out=motion_left_out(case.machine, cylinder))
-        for one, cylinder in zip(subjects_of(case, "motion"), case.machine.cylinders)
+        for one, cylinder in zip(MOTION.subjects(case), case.machine.cylinders)
     ]
     return report_on(frame, case.machine, "Motion of the crank train", cylinders, notes=notes)
 
 
+MOTION = Functions(
+    lambda case: [Subject(one.drive.name, one.motion, one.at, one.lists, source=one) for one in case.cylinders],
+    motion_report,
+    lambda case: 360.0,
+)
+
+
+def _with_forces(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            one.drive.name,
+            one,
+            one.at,
+            one.lists,
+            source=one,
+            pistons=[Subject(piston.name, piston, lists=piston.lists) for piston in one.pistons],
+        )
+        for one in case.cylinders
+    ]
+
+
 @np.errstate(all="ignore")
-def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
-    """Return the forces of every cylinder; each_cycle: its measured cycles, one to a line, instead of the table.
+def forces_report(case: Case, frame: Frame) -> Report:
+    """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    notes: list[str] = _mechanism_notes(case.machine, "forces")
-    cylinders = subjects_of(case, "forces")
-    if each_cycle:
-        tables = [_cycle_table(forces, frame.system) for forces in case.cylinders]
-        if not any(tables):
-            raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-        cylinders = [replace(one, at=None, tables=of) for one, of in zip(cylinders, tables)]
-    else:
+    notes = _mechanism_notes(case.machine, "forces")
+    if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
-        tables = [_piston_table(forces, frame.system) for forces in case.cylinders]
-        cylinders = [replace(one, tables=of) for one, of in zip(cylinders, tables)]
+    table_of = _piston_table if frame.table else _cycle_table
+    tables = [table_of(forces, frame.system) for forces in case.cylinders]
+    if not (frame.table or any(tables)):
+        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+    cylinders = [replace(one, tables=of) for one, of in zip(_with_forces(case), tables)]
     if frame.prose:
         warnings = by_cylinder(case)
         cylinders = [
             replace(one, left_out=forces_left_out(case.machine, forces), warnings=warnings[one.name])
             for one, forces in zip(cylinders, case.cylinders)
         ]
-        notes = [] if each_cycle else [*notes, *_forces_notes(case)]
+        notes = [*notes, *_forces_notes(case)] if frame.table else []
     return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
+
+
+FORCES = Functions(_with_forces, forces_report)
 
 
 def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
@@ -143,33 +163,35 @@ def _forces_notes(case: Case) -> Iterator[str]:
 # pins and bearings
 
 
+def _loaded(case: Case) -> list[Subject]:
+    for forces in case.cylinders:
+        forces.refuse_locking()
+    return [
+        Subject(
+            one.name,
+            one,
+            one.at,
+            left_out=bearing_left_out(*one.size, one.omega),
+            of=one.followed[0].cylinder.name if one.of_rod else "",
+        )
+        for one in case.bearings.parts
+    ]
+
+
 @np.errstate(all="ignore")  # what overflows is refused by name
 def bearings_report(case: Case, frame: Frame) -> Report:
     """Return the loads on pins and main bearings over the angle of crank 1, each as a part.
 
     Raises UsageError if nothing loads them.
     """
-    parts = [
-        replace(one, left_out=bearing_left_out(*part.size, part.omega))
-        for one, part in zip(subjects_of(case, "bearings"), case.bearings.parts)
-    ]
-    whole = Subject("whole machine")
+    parts, whole = _loaded(case), Subject("whole machine")
     if frame.prose:
         warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
-        whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings)
-    report = report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
-    return report._replace(group="bearings")
+        whole = replace(whole, left_out=bearings_left_out(case), warnings=warnings)
+    return report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
 
 
-def equal_parts(case: Case, command: str) -> list[list[Subject]]:
-    """Return the cylinders, or the pins and bearings, those together whose key values of a command are equal."""
-
-    def figures(one: Subject) -> Hashable:
-        kind = (one.name, one.of) if command == "bearings" else ("", "")
-        return equal_loads(*kind, shown_key_values(one.key_values(command), "si"))
-
-    subjects = subjects_of(case, command)
-    return grouped(subjects, figures) if len(subjects) > 1 else [subjects]
+BEARINGS = Functions(_loaded, bearings_report)
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:
@@ -198,10 +220,10 @@ def _bearing_notes(case: Case) -> Iterator[str]:
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
-def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
+def stress_report(case: Case, frame: Frame) -> Report:
     """Return the stresses of the crankshaft place by place, and its bearing forces over the crank angle.
 
-    places_only: without the crank angle. Raises UsageError if no crankshaft can be examined.
+    Raises UsageError if no crankshaft can be examined.
     """
     machine, strength = case.machine, case.stress
     tables = []
@@ -218,25 +240,31 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
             rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), numbers))))
         declared = {"phi": PHI, **STRESSES}
         tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
-
-    metal = machine.crankshaft.bearing_metal if machine.crankshaft else None
-    cool, verdict = shell_verdict(strength.pressure_velocity("pin"), metal)
-    notes = [
-        "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
-        "D toward the shaft, T in the sense of rotation.",
-        "The dead centre is loaded as in starting (R p. 608); columns, largest stresses and pressures are those of the "
-        "running machine.",
-    ]
-    if strength.C_rod:
-        notes.append(
-            "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and "
-            "bearings carry D less C_rod."
-        )
-    if cool and verdict:
-        notes.append(verdict)
-    (whole,) = subjects_of(case, "stress")
-    whole = replace(whole, tables=tables, at=None if places_only else whole.at)
+    (whole,) = STRESS.subjects(case)
+    whole = replace(whole, tables=tables)
     if frame.prose:
         lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
         whole = replace(whole, left_out=lacking, warnings=of_machine(case))
-    return report_on(frame, machine, "Strength of the crankshaft", (), whole, notes)
+    return report_on(frame, machine, "Strength of the crankshaft", (), whole, _stress_notes(case))
+
+
+STRESS = Functions(lambda case: [Subject("crankshaft", case.stress, case.stress.at)], stress_report)
+
+
+def _stress_notes(case: Case) -> Iterator[str]:
+    yield (
+        "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
+        "D toward the shaft, T in the sense of rotation."
+    )
+    yield (
+        "The dead centre is loaded as in starting (R p. 608); columns, largest stresses and pressures are those of the "
+        "running machine."
+    )
+    if case.stress.C_rod:
+        yield (
+            "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and "
+            "bearings carry D less C_rod."
+        )
+    cool, verdict = shells(case)
+    if cool and verdict:
+        yield verdict

@@ -1,21 +1,14 @@
-"""The report of `kurbel delivery`, and the tables of load cases: a row for each, of several commands."""
+"""The report of `kurbel delivery`: what pumps and compressors deliver."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
-from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import show
-from kurbel.errors import KurbelError, UsageError
-from kurbel.machine import Machine
-from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import number_of
-from kurbel.quantities import every_quantity
-from kurbel.quantity import Quantity, by_id, called
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, subjects_of
+from kurbel.quantity import Quantity, by_id
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
@@ -38,19 +31,21 @@ _COARSE = 0.5
 """Swing of the pressure in a vessel, over its mean, beyond which a note is due."""
 
 
+def _delivering(case: Case) -> list[Subject]:
+    whole = [case.delivery.pump] if case.delivery.pump else []
+    pumps = [Subject(one.name, one, one.at, source=one) for one in (*case.delivery.pistons, *whole)]
+    return [*(Subject(one.name, one) for one in case.delivery.stages), *pumps]
+
+
 @np.errstate(all="ignore")  # what overflows is refused by name
 def delivery_report(case: Case, frame: Frame) -> Report:
     """Return what pumps and compressors deliver; pumps over the crank angle, that of crank 1 for all together.
 
     Raises UsageError if nothing is delivered, or a vessel would empty.
     """
-    found = case.delivery
-    subjects = [
-        replace(one, tables=[_ends_table(one.results, frame.system)])
-        if isinstance(one.results, CompressorStage)
-        else one
-        for one in subjects_of(case, "delivery")
-    ]
+    found, subjects = case.delivery, _delivering(case)
+    for number, stage in enumerate(found.stages):
+        subjects[number] = replace(subjects[number], tables=[_ends_table(stage, frame.system)])
     whole = subjects.pop() if found.pump else Subject("whole machine")
     if frame.prose:
         warnings = (*of_machine(case), *delivery_warnings(found))
@@ -58,8 +53,11 @@ def delivery_report(case: Case, frame: Frame) -> Report:
     return report_on(frame, case.machine, "Delivery", subjects, whole, _delivery_notes(found))
 
 
+DELIVERY = Functions(_delivering, delivery_report)
+
+
 def _ends_table(stage: CompressorStage, system: str) -> PlaceTable:
-    def values(end: CompressorEnd) -> dict[str, Any]:
+    def values(end: CompressorEnd) -> dict[str, float | None]:
         each = (end.volume, end.efficiency, end.capacity, end.mass_flow, end.temperature)
         return {id: one for id, one in zip(ENDS, each) if one is not None}
 
@@ -131,57 +129,3 @@ def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
             f"the suction pipe lifts by {show(pipe.lift, 'length')}, more than the {show(most, 'length')} at which the "
             "liquid begins to boil: the column breaks off"
         )
-
-
-# load cases
-
-IN_CASES = {
-    "forces": "p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
-    "bearings": "load_max load_mean pressure_max pressure_velocity unloaded_arc",
-    "torsion": "natural_frequency M_vibratory tau_vibratory vibration_loss",
-    "delivery": "volumetric_efficiency capacity mass_flow discharge_temperature stage_power isentropic_efficiency "
-    "flow_mean flow_max volume_fluctuation vessel_volume vessel_swing suction_lift_max",
-}
-"""Command -> the key values of its table of load cases if none are requested."""
-
-
-@np.errstate(all="ignore")  # what overflows is refused by name
-def cases_report(
-    base: Machine, cases: Sequence[Case], command: str, system: str, names: Sequence[str] | None = None
-) -> Report:
-    """Return the key values of load cases, a row for each, of each part of the machine.
-
-    base: the machine as it is without them; names: ids or symbols of the key values. Raises UsageError for a name that
-    is none, and if no case has any.
-    """
-    declared = every_quantity().key_values(command)
-    ids = [_id_of(name, command, declared) for name in names] if names else IN_CASES[command].split()
-    rows: dict[str, list[Row]] = {}
-    notes: list[str] = []
-    for case in cases:
-        name = case.machine.origin.case if case.machine.origin else case.machine.name
-        try:
-            for subject in subjects_of(case, command):
-                answers = {id: number_of(subject.answer(declared[id])) for id in ids}
-                values = {id: one for id, one in answers.items() if isinstance(one, float)}
-                if values:
-                    rows.setdefault(subject.name, []).append(((name,), values))
-        except KurbelError as error:
-            notes.append(f"{name}: {error}")
-    if not rows:
-        raise UsageError("; ".join(notes) or f"{base.name}: no case has any of {', '.join(ids)}")
-    shown_ones = {id: declared[id] for id in ids}
-    parts = []
-    for name, of_part in rows.items():
-        title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
-        parts.append(Subject(name, tables=[place_table("cases", title, ("case",), shown_ones, of_part, system, True)]))
-    report = report_on(Frame(command, (), None, system), base, "Load cases", parts, notes=notes)
-    return report._replace(group="bearings") if command == "bearings" else report
-
-
-def _id_of(name: str, command: str, declared: dict[str, Quantity]) -> str:
-    ids = called(name, declared.values())
-    if not ids:
-        near = did_you_mean(name, tuple(declared))
-        raise UsageError(f"--columns: '{shown(name)}' is no key value of kurbel {command}{near}")
-    return ids[0]

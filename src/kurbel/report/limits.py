@@ -14,7 +14,8 @@ from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.report.alike import grouped, together
-from kurbel.report.frame import Subject, subjects_of, too_large
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Subject, too_large
 from kurbel.solver.case import Case
 
 _ROUNDING = 1e-9

@@ -14,9 +14,9 @@ from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import together
+from kurbel.report.commands import subjects_of
 from kurbel.report.constructions import construction, polar_force
-from kurbel.report.crank import equal_parts
-from kurbel.report.frame import subjects_of
+from kurbel.report.frame import equal_parts
 from kurbel.report.machine_pictures import (
     campbell,
     crank_efforts,
@@ -373,7 +373,7 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     for one in case.cylinders if command == "forces" else ():
         if options.cylinder in (None, one.drive.name):
             one.refuse_locking()
-    for equal in equal_parts(case, command):
+    for equal in equal_parts(subjects_of(case, command), command):
         wanted = [one for one in equal if bearings or options.cylinder in (None, one.name)]
         if wanted:
             several = bearings or len(case.cylinders) > 1

@@ -19,7 +19,8 @@ from kurbel.numerics.extreme import number_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.check import checked
-from kurbel.report.frame import Row, Subject, place_table, subjects_of
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Row, Subject, place_table
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
 from kurbel.solver.case import Case
 

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,12 +12,13 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import ENDLESS, Frame, Row, Subject, place_table, report_on, subjects_of
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chain import holzer_at
+from kurbel.solver.flywheel import DeadCentre
 from kurbel.solver.harmonics import MachineOrders, Orders
 from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 
@@ -77,15 +77,17 @@ HOLZER = by_id(
 )
 """Of one mass in Holzer's table, by id."""
 
-SPEEDS = by_id(
-    Quantity("speed", "n", "speed", "Speed of rotation"),
-    Quantity("M_vibratory", "M_w,a", "torque", "Vibratory torque amplitude in the shaft segment at that speed"),
-    Quantity("tau_vibratory", "τ_a", "stress", "Vibratory stress amplitude in the shaft segment at that speed"),
-)
+SPEEDS = by_id(TORQUE_ORDERS["speed"], PIECES["M_vibratory"], PIECES["tau_vibratory"])
 """Of one piece at one speed, by id."""
 
 
 # turning effort, excess work, flywheel and speed line
+
+
+def _flywheel_subjects(case: Case) -> list[Subject]:
+    turning = case.flywheel
+    cylinders = [Subject(one.drive.name, DeadCentre(one, turning.effort.cycle)) for one in case.cylinders]
+    return [*cylinders, Subject("whole machine", turning, turning.at, source=turning)]
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
@@ -94,39 +96,40 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
 
     Raises UsageError if nothing turns the shaft, NoSolutionError if the machine stalls.
     """
-    machine = case.machine
-    *cylinders, whole = subjects_of(case, "flywheel")
+    *cylinders, whole = _flywheel_subjects(case)
     having = [one for one in cylinders if any(one.key_values("flywheel"))]
+    if case.flywheel.effort.swing is not None:
+        whole = replace(whole, at=None)
     if frame.prose:
-        whole = replace(whole, left_out=flywheel_left_out(machine), warnings=of_machine(case))
+        whole = replace(whole, left_out=flywheel_left_out(case.machine), warnings=of_machine(case))
+    return report_on(frame, case.machine, "Turning effort and flywheel", having, whole, _flywheel_notes(case))
 
-    turning, effort, notes = case.flywheel, case.flywheel.effort, []
+
+def _flywheel_notes(case: Case) -> Iterator[str]:
+    turning, effort, efficiency = case.flywheel, case.flywheel.effort, case.machine.efficiency
     if turning.crank is not None:
         over = "over" if any(term.factor > 1 for term in effort.terms) else "with"
-        eta = f", {over} the efficiency {machine.efficiency:g}" if machine.efficiency != 1 else ""
-        notes.append(
-            f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
-        )
+        eta = f", {over} the efficiency {efficiency:g}" if efficiency != 1 else ""
+        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
     if effort.swing is not None:
-        whole = replace(whole, at=None)
-        notes.append(
-            "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
-        )
+        yield "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
     elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        notes.append("The load does not determine the speed: the mean of ω over time is taken as the nominal speed.")
-    if machine.efficiency != 1 and any(effort.lost(group) for group in effort.groups):
-        notes.append(
+        yield "The load does not determine the speed: the mean of ω over time is taken as the nominal speed."
+    if efficiency != 1 and any(effort.lost(group) for group in effort.groups):
+        yield (
             "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
             "driven pistons, inertia, weight and friction count in full (R p. 613)."
         )
-    if machine.efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
-        notes.append("As in the book the efficiency applies to all of T; in ω the moving masses count in full.")
+    if efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
+        yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
     if turning.rigid:
-        notes.append(
+        yield (
             f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
             "the driven inertia turns with the flywheel."
         )
-    return report_on(frame, machine, "Turning effort and flywheel", having, whole, notes)
+
+
+FLYWHEEL = Functions(_flywheel_subjects, flywheel_report)
 
 
 # orders of the torque
@@ -144,22 +147,24 @@ def harmonics_report(
     nothing turns the shaft.
     """
     machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
-    cylinders, torques = [], []
+    torques = {f"The torque of {one.forces.drive.name}": one.own for one in found.cylinders}
+    torques["The turning effort"] = found.machine
+    cylinders = []
     for one in found.cylinders:
-        cylinder = one.forces.drive.cylinder
-        torques.append((f"The torque of {cylinder.name}", one.own))
+        cylinder, rows = one.forces.drive.cylinder, _order_rows(one.own, one.area)
         title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-        table = _orders_table(title, one.own, frame.system, one.area)
-        cylinders.append(Subject(cylinder.name, left_out=left_out(machine, cylinder), tables=(table,)))
-    torques.append(("The turning effort", found.machine))
+        table = _orders_table("orders", title, one.own, rows, frame.system)
+        cylinders.append(Subject(cylinder.name, left_out=left_out(machine, cylinder), tables=[table]))
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    tables = [_orders_table(title, found.machine, frame.system, major=found.major_orders or ())]
+    rows = _order_rows(found.machine, major=found.major_orders or ())
+    tables = [_orders_table("orders", title, found.machine, rows, frame.system)]
     if speeds is not None:
-        tables.append(_speeds_of_orders(machine, found, speeds, frame.system))
+        rows = _rows_by_speed(machine, found, speeds)
+        title = "Orders of the turning effort at other speeds"
+        tables.append(_orders_table("orders_by_speed", title, found.machine, rows, frame.system))
 
-    uniform = [what for what, torque in torques if _uniform(torque)]
-    notes = [f"{what} has none of these orders: they are all zero." for what in uniform]
-    if len(uniform) < len(torques):
+    notes = [f"{what} has none of these orders: they are all zero." for what, one in torques.items() if _uniform(one)]
+    if len(notes) < len(torques):
         notes.append(
             "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
         )
@@ -172,6 +177,9 @@ def harmonics_report(
     lacking, warnings = (*flywheel_left_out(machine), *apart), of_machine(case) if frame.prose else ()
     whole = Subject("whole machine", found, left_out=lacking, warnings=warnings, tables=tables)
     return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, notes)
+
+
+HARMONICS = Functions(lambda case: [Subject("whole machine", case.harmonics())], harmonics_report)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -194,21 +202,23 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
     return None if requested is None else np.array(sorted(set(requested)), dtype=float)
 
 
-def _orders_table(
-    title: str, orders: Orders, system: str, area: float | None = None, major: Sequence[float] = ()
-) -> PlaceTable:
+def _orders_table(id: str, title: str, torque: Orders, rows: Sequence[Row], system: str) -> PlaceTable:
+    """Return a table of orders of a torque; if it is uniform, a note says so instead."""
+    return place_table(id, title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=_uniform(torque))
+
+
+def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
     """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
     rows: list[Row] = []
-    for index, order in enumerate(orders.whole.orders.tolist()):
-        amplitude = complex(orders.whole.amplitudes[index])
-        values = _of_order(order, amplitude)
-        if orders.inertia is not None:
-            values["M_gas"] = float(abs(orders.gas.amplitudes[index]))
-            values["M_inertia"] = float(abs(orders.inertia.amplitudes[index]))
+    for index, order in enumerate(torque.whole.orders.tolist()):
+        values = _of_order(order, complex(torque.whole.amplitudes[index]))
+        if torque.inertia is not None:
+            values["M_gas"] = float(abs(torque.gas.amplitudes[index]))
+            values["M_inertia"] = float(abs(torque.inertia.amplitudes[index]))
         if area:
-            values["t_order"] = abs(amplitude) / area
+            values["t_order"] = float(abs(torque.whole.amplitudes[index])) / area
         rows.append((("major" if order in major else "",), values))
-    return place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=_uniform(orders))
+    return rows
 
 
 def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
@@ -218,17 +228,16 @@ def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
     return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}
 
 
-def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[float], system: str) -> PlaceTable:
+def _rows_by_speed(machine: Machine, found: MachineOrders, speeds: Sequence[float]) -> list[Row]:
+    """Return the orders of the turning effort at each speed in revolutions per second."""
     if not machine.speed:
         raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
     rows: list[Row] = []
     for speed in speeds:
-        at_speed = found.machine.at_speed(speed / machine.speed)
-        for order, amplitude in zip(at_speed.orders.tolist(), at_speed.amplitudes.tolist()):
-            rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
-    title = "Orders of the turning effort at other speeds"
-    table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
-    return table._replace(in_note=_uniform(found.machine))
+        waves = found.machine.at_speed(speed / machine.speed)
+        each = zip(waves.orders.tolist(), waves.amplitudes.tolist())
+        rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
+    return rows
 
 
 def _uniform(found: Orders) -> bool:
@@ -244,64 +253,84 @@ _MODES = 3
 """Modes whose critical speeds are listed unless others are requested."""
 
 
-class Wanted(NamedTuple):
-    """What is requested of torsion: orders, how many modes, whose Holzer table, speeds in revolutions per second.
+def _torsion_subjects(case: Case) -> list[Subject]:
+    return [Subject("shaft line", _limited(case.torsion))]
 
-    at: frequency in Hz of Holzer's table, in place of a mode.
-    """
 
-    orders: Sequence[float] | None = None
-    modes: int = _MODES
-    mode: int = 1
-    speeds: Sequence[float] | None = None
-    at: float | None = None
+def _limited(found: ShaftVibration) -> ShaftVibration:
+    """Return the vibration; raises NoSolutionError if it grows without limit."""
+    if found.vibration is not None and found.vibration.endless.any():
+        raise NoSolutionError(
+            "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of "
+            "the shaft are too unequal to compute with: check the units of their stiffnesses"
+        )
+    return found
 
 
 @np.errstate(all="ignore")
-def torsion_report(case: Case, frame: Frame, wanted: Wanted = Wanted()) -> Report:  # noqa: B008 (immutable)
+def torsion_report(
+    case: Case,
+    frame: Frame,
+    orders: Sequence[float] | None = None,
+    modes: int = _MODES,
+    mode: int | None = None,
+    speeds: Sequence[float] | None = None,
+    at: float | None = None,
+) -> Report:
     """Return the torsional vibration of the shaft line; columns over the crank angle only if the frame has some.
 
-    Raises UsageError without a shaft line, NoSolutionError if an undamped resonance has no limit.
+    orders: those to count, None for the usual ones; modes: how many have critical speeds; mode, at: of Holzer's table,
+    or a frequency in Hz in its place; speeds: in revolutions per second, at which amplitudes are listed. Raises
+    UsageError without a shaft line, NoSolutionError if an undamped resonance has no limit.
     """
-    found, system = case.torsion_of(_orders(case.machine, wanted.orders)), frame.system
-    critical = found.critical_speeds(wanted.modes, _HIGHEST_CRITICAL if wanted.orders is None else math.inf)
-    if found.vibration is not None and found.vibration.endless.any():
-        raise NoSolutionError(ENDLESS)
-    tables = [_modes_table(found, system), _holzer_table(found, wanted, system)]
-
-    # what is not reached, or hardly damped, has no amplitude
-    reached = [one for one in critical if found.met(one)]
-    of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
-    rows: list[Row] = []
-    for one in critical:
-        values: dict[str, float | None] = {"order": one.order, "mode": float(one.mode), "speed": one.speed}
-        values |= {"phase_sum": one.phase_sum, "distance": one.distance}
-        for amplitudes in of_reached.get(one, ()):
-            for id, amplitude in amplitudes.items():
-                values[id] = max(values.get(id) or 0.0, amplitude)
-        known = {id: value for id, value in values.items() if value is not None}
-        rows.append((("near" if one.near else "",), known))
-    tables.append(place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system))
-    hidden = bool(reached) and any("M_vibratory" not in values for _, values in rows)
-
+    if mode is not None and at is not None:
+        raise UsageError("--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out")
+    found, system = case.torsion_of(_orders(case.machine, orders)), frame.system
+    critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
+    _limited(found)
+    rows = _critical_rows(found, critical)
+    tables = [
+        _modes_table(found, system),
+        _holzer_table(found, mode or 1, at, system),
+        place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system),
+    ]
     if found.pieces:
-        rows = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
         title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-        tables.append(place_table("pieces", title, ("piece",), PIECES, rows, system))
-    if wanted.speeds is not None and not found.obstacle:
-        rows = [
+        of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
+        tables.append(place_table("pieces", title, ("piece",), PIECES, of_pieces, system))
+    if speeds is not None and not found.obstacle:
+        by_speed: list[Row] = [
             ((found.piece_name(number),), {"speed": speed, **amplitudes})
-            for number, piece in enumerate(zip(*_at_speeds(found, wanted.speeds)))
-            for speed, amplitudes in zip(wanted.speeds, piece)
+            for number, piece in enumerate(zip(*_at_speeds(found, speeds)))
+            for speed, amplitudes in zip(speeds, piece)
         ]
         title = "Vibratory torque over the speed, all these orders together"
-        tables.append(place_table("speeds", title, ("piece",), SPEEDS, rows, system))
+        tables.append(place_table("speeds", title, ("piece",), SPEEDS, by_speed, system))
 
     warnings = (*_near_speeds(found, critical), *of_machine(case)) if frame.prose else ()
     whole = Subject("shaft line", found, left_out=torsion_left_out(found), warnings=warnings, tables=tables)
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
-    notes = _torsion_notes(found, wanted.orders is None, hidden)
+    with_torque = ["M_vibratory" in values for _, values in rows]
+    notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
     return report_on(frame, case.machine, "Torsional vibration", pieces, whole, notes)
+
+
+TORSION = Functions(_torsion_subjects, torsion_report)
+
+
+def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[Row]:
+    """Return critical speeds, with the largest amplitudes of all pieces where one is reached and damped."""
+    reached = [one for one in critical if found.met(one)]
+    of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
+    rows: list[Row] = []
+    for one in critical:
+        values = {"order": one.order, "mode": float(one.mode), "speed": one.speed, "phase_sum": one.phase_sum}
+        if one.distance is not None:
+            values["distance"] = one.distance
+        for amplitudes in of_reached.get(one, ()):
+            values |= {id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()}
+        rows.append((("near" if one.near else "",), values))
+    return rows
 
 
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
@@ -319,18 +348,18 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
 
 
-def _holzer_table(found: ShaftVibration, wanted: Wanted, system: str) -> PlaceTable:
-    """Return Holzer's table of a mode or at a frequency, from the first mass to the last, each with its segment behind.
+def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: str) -> PlaceTable:
+    """Return Holzer's table of a mode, or at a frequency in Hz: each mass with the segment after it.
 
     At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
     """
     chain, left, last = found.chain, 0.0, dict[str, float]()
-    if wanted.at is None:
-        table, omega = found.holzer(wanted.mode), float(found.modes.omegas[wanted.mode - found.first])
-        of = f"of mode {wanted.mode}, f = {omega / (2 * math.pi):.6g} Hz"
+    if at is None:
+        table, omega = found.holzer(mode), float(found.modes.omegas[mode - found.first])
+        of = f"of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz"
     else:
-        omega = 2 * math.pi * wanted.at
-        table, of = holzer_at(chain, omega), f"at f = {wanted.at:.6g} Hz"
+        omega = 2 * math.pi * at
+        table, of = holzer_at(chain, omega), f"at f = {at:.6g} Hz"
         left, last = (table.residual, {}) if chain.held[1] else (0.0, {"torque_sum": table.residual})
     masses: list[Row] = [
         ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
@@ -377,9 +406,8 @@ def torsion_left_out(found: ShaftVibration) -> list[LeftOut]:
 
 
 def torsion_warnings(case: Case) -> Iterator[str]:
-    """Yield which of the usual critical speeds are near the working speed; raises as `subjects_of` does."""
-    subjects_of(case, "torsion")
-    yield from _near_speeds(case.torsion, case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
+    """Yield which of the usual critical speeds are near the working speed; raises as the report does."""
+    yield from _near_speeds(_limited(case.torsion), case.torsion.critical_speeds(_MODES, _HIGHEST_CRITICAL))
 
 
 def _near_speeds(found: ShaftVibration, critical: Sequence[Critical]) -> Iterator[str]:

@@ -399,17 +399,21 @@ def turning_warnings(case: Case) -> Iterator[str]:
         )
 
 
-_SHELLS = (
-    (25, "permissible for bronze shells (25)"),
-    (30, "too much for bronze shells (25), permissible for white metal (30)"),
-    (35, "permissible for the best white metal only (30 to 35)"),
-    (math.inf, "more than permissible for white metal (30 to 35)"),
-)
-"""p_m v of the crank pin in kgf m/(cm² s), and the assessment of G up to this value."""
-
-
-_METALS = {"gunmetal": ("gun metal", 25.0, 25.0), "white-metal": ("white metal", 30.0, 35.0)}
-"""Metal of the shells -> its name, p_m v in kgf m/(cm² s) permissible usually, and for the best quality (G)."""
+_SHELLS = {
+    "": (
+        (25.0, "permissible for bronze shells (25)"),
+        (30.0, "too much for bronze shells (25), permissible for white metal (30)"),
+        (35.0, "permissible for the best white metal only (30 to 35)"),
+        (math.inf, "more than permissible for white metal (30 to 35)"),
+    ),
+    "gunmetal": ((25.0, "permissible for gun metal (25)"), (math.inf, "more than gun metal (25) permits")),
+    "white-metal": (
+        (30.0, "permissible for white metal (30 to 35)"),
+        (35.0, "permissible only for the best white metal (30 to 35)"),
+        (math.inf, "more than white metal (30 to 35) permits"),
+    ),
+}
+"""Metal of the shells, "" if unknown -> p_m v of the crank pin in kgf m/(cm² s), and the assessment up to it (G)."""
 
 
 def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> tuple[bool, str]:
@@ -419,23 +423,21 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
     """
     if pressure_velocity is None:
         return True, ""
-    shown = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
-    if metal is not None:
-        name, usual, best = _METALS[metal]
-        bounds = f"{name} ({usual:g}{f' to {best:g}' if best > usual else ''})"
-        word = (
-            "permissible for" if shown <= usual else "permissible only for the best" if shown <= best else "more than"
-        )
-        permits = " permits" if shown > best else ""
-        return shown <= usual, f"Crank pin: k_v = p_m v = {shown:.3g} kgf m/(cm² s); {word} {bounds}{permits}."
-    bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
-    return bound == _SHELLS[0][0], f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}."
+    shown, shells = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2"), _SHELLS[metal or ""]
+    bound, verdict = next(shell for shell in shells if shown <= shell[0])
+    symbol = "k_v = p_m v" if metal else "p_m v"
+    return bound == shells[0][0], f"Crank pin: {symbol} = {shown:.3g} kgf m/(cm² s); {verdict}."
+
+
+def shells(case: Case) -> tuple[bool, str]:
+    """Return the verdict on the shells of a machine whose crankshaft is examined."""
+    shaft = case.machine.crankshaft
+    return shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:
     if not case.machine.strength_obstacle:
-        shaft = case.machine.crankshaft
-        cool, verdict = shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
+        cool, verdict = shells(case)
         if not cool:
             yield verdict
 
