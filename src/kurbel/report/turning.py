@@ -85,9 +85,10 @@ SPEEDS = by_id(TORQUE_ORDERS["speed"], PIECES["M_vibratory"], PIECES["tau_vibrat
 
 
 def _flywheel_subjects(case: Case) -> list[Subject]:
-    turning = case.flywheel
-    cylinders = [Subject(one.drive.name, DeadCentre(one, turning.effort.cycle)) for one in case.cylinders]
-    return [*cylinders, Subject("whole machine", turning, turning.at, source=turning)]
+    turning, effort = case.flywheel, case.flywheel.effort
+    cylinders = [Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders]
+    at = turning.at if effort.swing is None else None
+    return [*cylinders, Subject("whole machine", turning, at, source=turning)]
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
@@ -98,8 +99,6 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
     """
     *cylinders, whole = _flywheel_subjects(case)
     having = [one for one in cylinders if any(one.key_values("flywheel"))]
-    if case.flywheel.effort.swing is not None:
-        whole = replace(whole, at=None)
     if frame.prose:
         whole = replace(whole, left_out=flywheel_left_out(case.machine), warnings=of_machine(case))
     return report_on(frame, case.machine, "Turning effort and flywheel", having, whole, _flywheel_notes(case))
@@ -146,25 +145,24 @@ def harmonics_report(
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
     nothing turns the shaft.
     """
-    machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
-    torques = {f"The torque of {one.forces.drive.name}": one.own for one in found.cylinders}
-    torques["The turning effort"] = found.machine
-    cylinders = []
+    machine, found, system = case.machine, case.harmonics(_orders(case.machine, orders)), frame.system
+    uniform, cylinders = list[str](), list[Subject]()
     for one in found.cylinders:
-        cylinder, rows = one.forces.drive.cylinder, _order_rows(one.own, one.area)
+        cylinder = one.forces.drive.cylinder
         title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-        table = _orders_table("orders", title, one.own, rows, frame.system)
+        table = _orders_table("orders", title, one.own, _order_rows(one.own, one.area), system)
         cylinders.append(Subject(cylinder.name, left_out=left_out(machine, cylinder), tables=[table]))
+        uniform += [f"The torque of {cylinder.name}"] * table.in_note
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
     rows = _order_rows(found.machine, major=found.major_orders or ())
-    tables = [_orders_table("orders", title, found.machine, rows, frame.system)]
+    tables = [_orders_table("orders", title, found.machine, rows, system)]
+    uniform += ["The turning effort"] * tables[0].in_note
     if speeds is not None:
-        rows = _rows_by_speed(machine, found, speeds)
-        title = "Orders of the turning effort at other speeds"
-        tables.append(_orders_table("orders_by_speed", title, found.machine, rows, frame.system))
+        title, rows = "Orders of the turning effort at other speeds", _rows_by_speed(machine, found, speeds)
+        tables.append(_orders_table("orders_by_speed", title, found.machine, rows, system))
 
-    notes = [f"{what} has none of these orders: they are all zero." for what, one in torques.items() if _uniform(one)]
-    if len(notes) < len(torques):
+    notes = [f"{what} has none of these orders: they are all zero." for what in uniform]
+    if len(uniform) <= len(cylinders):
         notes.append(
             "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
         )
@@ -187,24 +185,22 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
 
     Raises UsageError for one that the cycle does not have.
     """
+    turns = machine.revolutions
     for order in requested or ():
         if not 0 < order <= _HIGHEST_ORDER:
-            raise UsageError(
-                f"--orders {order:g}: an order is more than 0 and at most {_HIGHEST_ORDER} periods per turn"
-            )
-        if not is_whole(order * machine.revolutions):
-            turns = machine.revolutions
+            most = f"at most {_HIGHEST_ORDER} periods per turn"
+            raise UsageError(f"--orders {order:g}: an order is more than 0 and {most}")
+        if not is_whole(order * turns):
             known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
-            degrees = 360 * machine.revolutions
-            raise UsageError(
-                f"--orders {order:g}: the cycle repeats after {degrees} degrees and has the orders {known}"
-            )
-    return None if requested is None else np.array(sorted(set(requested)), dtype=float)
+            cycle = f"the cycle repeats after {360 * turns} degrees"
+            raise UsageError(f"--orders {order:g}: {cycle} and has the orders {known}")
+    return None if requested is None else np.unique(requested)
 
 
 def _orders_table(id: str, title: str, torque: Orders, rows: Sequence[Row], system: str) -> PlaceTable:
-    """Return a table of orders of a torque; if it is uniform, a note says so instead."""
-    return place_table(id, title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=_uniform(torque))
+    """Return a table of orders of a torque; of a uniform one, whose orders are all zero, a note says so instead."""
+    uniform = not any(one.amplitudes.any() for one in (torque.gas, torque.inertia) if one)
+    return place_table(id, title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
 
 
 def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
@@ -238,11 +234,6 @@ def _rows_by_speed(machine: Machine, found: MachineOrders, speeds: Sequence[floa
         each = zip(waves.orders.tolist(), waves.amplitudes.tolist())
         rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
     return rows
-
-
-def _uniform(found: Orders) -> bool:
-    """Whether every order is zero, at every speed."""
-    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
 
 
 # torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
@@ -336,13 +327,16 @@ def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[
 def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
     """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
     rows: list[Row] = []
-    names = [mass.name for mass in found.line.masses]
-    for index, omega in enumerate(found.modes.omegas.tolist()):
-        mode, where = found.first + index, ["at the ground"] * sum(found.chain.held)
-        for mass, share in found.modes.nodes(index) if mode else ():
-            where.append(f"{names[mass]} + {share:.2f}" if share else names[mass])
-        nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}" if mode else "rotation"
-        nodes = f"{nodes}: {', '.join(where)}" if mode and len(where) <= 2 else nodes
+    names, modes = [mass.name for mass in found.line.masses], found.modes
+    for index, omega in enumerate(modes.omegas.tolist()):
+        mode, nodes = found.first + index, "rotation"
+        if mode:
+            between = [
+                f"{names[mass]} + {share:.2f}" if share else names[mass] for mass, share in found.modes.nodes(index)
+            ]
+            where = ["at the ground"] * sum(found.chain.held) + between
+            nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}"
+            nodes += f": {', '.join(where)}" if len(where) <= 2 else ""
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
         rows.append(((nodes,), values))
     return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
@@ -353,43 +347,43 @@ def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: st
 
     At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
     """
-    chain, left, last = found.chain, 0.0, dict[str, float]()
+    chain, left = found.chain, 0.0
     if at is None:
         table, omega = found.holzer(mode), float(found.modes.omegas[mode - found.first])
         of = f"of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz"
     else:
-        omega = 2 * math.pi * at
-        table, of = holzer_at(chain, omega), f"at f = {at:.6g} Hz"
-        left, last = (table.residual, {}) if chain.held[1] else (0.0, {"torque_sum": table.residual})
-    masses: list[Row] = [
+        table, omega = holzer_at(chain, 2 * math.pi * at), 2 * math.pi * at
+        of, left = f"at f = {at:.6g} Hz", table.residual
+    first, last = chain.held
+    rows: list[tuple[tuple[str], dict[str, float]]] = [
         ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
         for mass, inertia, theta in zip(found.line.masses, chain.inertias.tolist(), table.angles.tolist())
     ]
-    masses = [(("ground",), {"theta": 0.0})] * chain.held[0] + masses + [(("ground",), {"theta": left})] * chain.held[1]
-    pieces: list[dict[str, float]] = [
-        {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
-        for torque, stiffness in zip(table.torques.tolist(), chain.stiffnesses.tolist())
-    ]
-    rows = [(names, {**mass, **piece}) for (names, mass), piece in zip(masses, [*pieces, last])]
+    rows = [(("ground",), {"theta": 0.0})] * first + rows + [(("ground",), {"theta": left})] * last
+    for (_, values), torque, stiffness in zip(rows, table.torques.tolist(), chain.stiffnesses.tolist()):
+        values |= {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
+    if at is not None and not last:
+        rows[-1][1]["torque_sum"] = left
     return place_table("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows, system)
 
 
 def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:
     """Yield for each speed vibratory torque and stress of every piece, nothing at an undamped resonance."""
-    vibration = found.forced(speeds) if speeds else None
+    if not speeds:
+        return
+    vibration = found.forced(speeds)
     factors = [stress(found.line, piece) for piece in range(len(found.line.pieces))]
-    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless) if vibration else ():
-        of_pieces: list[dict[str, float]] = []
-        for torque, factor in zip(torques, factors):
-            tension = {} if factor is None else {"tau_vibratory": factor * torque}
-            of_pieces.append({} if endless else {"M_vibratory": torque, **tension})
-        yield of_pieces
+    for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
+        yield [
+            {} if endless else {"M_vibratory": torque} | ({} if factor is None else {"tau_vibratory": factor * torque})
+            for torque, factor in zip(torques, factors)
+        ]
 
 
 def _of_piece(piece: SegmentTorque) -> dict[str, float]:
     torques = piece.M_shaft_mean, piece.M_shaft_max, piece.M_shaft_min, piece.M_vibratory
-    values = dict(zip(PIECES, (*torques, piece.tau_mean, piece.tau_vibratory)))
-    return {id: value for id, value in values.items() if value is not None}
+    values = zip(PIECES, (*torques, piece.tau_mean, piece.tau_vibratory))
+    return {id: value for id, value in values if value is not None}
 
 
 def torsion_left_out(found: ShaftVibration) -> list[LeftOut]:
@@ -437,16 +431,13 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {line.masses[0].name}, the first mass."
-    if not found.pieces:
-        return
-    orders = "all orders"
-    if found.summed is not None:
-        names = [f"{order:g}" for order in found.summed]
-        orders = f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
-        orders = orders if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
-    if found.remainder is not None:
-        orders += f" together (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
-    else:
-        orders += " together"
-    taker = "what holds it" if found.chain.ground else line.masses[line.load].name
-    yield f"Forced vibration: {orders}, about uniform rotation; the mean torque goes to {taker}."
+    if found.pieces:
+        orders, more = "all orders", ""
+        if found.summed is not None:
+            names = [f"{order:g}" for order in found.summed]
+            listed = f"order{'s' if len(names) > 1 else ''} {', '.join(names)}"
+            orders = listed if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
+        if found.remainder is not None:
+            more = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
+        taker = "what holds it" if found.chain.ground else line.masses[line.load].name
+        yield f"Forced vibration: {orders} together{more}, about uniform rotation; the mean torque goes to {taker}."
