@@ -15,8 +15,9 @@ from kurbel.render import Look
 from kurbel.render.data import findings_json, findings_junit
 from kurbel.render.output import refuse_overwriting, stdout_look, write_out
 from kurbel.render.page import listing
-from kurbel.report.check import Checked, Findings, checked, faults_found, findings
+from kurbel.report.check import Checked, Finding, checked, faults_found, findings
 from kurbel.report.commands import BROKEN
+from kurbel.report.frame import provenance
 from kurbel.solver.case import Case
 
 _GRAVEST = 2, 3, BROKEN, DONE
@@ -71,9 +72,10 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
     found = checked(Case(machine), cases)
+    errors = [one.error for one in found.unjudged]
     # all errors of a machine as one of the gravest kind
-    gravest = min(found.errors, key=lambda error: error.exit_status, default=None)
-    return Outcome(file, gravest and type(gravest)("\n".join(map(str, found.errors))), machine, found)
+    gravest = type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors))) if errors else None
+    return Outcome(file, gravest, machine, found)
 
 
 def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
@@ -87,23 +89,20 @@ def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
             yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
 
 
-def _found(outcomes: Sequence[Outcome]) -> list[Findings]:
-    """Return all findings, those of files that cannot be read, too."""
-    return [
-        findings(one.machine, one.checked, located)
-        if one.machine and one.checked
-        else faults_found(one.file, one.error or KurbelError())
-        for one in outcomes
-    ]
+def _found(one: Outcome) -> list[Finding]:
+    """Return all findings in a file, or why it cannot be read."""
+    if one.machine and one.checked:
+        return findings(one.machine, one.checked, located)
+    return faults_found(one.file, one.error or KurbelError())
 
 
 def _as_junit(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    found = ([finding._asdict() for finding in each.findings] for each in _found(outcomes))
-    return findings_junit([*zip((one.file for one in outcomes), found)], replace(look, encoding="utf-8"))
+    found = [(one.file, [finding._asdict() for finding in _found(one)]) for one in outcomes]
+    return findings_junit(found, replace(look, encoding="utf-8"))
 
 
 def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    found = _found(outcomes)
-    listed = [finding._asdict() for each in found for finding in each.findings]
-    name, made_from = (found[0].machine, found[0].provenance) if len(found) == 1 else (None, None)
+    listed = [finding._asdict() for one in outcomes for finding in _found(one)]
+    machine = outcomes[0].machine if len(outcomes) == 1 else None
+    name, made_from = (machine.name, provenance(machine)) if machine else (None, None)
     return findings_json(name, made_from, listed, look)

@@ -257,7 +257,7 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(error), "bad") for error in found.errors)
+    yield from (Notice(str(one.error), "bad") for one in found.unjudged)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 
 
