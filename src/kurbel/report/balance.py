@@ -3,7 +3,6 @@
 import cmath
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
@@ -72,20 +71,23 @@ _NOTHING = 1e-6
 
 def _balanced(case: Case, compare: bool = False) -> list[Subject]:
     balance = MachineBalance(case.effort, compare=True) if compare else case.balance
-    return [Subject("whole machine", balance, None if case.machine.speed is None else balance.at)]
+    return [
+        Subject(
+            "whole machine",
+            balance,
+            None if case.machine.speed is None else balance.at,
+            left_out=balance_left_out(case, compare),
+            warnings=pin_warnings(case.machine),
+            tables=lambda system: [*_orders(case.balance, system, compare), *_weights(case.balance, system)],
+            whole=True,
+        )
+    ]
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
+@np.errstate(all="ignore")
 def balance_report(case: Case, frame: Frame) -> Report:
     """Return what is unbalanced and what balances it; raises UsageError if no masses move."""
-    (whole,) = _balanced(case, frame.compare)
-    whole = replace(
-        whole,
-        tables=(*_orders(case.balance, frame.system, frame.compare), *_weights(case.balance, frame.system)),
-        left_out=balance_left_out(case, frame.compare),
-        warnings=tuple(pin_warnings(case.machine)),
-    )
-    return report_on(frame, case.machine, "Balancing", (), whole, _notes(case.balance))
+    return report_on(frame, case.machine, "Balancing", _balanced(case, frame.compare), _notes(case.balance))
 
 
 BALANCE = Functions(_balanced, balance_report, lambda case: case.balance.cycle)

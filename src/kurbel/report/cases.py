@@ -1,6 +1,7 @@
 """The tables of load cases: a row for each case, of the key values of a command."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
-from kurbel.report.tables import Report
+from kurbel.report.tables import PlaceTable, Report
 from kurbel.solver.case import Case
 
 
@@ -50,8 +51,11 @@ def cases_report(
             notes.append(f"{name_of(case)}: {error}")
     if not rows:
         raise UsageError("; ".join(notes) or f"{base.name}: no case has any of {', '.join(ids)}")
-    chosen, parts = {id: declared[id] for id in ids}, []
-    for name, of_part in rows.items():
+    chosen = {id: declared[id] for id in ids}
+
+    def tables(name: str, system: str) -> list[PlaceTable]:
         title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
-        parts.append(Subject(name, tables=[place_table("cases", title, ("case",), chosen, of_part, system, True)]))
-    return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes=notes)
+        return [place_table("cases", title, ("case",), chosen, rows[name], system, True)]
+
+    parts = [Subject(name, tables=partial(tables, name)) for name in rows]
+    return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 
 import numpy as np
 
@@ -30,6 +32,7 @@ from kurbel.report.warnings import (
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import OF_CYCLES
+from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.trace import TracePressure
 
 STRESSES = by_id(
@@ -46,21 +49,27 @@ STRESSES = by_id(
 # motion and forces of every cylinder
 
 
+def _with_motion(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            one.drive.name,
+            one.motion,
+            one.at,
+            one.lists,
+            source=one,
+            left_out=motion_left_out(case.machine, one.drive.cylinder),
+        )
+        for one in case.cylinders
+    ]
+
+
 def motion_report(case: Case, frame: Frame) -> Report:
     """Return the motion of every cylinder's mechanism; raises UsageError without a cylinder."""
     notes = _mechanism_notes(case.machine, "motion")
-    cylinders = [
-        replace(one, left_out=motion_left_out(case.machine, cylinder))
-        for one, cylinder in zip(MOTION.subjects(case), case.machine.cylinders)
-    ]
-    return report_on(frame, case.machine, "Motion of the crank train", cylinders, notes=notes)
+    return report_on(frame, case.machine, "Motion of the crank train", _with_motion(case), notes)
 
 
-MOTION = Functions(
-    lambda case: [Subject(one.drive.name, one.motion, one.at, one.lists, source=one) for one in case.cylinders],
-    motion_report,
-    lambda case: 360.0,
-)
+MOTION = Functions(_with_motion, motion_report, lambda case: 360.0)
 
 
 def _with_forces(case: Case) -> list[Subject]:
@@ -71,6 +80,8 @@ def _with_forces(case: Case) -> list[Subject]:
             one.at,
             one.lists,
             source=one,
+            left_out=forces_left_out(case.machine, one),
+            tables=partial(_piston_table, one),
             pistons=[Subject(piston.name, piston, lists=piston.lists) for piston in one.pistons],
         )
         for one in case.cylinders
@@ -83,23 +94,21 @@ def forces_report(case: Case, frame: Frame) -> Report:
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    notes = _mechanism_notes(case.machine, "forces")
+    notes, cylinders = _mechanism_notes(case.machine, "forces"), _with_forces(case)
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
-    table_of = _piston_table if frame.table else _cycle_table
-    tables = [table_of(forces, frame.system) for forces in case.cylinders]
-    if not (frame.table or any(tables)):
-        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-    cylinders = [replace(one, tables=of) for one, of in zip(_with_forces(case), tables)]
-    if frame.prose:
-        warnings = by_cylinder(case)
+        notes = [*notes, *_forces_notes(case)] if frame.prose else []
+    else:
         cylinders = [
-            replace(one, left_out=forces_left_out(case.machine, forces), warnings=warnings[one.name])
-            for one, forces in zip(cylinders, case.cylinders)
+            replace(one, tables=partial(_cycle_table, forces)) for one, forces in zip(cylinders, case.cylinders)
         ]
-        notes = [*notes, *_forces_notes(case)] if frame.table else []
-    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
+        if not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
+            raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+        notes = []
+    warnings = by_cylinder(case) if frame.prose else {}
+    cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
+    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes)
 
 
 FORCES = Functions(_with_forces, forces_report)
@@ -178,17 +187,15 @@ def _loaded(case: Case) -> list[Subject]:
     ]
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
+@np.errstate(all="ignore")
 def bearings_report(case: Case, frame: Frame) -> Report:
     """Return the loads on pins and main bearings over the angle of crank 1, each as a part.
 
     Raises UsageError if nothing loads them.
     """
-    parts, whole = _loaded(case), Subject("whole machine")
-    if frame.prose:
-        warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
-        whole = replace(whole, left_out=bearings_left_out(case), warnings=warnings)
-    return report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
+    warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
+    whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)
+    return report_on(frame, case.machine, "Bearing loads", [*_loaded(case), whole], _bearing_notes(case))
 
 
 BEARINGS = Functions(_loaded, bearings_report)
@@ -219,14 +226,33 @@ def _bearing_notes(case: Case) -> Iterator[str]:
 # stresses in the crankshaft
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
+def _stressed(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            "crankshaft",
+            case.stress,
+            case.stress.at,
+            left_out=chain(left_out(case.machine, case.machine.cylinders[0]), strength_left_out(case.machine)),
+            warnings=of_machine(case),
+            tables=partial(_stress_tables, case.stress),
+            whole=True,
+        )
+    ]
+
+
+@np.errstate(all="ignore")
 def stress_report(case: Case, frame: Frame) -> Report:
     """Return the stresses of the crankshaft place by place, and its bearing forces over the crank angle.
 
     Raises UsageError if no crankshaft can be examined.
     """
-    machine, strength = case.machine, case.stress
-    tables = []
+    return report_on(frame, case.machine, "Strength of the crankshaft", _stressed(case), _stress_notes(case))
+
+
+STRESS = Functions(_stressed, stress_report)
+
+
+def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceTable]:
     for id, title, places in (
         ("dead_centre", "Dead centre, full piston force without inertia", strength.at_dead_centre),
         ("largest_torque", "Position of the largest torque", strength.at_largest_torque),
@@ -238,17 +264,7 @@ def stress_report(case: Case, frame: Frame) -> Report:
             values = (one.degrees, *stresses, one.combined, one.von_mises)
             numbers = (None if value is None else float(value) for value in values)
             rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), numbers))))
-        declared = {"phi": PHI, **STRESSES}
-        tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
-    (whole,) = STRESS.subjects(case)
-    whole = replace(whole, tables=tables)
-    if frame.prose:
-        lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
-        whole = replace(whole, left_out=lacking, warnings=of_machine(case))
-    return report_on(frame, machine, "Strength of the crankshaft", (), whole, _stress_notes(case))
-
-
-STRESS = Functions(lambda case: [Subject("crankshaft", case.stress, case.stress.at)], stress_report)
+        yield place_table(id, title, ("part", "place"), {"phi": PHI, **STRESSES}, rows, system)
 
 
 def _stress_notes(case: Case) -> Iterator[str]:

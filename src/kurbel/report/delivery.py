@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
+from functools import partial
+from itertools import chain, pairwise
 
 import numpy as np
 
@@ -32,31 +33,31 @@ _COARSE = 0.5
 
 
 def _delivering(case: Case) -> list[Subject]:
-    whole = [case.delivery.pump] if case.delivery.pump else []
-    pumps = [Subject(one.name, one, one.at, source=one) for one in (*case.delivery.pistons, *whole)]
-    return [*(Subject(one.name, one) for one in case.delivery.stages), *pumps]
+    found = case.delivery
+    return [
+        *(Subject(one.name, one, tables=partial(_ends_tables, one)) for one in found.stages),
+        *(Subject(one.name, one, one.at, source=one) for one in found.pistons),
+        *([Subject("whole machine", found.pump, found.pump.at, source=found.pump)] if found.pump else []),
+    ]
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
+@np.errstate(all="ignore")
 def delivery_report(case: Case, frame: Frame) -> Report:
     """Return what pumps and compressors deliver; pumps over the crank angle, that of crank 1 for all together.
 
     Raises UsageError if nothing is delivered, or a vessel would empty.
     """
     found, subjects = case.delivery, _delivering(case)
-    for number, stage in enumerate(found.stages):
-        subjects[number] = replace(subjects[number], tables=[_ends_table(stage, frame.system)])
     whole = subjects.pop() if found.pump else Subject("whole machine")
-    if frame.prose:
-        warnings = (*of_machine(case), *delivery_warnings(found))
-        whole = replace(whole, left_out=delivery_left_out(found), warnings=warnings)
-    return report_on(frame, case.machine, "Delivery", subjects, whole, _delivery_notes(found))
+    warnings = chain(of_machine(case), delivery_warnings(found))
+    whole = replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True)
+    return report_on(frame, case.machine, "Delivery", [*subjects, whole], _delivery_notes(found))
 
 
 DELIVERY = Functions(_delivering, delivery_report)
 
 
-def _ends_table(stage: CompressorStage, system: str) -> PlaceTable:
+def _ends_tables(stage: CompressorStage, system: str) -> Iterator[PlaceTable]:
     def values(end: CompressorEnd) -> dict[str, float | None]:
         each = (end.volume, end.efficiency, end.capacity, end.mass_flow, end.temperature)
         return {id: one for id, one in zip(ENDS, each) if one is not None}
@@ -65,7 +66,7 @@ def _ends_table(stage: CompressorStage, system: str) -> PlaceTable:
     pressures = ""
     if stage.suction is not None:
         pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
-    return place_table("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, system, headed=True)
+    yield place_table("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, system, headed=True)
 
 
 def _delivery_notes(found: MachineDelivery) -> Iterator[str]:

@@ -47,19 +47,21 @@ class Subject:
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; lists: the quantities that it can have; source: has `angles_where`,
     which `--where` searches, None without rows; of: the cylinder that a pin belongs to; pistons: those of a cylinder
-    whose rod has several. left_out, warnings, tables: further parts of a report, empty if only key values are needed.
+    whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
+    warnings; tables: a function of the system of units that returns tables of places.
     """
 
     name: str
     results: Results | None = None
     at: Callable[[Array], Any] | None = None
     lists: Lists = field(default_factory=every_quantity)
-    left_out: Sequence[LeftOut] = ()
-    warnings: Sequence[str] = ()
-    tables: Sequence[PlaceTable] = ()
+    left_out: Iterable[LeftOut] = ()
+    warnings: Iterable[str] = ()
+    tables: Callable[[str], Iterable[PlaceTable]] = lambda system: ()
     source: Any = None
     of: str = ""
     pistons: "Sequence[Subject]" = ()
+    whole: bool = False
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -132,53 +134,49 @@ class Frame:
     table: bool = True
 
 
-@np.errstate(all="ignore")
+@np.errstate(all="ignore")  # what overflows is refused by name
 def report_on(
-    frame: Frame,
-    machine: Machine,
-    title: str,
-    subjects: Iterable[Subject],
-    whole: Subject | None = None,
-    notes: Iterable[str] = (),
+    frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject], notes: Iterable[str] = ()
 ) -> Report:
-    """Return the report on these subjects, and on the whole machine.
+    """Return the report on these subjects, of which the last may be the whole machine.
 
     Raises UsageError for a number that overflows or a column that no subject has, NoSolutionError if no row is found.
     """
-    every = (*subjects, *((whole,) if whole else ()))
-    columns = [_columns(frame, one) for one in every]
+    columns = [_columns(frame, one) for one in subjects]
     printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
     nowhere = [str(one) for one in columns if isinstance(one, Nowhere)]
     for name in frame.columns or ():
         if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, every)}")
+            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
-    with_values = frame.prose or not (printed or any(one.tables for one in every))
+    tables = [tuple(one.tables(frame.system)) for one in subjects]
+    with_values = frame.prose or not (printed or any(tables))
     parts = [
         Part(
             one.name,
             () if isinstance(found, Nowhere) else found,
             tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
-            tuple(one.left_out),
-            tuple(one.warnings),
-            tuple(one.tables),
+            tuple(one.left_out) if frame.prose else (),
+            tuple(one.warnings) if frame.prose else (),
+            of_subject,
             str(found) if isinstance(found, Nowhere) else "",
             one.of,
         )
-        for one, found in zip(every, columns)
+        for one, found, of_subject in zip(subjects, columns, tables)
     ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
+    added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere]
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
         "bearings" if frame.command == "bearings" else "cylinders",
-        whole=parts.pop() if whole else None,
+        whole=parts.pop() if subjects[-1:] and subjects[-1].whole else None,
         parts=tuple(parts),
-        notes=(*notes, *([_UNCOMPARED] if uncompared else ()), *(f"{why}." for why in nowhere)),
+        notes=(*notes, *added) if frame.prose else (),
         provenance=provenance(machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )

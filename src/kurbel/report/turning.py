@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from functools import partial
+from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +21,7 @@ from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chain import holzer_at
 from kurbel.solver.flywheel import DeadCentre
-from kurbel.solver.harmonics import MachineOrders, Orders
+from kurbel.solver.harmonics import CylinderOrders, MachineOrders, Orders
 from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 
 TORQUE_ORDERS = by_id(
@@ -84,11 +86,18 @@ SPEEDS = by_id(TORQUE_ORDERS["speed"], PIECES["M_vibratory"], PIECES["tau_vibrat
 # turning effort, excess work, flywheel and speed line
 
 
-def _flywheel_subjects(case: Case) -> list[Subject]:
+def _turned(case: Case) -> list[Subject]:
     turning, effort = case.flywheel, case.flywheel.effort
-    cylinders = [Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders]
-    at = turning.at if effort.swing is None else None
-    return [*cylinders, Subject("whole machine", turning, at, source=turning)]
+    whole = Subject(
+        "whole machine",
+        turning,
+        turning.at if effort.swing is None else None,
+        left_out=flywheel_left_out(case.machine),
+        warnings=of_machine(case),
+        source=turning,
+        whole=True,
+    )
+    return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
 
 
 @np.errstate(all="ignore")  # what overflows is refused by name
@@ -97,11 +106,8 @@ def flywheel_report(case: Case, frame: Frame) -> Report:
 
     Raises UsageError if nothing turns the shaft, NoSolutionError if the machine stalls.
     """
-    *cylinders, whole = _flywheel_subjects(case)
-    having = [one for one in cylinders if any(one.key_values("flywheel"))]
-    if frame.prose:
-        whole = replace(whole, left_out=flywheel_left_out(case.machine), warnings=of_machine(case))
-    return report_on(frame, case.machine, "Turning effort and flywheel", having, whole, _flywheel_notes(case))
+    having = [one for one in _turned(case) if one.whole or any(one.key_values("flywheel"))]
+    return report_on(frame, case.machine, "Turning effort and flywheel", having, _flywheel_notes(case))
 
 
 def _flywheel_notes(case: Case) -> Iterator[str]:
@@ -128,7 +134,7 @@ def _flywheel_notes(case: Case) -> Iterator[str]:
         )
 
 
-FLYWHEEL = Functions(_flywheel_subjects, flywheel_report)
+FLYWHEEL = Functions(_turned, flywheel_report)
 
 
 # orders of the torque
@@ -145,36 +151,29 @@ def harmonics_report(
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
     nothing turns the shaft.
     """
-    machine, found, system = case.machine, case.harmonics(_orders(case.machine, orders)), frame.system
-    uniform, cylinders = list[str](), list[Subject]()
-    for one in found.cylinders:
-        cylinder = one.forces.drive.cylinder
-        title = f"Orders of the torque of {cylinder.name}, φ from its own inner dead centre"
-        table = _orders_table("orders", title, one.own, _order_rows(one.own, one.area), system)
-        cylinders.append(Subject(cylinder.name, left_out=left_out(machine, cylinder), tables=[table]))
-        uniform += [f"The torque of {cylinder.name}"] * table.in_note
-    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    rows = _order_rows(found.machine, major=found.major_orders or ())
-    tables = [_orders_table("orders", title, found.machine, rows, system)]
-    uniform += ["The turning effort"] * tables[0].in_note
-    if speeds is not None:
-        title, rows = "Orders of the turning effort at other speeds", _rows_by_speed(machine, found, speeds)
-        tables.append(_orders_table("orders_by_speed", title, found.machine, rows, system))
-
-    notes = [f"{what} has none of these orders: they are all zero." for what in uniform]
-    if len(uniform) <= len(cylinders):
-        notes.append(
-            "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
+    machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
+    if speeds is not None and not machine.speed:
+        raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
+    cylinders = [
+        Subject(
+            one.forces.drive.name,
+            left_out=left_out(machine, one.forces.drive.cylinder),
+            tables=partial(_orders_of_cylinder, one),
         )
-        if found.machine.inertia is not None:
-            notes.append(
-                "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
-            )
-    no_masses = "no masses, or no speed given" if found.cylinders else "the effort is given as a torque"
+        for one in found.cylinders
+    ]
+    no_masses = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
     apart = missing({"gas and inertia apart": "" if found.machine.inertia else no_masses})
-    lacking, warnings = (*flywheel_left_out(machine), *apart), of_machine(case) if frame.prose else ()
-    whole = Subject("whole machine", found, left_out=lacking, warnings=warnings, tables=tables)
-    return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, notes)
+    whole = Subject(
+        "whole machine",
+        found,
+        left_out=chain(flywheel_left_out(machine), apart),
+        warnings=of_machine(case),
+        tables=partial(_orders_of_machine, found, speeds or (), machine.speed),
+        whole=True,
+    )
+    notes = _harmonics_notes(found)
+    return report_on(frame, machine, "Harmonics of the turning effort", [*cylinders, whole], notes)
 
 
 HARMONICS = Functions(lambda case: [Subject("whole machine", case.harmonics())], harmonics_report)
@@ -197,22 +196,61 @@ def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None
     return None if requested is None else np.unique(requested)
 
 
-def _orders_table(id: str, title: str, torque: Orders, rows: Sequence[Row], system: str) -> PlaceTable:
-    """Return a table of orders of a torque; of a uniform one, whose orders are all zero, a note says so instead."""
-    uniform = not any(one.amplitudes.any() for one in (torque.gas, torque.inertia) if one)
-    return place_table(id, title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+def _harmonics_notes(found: MachineOrders) -> Iterator[str]:
+    torques = {f"The torque of {one.forces.drive.name}": one.own for one in found.cylinders}
+    torques["The turning effort"] = found.machine
+    yield from (
+        f"{what} has none of these orders: they are all zero." for what, one in torques.items() if _uniform(one)
+    )
+    if not all(map(_uniform, torques.values())):
+        yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
+        if found.machine.inertia is not None:
+            yield (
+                "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
+            )
 
 
-def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
-    """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
-    rows: list[Row] = []
+def _uniform(torque: Orders) -> bool:
+    """Whether every order is zero, at every speed; then a note says so, in place of a table."""
+    return not any(one.amplitudes.any() for one in (torque.gas, torque.inertia) if one)
+
+
+def _orders_of_cylinder(cylinder: CylinderOrders, system: str) -> Iterator[PlaceTable]:
+    name, torque = cylinder.forces.drive.name, cylinder.own
+    rows = _order_rows(torque)
+    for _, values in rows if cylinder.area else ():
+        values["t_order"] = values["M_amplitude"] / cylinder.area
+    title = f"Orders of the torque of {name}, φ from its own inner dead centre"
+    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
+    yield table._replace(in_note=_uniform(torque))
+
+
+def _orders_of_machine(
+    found: MachineOrders, speeds: Sequence[float], working: float | None, system: str
+) -> Iterator[PlaceTable]:
+    """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
+    torque, uniform = found.machine, _uniform(found.machine)
+    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
+    rows = _order_rows(torque, found.major_orders or ())
+    yield place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+    rows = []
+    for speed in speeds:
+        waves = torque.at_speed(speed / (working or speed))
+        each = zip(waves.orders.tolist(), waves.amplitudes.tolist())
+        rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
+    if speeds:
+        title = "Orders of the turning effort at other speeds"
+        yield place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+
+
+def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, Any]]]:
+    """Return the orders of a torque; major: those to mark."""
+    rows = []
     for index, order in enumerate(torque.whole.orders.tolist()):
         values = _of_order(order, complex(torque.whole.amplitudes[index]))
         if torque.inertia is not None:
             values["M_gas"] = float(abs(torque.gas.amplitudes[index]))
             values["M_inertia"] = float(abs(torque.inertia.amplitudes[index]))
-        if area:
-            values["t_order"] = float(abs(torque.whole.amplitudes[index])) / area
         rows.append((("major" if order in major else "",), values))
     return rows
 
@@ -222,18 +260,6 @@ def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
     a, b = amplitude.real, -amplitude.imag
     phase = math.degrees(math.atan2(b, a)) + 0.0 if amplitude else None
     return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}
-
-
-def _rows_by_speed(machine: Machine, found: MachineOrders, speeds: Sequence[float]) -> list[Row]:
-    """Return the orders of the turning effort at each speed in revolutions per second."""
-    if not machine.speed:
-        raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
-    rows: list[Row] = []
-    for speed in speeds:
-        waves = found.machine.at_speed(speed / machine.speed)
-        each = zip(waves.orders.tolist(), waves.amplitudes.tolist())
-        rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
-    return rows
 
 
 # torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
@@ -298,12 +324,18 @@ def torsion_report(
         title = "Vibratory torque over the speed, all these orders together"
         tables.append(place_table("speeds", title, ("piece",), SPEEDS, by_speed, system))
 
-    warnings = (*_near_speeds(found, critical), *of_machine(case)) if frame.prose else ()
-    whole = Subject("shaft line", found, left_out=torsion_left_out(found), warnings=warnings, tables=tables)
+    whole = Subject(
+        "shaft line",
+        found,
+        left_out=torsion_left_out(found),
+        warnings=chain(_near_speeds(found, critical), of_machine(case)),
+        tables=lambda _: tables,
+        whole=True,
+    )
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
-    return report_on(frame, case.machine, "Torsional vibration", pieces, whole, notes)
+    return report_on(frame, case.machine, "Torsional vibration", [*pieces, whole], notes)
 
 
 TORSION = Functions(_torsion_subjects, torsion_report)

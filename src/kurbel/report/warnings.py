@@ -75,14 +75,12 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
     return found
 
 
-def of_machine(case: Case) -> tuple[str, ...]:
-    """Return all warnings on a machine, each after the names of its cylinders if there are several."""
-    found = []
+def of_machine(case: Case) -> Iterator[str]:
+    """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
     for notes in grouped(machine_notes(case), lambda note: note.text):
         names = [note.cylinder for note in notes if note.cylinder is not None]
         several = names and len(case.machine.cylinders) > 1
-        found.append(f"{together(names)}: {notes[0].text}" if several else notes[0].text)
-    return tuple(found)
+        yield f"{together(names)}: {notes[0].text}" if several else notes[0].text
 
 
 # what was given: sizes and speeds

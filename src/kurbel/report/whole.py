@@ -202,7 +202,7 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     numbers = [{fact.quantity: fact.number for fact in some} for some in facts]
     yield Grid("", _heads(names), _compared(numbers, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
-        warnings = of_machine(case)
+        warnings = [*of_machine(case)]
         found = (*verdicts(case), *(Notice(text, "warning") for text in warnings))
         yield from (f"{name}:", *found) if found else ()
         if not warnings:
