@@ -185,7 +185,7 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
         return
     try:
-        lacking = balance_left_out(case)
+        lacking = [*balance_left_out(case)]
     except KurbelError as error:
         yield _left_out(str(error))
     else:

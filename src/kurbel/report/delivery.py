@@ -78,32 +78,30 @@ def _delivery_notes(found: MachineDelivery) -> Iterator[str]:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
 
 
-def delivery_left_out(found: MachineDelivery) -> list[LeftOut]:
-    """Return what flows, capacities and powers of pumps and compressors leave out."""
+def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:
+    """Yield what flows, capacities and powers of pumps and compressors leave out."""
     machine, drawn = found.machine, any(one.suction is None for one in found.stages)
     gases = [piston.gas or machine.gas for cylinder in machine.cylinders for piston in cylinder.pistons]
     constants = [one for one in (*gases, machine.gas) if one]
     no_speed = "no speed given" if machine.speed is None else ""
-    no_gas = "no gas given" if not constants else ""
-    known = found.stages and not drawn
-    pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
-    return missing(
-        {
-            "flow": no_speed if found.pump else "",
-            "pipes, vessels, suction lift": "no pipes given under pump" if found.pump and not pipes else "",
-            "capacity and the rest": "a drawn card or a trace does not say when valves open" if drawn else "",
-            "capacity": no_speed if known else "",
-            "mass flow": (no_gas or ("" if any(one.gas_constant for one in constants) else "no molar_mass given"))
-            if known
-            else "",
-            "discharge temperature": no_gas if known else "",
-            "isentropic power": (
-                no_gas or ("" if any(one.isentropic_exponent for one in constants) else "no isentropic_exponent given")
-            )
-            if known
-            else "",
-        }
-    )
+    no_gas = "" if constants else "no gas given"
+    no_mass = "" if any(one.gas_constant for one in constants) else "no molar_mass given"
+    no_exponent = "" if any(one.isentropic_exponent for one in constants) else "no isentropic_exponent given"
+    if found.pump:
+        pipes = machine.pump and (machine.pump.suction_pipe or machine.pump.delivery_pipe)
+        no_pipes = "" if pipes else "no pipes given under pump"
+        yield from missing({"flow": no_speed, "pipes, vessels, suction lift": no_pipes})
+    if drawn:
+        yield LeftOut("capacity and the rest", "a drawn card or a trace does not say when valves open")
+    elif found.stages:
+        yield from missing(
+            {
+                "capacity": no_speed,
+                "mass flow": no_gas or no_mass,
+                "discharge temperature": no_gas,
+                "isentropic power": no_gas or no_exponent,
+            }
+        )
 
 
 def delivery_warnings(found: MachineDelivery) -> Iterator[str]:

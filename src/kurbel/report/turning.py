@@ -418,17 +418,16 @@ def _of_piece(piece: SegmentTorque) -> dict[str, float]:
     return {id: value for id, value in values if value is not None}
 
 
-def torsion_left_out(found: ShaftVibration) -> list[LeftOut]:
-    """Return what torsional vibration leaves out."""
+def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
+    """Yield what torsional vibration leaves out."""
     bare = [found.piece_name(index) for index, piece in enumerate(found.line.pieces) if not piece.sections]
-    mean = "the mean is used; parametric excitation is not computed"
-    return missing(
-        {
-            "forced vibration, torques and stresses": found.obstacle,
-            f"stress in {', '.join(bare)}": "no diameter given" if bare and not found.obstacle else "",
-            "change of the inertia over the turn": mean if found.machine.cylinders else "",
-        }
-    )
+    if found.obstacle:
+        yield LeftOut("forced vibration, torques and stresses", found.obstacle)
+    elif bare:
+        yield LeftOut(f"stress in {', '.join(bare)}", "no diameter given")
+    if found.machine.cylinders:
+        why = "the mean is used; parametric excitation is not computed"
+        yield LeftOut("change of the inertia over the turn", why)
 
 
 def torsion_warnings(case: Case) -> Iterator[str]:
