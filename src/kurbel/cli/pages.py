@@ -42,7 +42,7 @@ def report(
     decimal: str,
     digits: int | None,
 ) -> None:
-    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits, energy balance.
+    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits.
 
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.

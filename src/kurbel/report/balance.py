@@ -112,58 +112,53 @@ def _notes(balance: MachineBalance) -> Iterator[str]:
         yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
 
 
-def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTable]:
-    """Return the orders of the unbalanced force and moment, as two circles and as an ellipse; none without a speed.
+def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:
+    """Yield the orders of the unbalanced force and moment, as two circles and as an ellipse; none without a speed.
 
     An order is a circle with the crank, of complex radius f at φ = 0, and one against it, g; together an ellipse.
     """
     if balance.omega is None:
-        return []
-    square, circles, ellipses = balance.omega * balance.omega, list[Row](), list[Row]()
-    free, book = balance.free, balance.book if compare else None
+        return
+    square, free, book = balance.omega**2, balance.free, balance.book if compare else None
+    circles, ellipses = list[Row](), list[Row]()
     for order in free.orders:
         circle: dict[str, float | None] = {"order": order}
         ellipse: dict[str, float | None] = {"order": order}
         for name, vector, of_book in (
-            ("F", free.force, book.force if book else None),
-            ("M", free.moment, book.moment if book else None),
+            ("F", free.force, book and book.force),
+            ("M", free.moment, book and book.moment),
         ):
             if vector is None:
                 continue
-            f, g = complex(vector.of(order)[0]), complex(vector.of(-order)[0])
-            circle[f"{name}_forward"], circle[f"{name}_backward"] = abs(f) * square, abs(g) * square
+            f, g = (complex(vector.of(one)[0]) * square for one in (order, -order))
+            whole = float((np.abs(vector.waves * square) ** 2).sum())
+            circle |= {f"{name}_forward": abs(f), f"{name}_backward": abs(g)}
+            circle[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
             if of_book is not None:
                 circle[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
                 circle[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
-            whole = float((np.abs(vector.waves) ** 2).sum())
-            circle[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
-
-            ellipse[f"{name}_long"] = (abs(f) + abs(g)) * square
-            ellipse[f"{name}_short"] = abs(abs(f) - abs(g)) * square
+            ellipse |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
             # both circles meet in the middle of their directions, here from 0 to below 180 degrees
             middle = math.degrees(cmath.phase(f * g)) / 2
             middle = middle + 180.0 if middle < -_NOTHING else max(middle, 0.0)
             ellipse[f"{name}_direction"] = middle if f and g else None
-            ellipse[f"{name}_forward_phase"], ellipse[f"{name}_backward_phase"] = _direction(f), _direction(g)
+            ellipse |= {f"{name}_forward_phase": _direction(f), f"{name}_backward_phase": _direction(g)}
         circles.append(((), circle))
         ellipses.append(((), ellipse))
     title = "Orders: circles with the crank (+) and against it (−)"
-    other = "Orders: ellipses, and phases of the rotating components at φ = 0"
-    return [
-        place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS),
-        place_table("ellipses", other, (), ELLIPSES, ellipses, system, alone=_DIGITS),
-    ]
+    yield place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS)
+    title = "Orders: ellipses, and phases of the rotating components at φ = 0"
+    yield place_table("ellipses", title, (), ELLIPSES, ellipses, system, alone=_DIGITS)
 
 
-def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
-    """Return the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
+def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
+    """Yield the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
 
-    def row(name: str, place: float | None, product: complex, square: float = 0.0) -> Row:
-        at = {} if place is None else {"axial_position": place}
-        blow = {"hammer_blow": abs(product) * square} if square else {}
-        return (name,), {**at, "product": abs(product), "angle": _direction(product), **blow}
+    def row(name: str, place: float | None, product: complex) -> tuple[tuple[str], dict[str, float | None]]:
+        at: dict[str, float | None] = {} if place is None else {"axial_position": place}
+        return (name,), {**at, "product": abs(product), "angle": _direction(product)}
 
-    tables, best = [], zip("AB", balance.best_in_planes)
+    best = zip("AB", balance.best_in_planes)
     rows = [row(f"counterweight {end}", one.place, one.product) for end, one in best if one.product]
     for order, weights in groupby(balance.best_shafts, lambda one: one.order):
         name, given = f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank", [*weights]
@@ -171,17 +166,17 @@ def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
             rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
     if rows:
         title = "Counterweights in two planes, and balance shafts"
-        tables.append(place_table("best_weights", title, ("weight",), WEIGHTS, rows, system))
+        yield place_table("best_weights", title, ("weight",), WEIGHTS, rows, system)
     if balance.machine.locomotive:
-        square = (balance.omega or 0.0) ** 2
-        rows, wheels = [], zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
+        rows, square = [], (balance.omega or 0.0) ** 2
+        wheels = zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
         for name, place, product, weight in wheels:
-            head, values = row(name, place, product, square)
-            whole = {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
-            rows.append((head, {**values, **whole}))
+            head, values = row(name, place, product)
+            values |= {"hammer_blow": abs(product) * square} if square else {}
+            values |= {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
+            rows.append((head, values))
         title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
-        tables.append(place_table("wheels", title, ("wheel",), WEIGHTS, rows, system))
-    return tables
+        yield place_table("wheels", title, ("wheel",), WEIGHTS, rows, system)
 
 
 def _direction(circle: complex) -> float | None:

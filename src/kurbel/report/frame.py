@@ -203,21 +203,17 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     """Return the message for a column that does not exist, listing those that do."""
     known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
-    states = [(one, one.at(np.zeros(1))) for one in subjects if one.at]
-    ids = {id for one, state in states for id in one.lists.columns(command) if state[id] is not None}
-    there = [one for id, one in known.items() if id in ids]
+    states = [(one.lists.columns(command), one.at(np.zeros(1))) for one in subjects if one.at]
+    there = [one for id, one in known.items() if any(id in own and state[id] is not None for own, state in states)]
     listed = ", ".join(one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there)
     if name in known:
         return f"'{name}' is left out for this machine" + (f", which has {listed}" if listed else "")
     if found := called(name, key_values.values()):
         symbol = key_values[found[0]].symbol
         return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
-    near = in_sentences(name, there)
-    for some in (there, known.values()):
-        near = near or did_you_mean(name, tuple(word for one in some for word in (one.id, one.symbol)))
-    others = ", ".join(id for id in known if id not in ids)
-    has = [f"this machine has {listed}" if listed else "", f"other machines also {others}" if others else ""]
-    return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, has))})"
+    words = tuple(word for one in (*there, *known.values()) for word in (one.id, one.symbol))
+    near = in_sentences(name, there) or did_you_mean(name, words)
+    return f"'{shown(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
 
 
 def provenance(machine: Machine) -> Provenance:
