@@ -97,20 +97,16 @@ class Request:
         """Raise UsageError for options that ask for the rows of a table which others leave out, or for two tables."""
         ways = {"--where": self.where, "--over": self.over, "--angles": self.angles}
         rows = [way for way, value in ways.items() if value is not None]
-        if self.cases:
-            given = [*rows, *(["--case"] if self.case_name else [])]
-            if given:
-                raise click.UsageError(f"--cases has a row for every load case; leave {' and '.join(given)} out.")
-        elif self.instead:
-            others = {"--columns": self.columns, "--cycle": self.cycle}
-            given = [option for option, value in others.items() if value is not None] + rows
-            if given:
-                raise click.UsageError(f"{self.instead} has no table over the angle; leave out {' and '.join(given)}.")
-        elif self.key_values_only and self.columns:
+        table = [*(["--columns"] if self.columns else []), *(["--cycle"] if self.cycle else []), *rows]
+        if self.cases and (given := [*rows, *(["--case"] if self.case_name else [])]):
+            raise click.UsageError(f"--cases has a row for every load case; leave {' and '.join(given)} out.")
+        if self.instead and table:
+            raise click.UsageError(f"{self.instead} has no table over the angle; leave out {' and '.join(table)}.")
+        if self.key_values_only and self.columns and not self.cases:
             raise click.UsageError(
                 "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
             )
-        elif len(rows) > 1:
+        if len(rows) > 1:
             raise click.UsageError(f"{' and '.join(rows)} both give crank angles; give only one of them.")
 
     def _frame(self, case: Case) -> Frame:

@@ -195,8 +195,6 @@ def with_uncertainty(
     if inputs is None:
         return report
     found = uncertainties(inputs, _numeric_answers(case, report.command), counted)
-    parts = [_with_table(part, found, inputs.keys, system) for part in report.all_parts]
-    last = parts.pop() if report.whole else None
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
     if any(one.sample for one in found):
         notes.append(
@@ -204,7 +202,8 @@ def with_uncertainty(
             "shares are squared correlations, which add up to less than 100 % where a key value is not monotonic."
         )
     notes += dict.fromkeys(one.failed for one in found if one.failed)
-    return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *notes))
+    report = report.changed(lambda part: _with_table(part, found, inputs.keys, system))
+    return report._replace(notes=(*report.notes, *notes))
 
 
 _COMPARED = (("forces", ("c_max", "b_max", "work", "T_max")), ("flywheel", ("dE",)))

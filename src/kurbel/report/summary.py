@@ -138,10 +138,8 @@ def subtitle_of(machine: Machine) -> str:
         "bore": [piston.bore for one in cylinders for piston in one.pistons],
     }
     for name, lengths in sizes.items():
-        shown = list(dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one)))
-        if shown:
-            unit = shown[-1].rpartition(" ")[2]
-            texts.append(f"{name} {', '.join(one.removesuffix(f' {unit}') for one in shown)} {unit}")
+        shown = dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one))
+        texts += [f"{name} {', '.join(shown)}"] if shown else []
     return ", ".join(texts)
 
 

@@ -22,7 +22,7 @@ from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAng
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, PictureKind, pictures_if_any
 from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Part, Report, stepped
+from kurbel.report.tables import Report, stepped
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 
@@ -106,11 +106,7 @@ def _in_cases(case: Case, cases: Sequence[Case], command: Command, system: str) 
 def _without_motion(report: Report) -> Report:
     """Return the report on forces without the key values that the section on motion has."""
     own = {one.id for one in every_quantity().all_key_values if one.commands[:1] == ("forces",)}
-
-    def of_forces(part: Part) -> Part:
-        return part._replace(key_values=tuple(one for one in part.key_values if one.id in own))
-
-    return report._replace(parts=tuple(map(of_forces, report.parts)))
+    return report.changed(lambda part: part._replace(key_values=tuple(one for one in part.key_values if one.id in own)))
 
 
 def _input(case: Case, given: Given) -> Iterator[Grid]:
