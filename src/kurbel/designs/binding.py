@@ -35,7 +35,7 @@ class Batch(NamedTuple):
 
     def one(self, place: int) -> Machine:
         """Return a single machine, counted from 0."""
-        return changed(self.machine, lambda numbers: numbers[place].item())  # type: ignore[no-any-return]
+        return changed(self.machine, lambda numbers: numbers[place].item())
 
 
 class Batches(NamedTuple):

@@ -291,7 +291,7 @@ def _in_base(texts: Sequence[str], kind: str) -> Sequence[float | None]:
 def _in_unit(column: Sequence[Value], kind: str, unit: str) -> list[Value]:
     """Return values of a kind in a unit; lists as tuples, None for a missing value."""
     if set(map(type, column)) == {float}:  # the usual case
-        return (convert(np.array(column), kind, unit) + 0.0).tolist()  # type: ignore[no-any-return]
+        return (convert(np.array(column), kind, unit) + 0.0).tolist()
 
     def converted(value: Value) -> Value:
         if isinstance(value, tuple):

@@ -116,7 +116,7 @@ def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list
         raise KurbelError(_end_of(process.wait())) from None
     if isinstance(found, Exception):
         raise found
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def _end_of(status: int) -> str:
@@ -180,7 +180,7 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
             waiting = False
             while True:
                 try:
-                    return future.result(timeout=_LOOKED_EVERY)  # type: ignore[no-any-return]
+                    return future.result(timeout=_LOOKED_EVERY)
                 except TimeoutError:
                     if not waiting and not client.nthreads():
                         note(f"--dask {address}: the cluster has no workers; waiting for one")
