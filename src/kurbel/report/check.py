@@ -13,7 +13,7 @@ from kurbel.machine.turning import Harmonics
 from kurbel.report.alike import grouped, together
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.limits import Entry, Unjudged, judged
+from kurbel.report.limits import Entry, Unjudged, compared
 from kurbel.report.tables import LeftOut
 from kurbel.report.turning import torsion_left_out, torsion_warnings
 from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
@@ -54,15 +54,7 @@ class Checked(NamedTuple):
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
     machine, notes = case.machine, machine_notes(case)
-    unjudged: list[Unjudged] = []
-    figures: dict[object, list[Entry]] = {"limits": [], "expect": []}
-    for one in (case, *cases):
-        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
-        for verdict in judged(one):
-            if isinstance(verdict, Unjudged):
-                unjudged.append(verdict)
-            else:
-                figures[verdict.path[0]].append(verdict._replace(what=verdict.what + of_case))
+    figures, unjudged = compared(case, cases)
     of_whole = (Entry("note", text, "warning") for name, text in notes if name is None)
     topics: dict[str, Iterable[Entry]] = {
         "Cranks": _crank_entries(machine),
@@ -71,8 +63,8 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         "Balance": _balance_entries(case),
         "Shaft line": _shaft_entries(case),
         "Delivery": _delivery_entries(case),
-        "Limits": figures["limits"],
-        "Expected": figures["expect"],
+        "Limits": [one for one in figures if one.path[0] == "limits"],
+        "Expected": [one for one in figures if one.path[0] == "expect"],
     }
     found = (
         Topic("Machine", tuple(_machine_entries(machine))),
@@ -82,10 +74,9 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
         ),
         *(Topic(title, tuple(entries)) for title, entries in topics.items()),
     )
-    broken = any(one.severity == "error" for entries in figures.values() for one in entries)
-    return Checked(
-        f"{machine.name}: a valid machine", tuple(one for one in found if one.entries), broken, tuple(unjudged)
-    )
+    sections = tuple(one for one in found if one.entries)
+    broken = any(one.severity == "error" for one in figures)
+    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(unjudged))
 
 
 def _machine_entries(machine: Machine) -> Iterator[Entry]:

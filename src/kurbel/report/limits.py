@@ -1,7 +1,7 @@
 """How key values compare with the limits and the expectations of a machine file."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -45,6 +45,19 @@ class Unjudged(NamedTuple):
 
     path: Path
     error: KurbelError
+
+
+def compared(case: Case, cases: Sequence[Case] = ()) -> tuple[list[Entry], list[Unjudged]]:
+    """Return how the limits and expectations of a machine compare, in its load cases, too, and which cannot be."""
+    entries, unjudged = list[Entry](), list[Unjudged]()
+    for one in (case, *cases):
+        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
+        for found in judged(one):
+            if isinstance(found, Unjudged):
+                unjudged.append(found)
+            else:
+                entries.append(found._replace(what=found.what + of_case))
+    return entries, unjudged
 
 
 @np.errstate(all="ignore")

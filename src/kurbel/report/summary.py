@@ -19,9 +19,9 @@ from kurbel.numerics.extreme import number_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.cases import name_of
-from kurbel.report.check import checked
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import Row, Subject, place_table
+from kurbel.report.limits import compared
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
 from kurbel.solver.case import Case
 
@@ -234,8 +234,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
 
 def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    found = checked(case, cases)
-    judged = [one for part in found.sections if part.title in ("Limits", "Expected") for one in part.entries]
+    judged, unjudged = compared(case, cases)
     rows, marks = list[tuple[Shown, ...]](), list[str]()
     for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
         # in several load cases all that fail, or the one that is nearest to its bound
@@ -250,7 +249,7 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(one.error), "bad") for one in found.unjudged)
+    yield from (Notice(str(one.error), "bad") for one in unjudged)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 
 

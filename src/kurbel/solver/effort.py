@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Number, Truth
+from kurbel.arrays import Array, Flags, Truth
 from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
