@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kurbel.machine_file import loads
-from kurbel.report.crank import forces_report
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
@@ -28,7 +28,7 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
 
 
 def note(solved: Case) -> str:
-    report = forces_report(solved, Frame("forces", (0.0,), None, "si"))
+    report = report_of(solved, Frame("forces", (0.0,), None, "si"))
     (found,) = (one for one in (*report.notes, *report.parts[0].warnings) if "guide" in one)
     return found
 

@@ -84,17 +84,13 @@ def _balanced(case: Case, compare: bool = False) -> list[Subject]:
     ]
 
 
-@np.errstate(all="ignore")
 def balance_report(case: Case, frame: Frame) -> Report:
     """Return what is unbalanced and what balances it; raises UsageError if no masses move."""
-    return report_on(frame, case.machine, "Balancing", _balanced(case, frame.compare), _notes(case.balance))
+    return report_on(frame, case.machine, BALANCE.title, _balanced(case, frame.compare), _notes(case))
 
 
-BALANCE = Functions(_balanced, balance_report, lambda case: case.balance.cycle)
-
-
-def _notes(balance: MachineBalance) -> Iterator[str]:
-    free, square = balance.free, (balance.omega or 0.0) ** 2
+def _notes(case: Case) -> Iterator[str]:
+    balance, free, square = case.balance, case.balance.free, (case.balance.omega or 0.0) ** 2
     yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if free.moment is not None and balance.z_0 is not None:
         yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
@@ -110,6 +106,9 @@ def _notes(balance: MachineBalance) -> Iterator[str]:
         yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
     if balance.roll is not None:
         yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
+
+
+BALANCE = Functions("Balancing", _balanced, _notes, lambda case: case.balance.cycle, balance_report)
 
 
 def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:

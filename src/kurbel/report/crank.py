@@ -1,14 +1,11 @@
 """The reports of `kurbel motion`, `forces`, `stress` and `bearings`: each cylinder, and the shaft that it loads."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain
 
-import numpy as np
-
 from kurbel.errors import UsageError
-from kurbel.machine import Machine
 from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import (
@@ -49,6 +46,11 @@ STRESSES = by_id(
 # motion and forces of every cylinder
 
 
+def mechanism_notes(case: Case) -> Iterable[str]:
+    """Return what a reader should know about the mechanisms, each sentence once."""
+    return dict.fromkeys(note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes)
+
+
 def _with_motion(case: Case) -> list[Subject]:
     return [
         Subject(
@@ -63,13 +65,7 @@ def _with_motion(case: Case) -> list[Subject]:
     ]
 
 
-def motion_report(case: Case, frame: Frame) -> Report:
-    """Return the motion of every cylinder's mechanism; raises UsageError without a cylinder."""
-    notes = _mechanism_notes(case.machine, "motion")
-    return report_on(frame, case.machine, "Motion of the crank train", _with_motion(case), notes)
-
-
-MOTION = Functions(_with_motion, motion_report, lambda case: 360.0)
+MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, lambda case: 360.0)
 
 
 def _with_forces(case: Case) -> list[Subject]:
@@ -88,30 +84,22 @@ def _with_forces(case: Case) -> list[Subject]:
     ]
 
 
-@np.errstate(all="ignore")
 def forces_report(case: Case, frame: Frame) -> Report:
     """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    notes, cylinders = _mechanism_notes(case.machine, "forces"), _with_forces(case)
+    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose else {}
+    cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
-        notes = [*notes, *_forces_notes(case)] if frame.prose else []
-    else:
-        cylinders = [
-            replace(one, tables=partial(_cycle_table, forces)) for one, forces in zip(cylinders, case.cylinders)
-        ]
-        if not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
-            raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-        notes = []
-    warnings = by_cylinder(case) if frame.prose else {}
-    cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
-    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes)
-
-
-FORCES = Functions(_with_forces, forces_report)
+        return report_on(frame, case.machine, FORCES.title, cylinders, FORCES.notes(case))
+    if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
+        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+    each = zip(cylinders, case.cylinders)
+    cylinders = [replace(one, tables=partial(_cycle_table, forces)) for one, forces in each]
+    return report_on(frame, case.machine, FORCES.title, cylinders)
 
 
 def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
@@ -122,13 +110,6 @@ def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
     each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
     rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
     return [place_table("pistons", "Each piston", ("piston",), declared, rows, system, headed=True)]
-
-
-def _mechanism_notes(machine: Machine, command: str) -> list[str]:
-    """Return what a reader should know about the mechanisms, each sentence once; raises UsageError without any."""
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
-    return list(dict.fromkeys(note for cylinder in machine.cylinders for note in cylinder.mechanism.notes))
 
 
 def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
@@ -142,6 +123,7 @@ def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
 
 
 def _forces_notes(case: Case) -> Iterator[str]:
+    yield from mechanism_notes(case)
     yield from guide_notes(case)
     yield from rod_ratio_notes(case)
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
@@ -169,13 +151,16 @@ def _forces_notes(case: Case) -> Iterator[str]:
         )
 
 
+FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=forces_report)
+
+
 # pins and bearings
 
 
 def _loaded(case: Case) -> list[Subject]:
     for forces in case.cylinders:
         forces.refuse_locking()
-    return [
+    parts = [
         Subject(
             one.name,
             one,
@@ -185,20 +170,8 @@ def _loaded(case: Case) -> list[Subject]:
         )
         for one in case.bearings.parts
     ]
-
-
-@np.errstate(all="ignore")
-def bearings_report(case: Case, frame: Frame) -> Report:
-    """Return the loads on pins and main bearings over the angle of crank 1, each as a part.
-
-    Raises UsageError if nothing loads them.
-    """
     warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
-    whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)
-    return report_on(frame, case.machine, "Bearing loads", [*_loaded(case), whole], _bearing_notes(case))
-
-
-BEARINGS = Functions(_loaded, bearings_report)
+    return [*parts, Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)]
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:
@@ -223,6 +196,9 @@ def _bearing_notes(case: Case) -> Iterator[str]:
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
 
+BEARINGS = Functions("Bearing loads", _loaded, _bearing_notes)
+
+
 # stresses in the crankshaft
 
 
@@ -238,18 +214,6 @@ def _stressed(case: Case) -> list[Subject]:
             whole=True,
         )
     ]
-
-
-@np.errstate(all="ignore")
-def stress_report(case: Case, frame: Frame) -> Report:
-    """Return the stresses of the crankshaft place by place, and its bearing forces over the crank angle.
-
-    Raises UsageError if no crankshaft can be examined.
-    """
-    return report_on(frame, case.machine, "Strength of the crankshaft", _stressed(case), _stress_notes(case))
-
-
-STRESS = Functions(_stressed, stress_report)
 
 
 def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceTable]:
@@ -284,3 +248,6 @@ def _stress_notes(case: Case) -> Iterator[str]:
     cool, verdict = shells(case)
     if cool and verdict:
         yield verdict
+
+
+STRESS = Functions("Strength of the crankshaft", _stressed, _stress_notes)

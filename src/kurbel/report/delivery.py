@@ -5,13 +5,11 @@ from dataclasses import replace
 from functools import partial
 from itertools import chain, pairwise
 
-import numpy as np
-
 from kurbel.declared.unit_systems import show
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
+from kurbel.report.frame import Functions, Row, Subject, place_table
 from kurbel.report.left_out import missing
-from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.tables import LeftOut, PlaceTable
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.delivery import CompressorEnd, CompressorStage, MachineDelivery
@@ -33,28 +31,15 @@ _COARSE = 0.5
 
 
 def _delivering(case: Case) -> list[Subject]:
-    found = case.delivery
+    found, whole = case.delivery, Subject("whole machine")
+    if found.pump:
+        whole = Subject("whole machine", found.pump, found.pump.at, source=found.pump)
+    warnings = chain(of_machine(case), delivery_warnings(found))
     return [
         *(Subject(one.name, one, tables=partial(_ends_tables, one)) for one in found.stages),
         *(Subject(one.name, one, one.at, source=one) for one in found.pistons),
-        *([Subject("whole machine", found.pump, found.pump.at, source=found.pump)] if found.pump else []),
+        replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
-
-
-@np.errstate(all="ignore")
-def delivery_report(case: Case, frame: Frame) -> Report:
-    """Return what pumps and compressors deliver; pumps over the crank angle, that of crank 1 for all together.
-
-    Raises UsageError if nothing is delivered, or a vessel would empty.
-    """
-    found, subjects = case.delivery, _delivering(case)
-    whole = subjects.pop() if found.pump else Subject("whole machine")
-    warnings = chain(of_machine(case), delivery_warnings(found))
-    whole = replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True)
-    return report_on(frame, case.machine, "Delivery", [*subjects, whole], _delivery_notes(found))
-
-
-DELIVERY = Functions(_delivering, delivery_report)
 
 
 def _ends_tables(stage: CompressorStage, system: str) -> Iterator[PlaceTable]:
@@ -69,13 +54,17 @@ def _ends_tables(stage: CompressorStage, system: str) -> Iterator[PlaceTable]:
     yield place_table("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, system, headed=True)
 
 
-def _delivery_notes(found: MachineDelivery) -> Iterator[str]:
+def _delivery_notes(case: Case) -> Iterator[str]:
+    found = case.delivery
     if found.pump:
         yield "Flow is that of rigid pistons: each chamber delivers all that it displaces, less the slip."
         if found.pistons:
             yield "φ is the angle of crank 1 for the whole machine, of its own crank for each piston."
     if found.stages:
         yield "Compressors are those of the ideal card: valves without losses, no leakage, no heat from the walls."
+
+
+DELIVERY = Functions("Delivery", _delivering, _delivery_notes)
 
 
 def delivery_left_out(found: MachineDelivery) -> Iterator[LeftOut]:

@@ -86,28 +86,16 @@ class Subject:
 
 def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]]:
     """Return cylinders, or pins and bearings, those together whose key values of a command are equal."""
-    if len(subjects) < 2:
-        return [[*subjects]]
-    kinds = {one: (one.name, one.of) if command == "bearings" else ("", "") for one in subjects}
-    return grouped(subjects, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
+    having = [one for one in subjects if one.results]
+    if len(having) < 2:
+        return [having]
+    kinds = {one: (one.name, one.of) if command == "bearings" else ("", "") for one in having}
+    return grouped(having, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
 
 
 def cycle_of(case: Case) -> float:
     """Return the working cycle of a machine in degrees."""
     return 360.0 * case.machine.revolutions
-
-
-class Functions(NamedTuple):
-    """What a command computes with.
-
-    subjects: returns what it has results of, the whole machine last; report: takes the case, the frame and the options
-    of its own; end: returns the crank angle at which its table ends. All raise UsageError if a machine has no such
-    results, NoSolutionError if it jams, stalls, or vibrates without limit.
-    """
-
-    subjects: Callable[[Case], list[Subject]]
-    report: Callable[..., Report]
-    end: Callable[[Case], float] = cycle_of
 
 
 # the request and its report
@@ -134,14 +122,19 @@ class Frame:
     table: bool = True
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
+@np.errstate(all="ignore")
 def report_on(
     frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject], notes: Iterable[str] = ()
 ) -> Report:
-    """Return the report on these subjects, of which the last may be the whole machine.
+    """Return the report on those of these subjects that have results; the last may be the whole machine.
 
-    Raises UsageError for a number that overflows or a column that no subject has, NoSolutionError if no row is found.
+    Raises UsageError without any, for a number that overflows or a column that no subject has, NoSolutionError if no
+    row is found.
     """
+    if not subjects:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
+    tables_of = {one: tuple(one.tables(frame.system)) for one in subjects}
+    subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
     columns = [_columns(frame, one) for one in subjects]
     printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
     nowhere = [str(one) for one in columns if isinstance(one, Nowhere)]
@@ -151,8 +144,7 @@ def report_on(
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
-    tables = [tuple(one.tables(frame.system)) for one in subjects]
-    with_values = frame.prose or not (printed or any(tables))
+    with_values = frame.prose or not (printed or any(tables_of.values()))
     parts = [
         Part(
             one.name,
@@ -160,11 +152,11 @@ def report_on(
             tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
-            of_subject,
+            tables_of[one],
             str(found) if isinstance(found, Nowhere) else "",
             one.of,
         )
-        for one, found, of_subject in zip(subjects, columns, tables)
+        for one, found in zip(subjects, columns)
     ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
@@ -180,6 +172,31 @@ def report_on(
         provenance=provenance(machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
+
+
+class Functions(NamedTuple):
+    """What a command computes with; its functions raise as `report` does.
+
+    title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
+    below the tables; end: returns the crank angle at which the table ends; own: a report of its own, which takes the
+    case, the frame, and options of the command by their names.
+    """
+
+    title: str
+    subjects: Callable[[Case], list[Subject]]
+    notes: Callable[[Case], Iterable[str]] = lambda case: ()
+    end: Callable[[Case], float] = cycle_of
+    own: Callable[..., Report] | None = None
+
+    @np.errstate(all="ignore")  # what overflows is refused by name
+    def report(self, case: Case, frame: Frame, **options: object) -> Report:
+        """Return the report on a machine; options: those of this command alone.
+
+        Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
+        """
+        if self.own:
+            return self.own(case, frame, **options)
+        return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:

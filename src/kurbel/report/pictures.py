@@ -363,7 +363,8 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
     command, bearings = kind.command, kind.command == "bearings"
     if command not in _OF_PARTS:
-        results = case.torsion if command == "torsion" else subjects_of(case, command)[-1].results
+        having = [one.results for one in subjects_of(case, command) if one.results]
+        results = case.torsion if command == "torsion" else having[-1]
         yield Source(results, options.angles), ""
         return
     if kind.whole:

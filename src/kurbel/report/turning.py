@@ -100,16 +100,6 @@ def _turned(case: Case) -> list[Subject]:
     return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
-def flywheel_report(case: Case, frame: Frame) -> Report:
-    """Return the turning effort of the machine over the angle of crank 1.
-
-    Raises UsageError if nothing turns the shaft, NoSolutionError if the machine stalls.
-    """
-    having = [one for one in _turned(case) if one.whole or any(one.key_values("flywheel"))]
-    return report_on(frame, case.machine, "Turning effort and flywheel", having, _flywheel_notes(case))
-
-
 def _flywheel_notes(case: Case) -> Iterator[str]:
     turning, effort, efficiency = case.flywheel, case.flywheel.effort, case.machine.efficiency
     if turning.crank is not None:
@@ -134,7 +124,7 @@ def _flywheel_notes(case: Case) -> Iterator[str]:
         )
 
 
-FLYWHEEL = Functions(_turned, flywheel_report)
+FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)
 
 
 # orders of the torque
@@ -142,7 +132,6 @@ FLYWHEEL = Functions(_turned, flywheel_report)
 _HIGHEST_ORDER = 1000
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
 def harmonics_report(
     case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
 ) -> Report:
@@ -173,10 +162,12 @@ def harmonics_report(
         whole=True,
     )
     notes = _harmonics_notes(found)
-    return report_on(frame, machine, "Harmonics of the turning effort", [*cylinders, whole], notes)
+    return report_on(frame, machine, HARMONICS.title, [*cylinders, whole], notes)
 
 
-HARMONICS = Functions(lambda case: [Subject("whole machine", case.harmonics())], harmonics_report)
+HARMONICS = Functions(
+    "Harmonics of the turning effort", lambda case: [Subject("whole machine", case.harmonics())], own=harmonics_report
+)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -284,7 +275,6 @@ def _limited(found: ShaftVibration) -> ShaftVibration:
     return found
 
 
-@np.errstate(all="ignore")
 def torsion_report(
     case: Case,
     frame: Frame,
@@ -335,10 +325,10 @@ def torsion_report(
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
-    return report_on(frame, case.machine, "Torsional vibration", [*pieces, whole], notes)
+    return report_on(frame, case.machine, TORSION.title, [*pieces, whole], notes)
 
 
-TORSION = Functions(_torsion_subjects, torsion_report)
+TORSION = Functions("Torsional vibration", _torsion_subjects, own=torsion_report)
 
 
 def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[Row]:

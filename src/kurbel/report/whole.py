@@ -180,7 +180,8 @@ def _heads(names: Sequence[str]) -> tuple[str, ...]:
 
 def _key_values(cases: Sequence[Case], names: Sequence[str], command: str, system: str) -> Iterator[Grid]:
     """Yield the key values of both machines, cylinder by cylinder, identical ones once."""
-    pairs = [*zip_longest(*(if_any(partial(subjects_of, case, command)) for case in cases))]
+    each = ([one for one in if_any(partial(subjects_of, case, command)) if one.results] for case in cases)
+    pairs = [*zip_longest(*each)]
     compared = []
     for pair in pairs:
         numbers = [_numbers(subject, command) for subject in pair]
