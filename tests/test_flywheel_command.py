@@ -124,7 +124,7 @@ def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> No
     text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
     assert "J_needed" not in values(text)
     assert not checked(Case(loads(text + "limits: {J_needed: 1000 t m2}\n"))).broken
-    (error,) = checked(Case(loads(ENGINE + "limits: {delta: 0.1}\n"))).errors
+    (error,) = (one.error for one in checked(Case(loads(ENGINE + "limits: {delta: 0.1}\n"))).unjudged)
     assert "this machine has no delta: coefficient" in str(error)
 
 

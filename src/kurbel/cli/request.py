@@ -81,9 +81,10 @@ class Request:
         self._refuse_contradictions()
         if self.cases:
             machine = self.case().machine
-            return self._write(cases_report(machine, cases_of(machine), self.command, self.units, self.columns))
+            report = cases_report(machine, cases_of(machine), self.command, self.units, self.columns)
+            return self._write(self._requested(report))
         case = self.case(self.cycle)
-        report = COMMANDS[self.command].functions.report(case, self._frame(case), **own)
+        report = self._requested(COMMANDS[self.command].functions.report(case, self._frame(case), **own))
         if not self.instead and self.spreads is not None and (self.spreads or case.machine.uncertainty):
             from kurbel.designs.uncertainty import with_uncertainty
 
@@ -123,11 +124,13 @@ class Request:
         over, table = "z" if self.over else "", not self.instead
         return Frame(self.command, angles, self.columns, self.units, over, self.compare, prose, table)
 
+    def _requested(self, report: Report) -> Report:
+        """Return the requested part of the report."""
+        report = report if self.cylinder is None else report.of_cylinder(self.cylinder)
+        return report.key_values_alone() if self.key_values_only else report
+
     def _write(self, report: Report) -> None:
-        """Write the requested part of the report."""
-        if self.cylinder is not None:
-            report = report.of_cylinder(self.cylinder)
-        report = report.key_values_alone() if self.key_values_only else report
+        """Write the report, on a terminal a first selection unless options ask for something in particular."""
         context = click.get_current_context()
         names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
         given = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)
