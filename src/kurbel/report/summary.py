@@ -168,8 +168,9 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
         for id in labels:
             if id in wanted and (one := _largest(id, command, subjects)):
                 known[id] = one
-    most, least = (abs(known[id].number) if id in known else 0.0 for id in ("M_max", "M_min"))
-    if not ids and kind != "effort" and least > most > 0:  # against the rotation, as that of a pump or a compressor
+    # against the rotation, as that of a pump or a compressor
+    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].number) > abs(known["M_max"].number)
+    if against and not ids and kind != "effort":
         wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
     if "M_max" not in wanted:
