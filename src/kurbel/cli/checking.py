@@ -25,12 +25,26 @@ _GRAVEST = 2, 3, BROKEN, DONE
 
 
 class Outcome(NamedTuple):
-    """What is found of a file: a machine with its checks, or why it cannot be read."""
+    """What is found of a file: a machine with its checks, or why it cannot be read; error: of its limits, too."""
 
     file: str
     error: KurbelError | None = None
     machine: Machine | None = None
     checked: Checked | None = None
+
+    @property
+    def status(self) -> int:
+        """The exit status of a check of this file alone."""
+        if self.error:
+            return self.error.exit_status
+        return BROKEN if self.checked and self.checked.broken else DONE
+
+    @property
+    def findings(self) -> list[Finding]:
+        """All findings in the file, or why it cannot be read."""
+        if self.machine and self.checked:
+            return findings(self.machine, self.checked, located)
+        return faults_found(self.file, self.error or KurbelError())
 
 
 def check_files(
@@ -48,16 +62,22 @@ def check_files(
     refuse_overwriting(file_name, files)
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = Look(width=width) if file_name else stdout_look(Look(width=width))
-    texts = {"table": _as_text, "json": _as_json, "junit": _as_junit}[format]
-    write_out(texts(outcomes, look), file_name, "utf-8" if format == "junit" else None)
-    for one in outcomes:
-        if one.error and format == "table":
+    if format == "table":
+        write_out(_as_text(outcomes, look), file_name)
+        for error in (one.error for one in outcomes if one.error):
             if len(files) == 1:
-                raise one.error
-            to_stderr(message_of(one.error))
-    statuses = [one.error.exit_status if one.error else DONE for one in outcomes]
-    statuses += [BROKEN for one in outcomes if not one.error and one.checked and one.checked.broken]
-    return min(statuses, key=_GRAVEST.index)
+                raise error
+            to_stderr(message_of(error))
+    else:
+        found = [(one.file, [finding._asdict() for finding in one.findings]) for one in outcomes]
+        if format == "junit":
+            write_out(findings_junit(found, replace(look, encoding="utf-8")), file_name, "utf-8")
+        else:
+            only = outcomes[0].machine if len(outcomes) == 1 else None
+            name, made_from = (only.name, provenance(only)) if only else (None, None)
+            listed = [finding for _, each in found for finding in each]
+            write_out(findings_json(name, made_from, listed, look), file_name)
+    return min((one.status for one in outcomes), key=_GRAVEST.index)
 
 
 def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str | None) -> Outcome:
@@ -87,22 +107,3 @@ def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
             ]
             several = f"{one.file}: " if len(outcomes) > 1 else ""
             yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
-
-
-def _found(one: Outcome) -> list[Finding]:
-    """Return all findings in a file, or why it cannot be read."""
-    if one.machine and one.checked:
-        return findings(one.machine, one.checked, located)
-    return faults_found(one.file, one.error or KurbelError())
-
-
-def _as_junit(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    found = [(one.file, [finding._asdict() for finding in _found(one)]) for one in outcomes]
-    return findings_junit(found, replace(look, encoding="utf-8"))
-
-
-def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    listed = [finding._asdict() for one in outcomes for finding in _found(one)]
-    machine = outcomes[0].machine if len(outcomes) == 1 else None
-    name, made_from = (machine.name, provenance(machine)) if machine else (None, None)
-    return findings_json(name, made_from, listed, look)
