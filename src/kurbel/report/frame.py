@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,8 +33,6 @@ _UNCOMPARED = (
     "--compare: the approximations of the book (R 286-291, 297) are those of a slider-crank without offset and of a "
     "piston with pressures; this machine has neither."
 )
-Answer = Union[float, tuple[float, ...], Extreme, None]
-"""A key value in SI; a tuple for a list; None where there is none."""
 
 
 # what a command has results of
@@ -72,7 +70,7 @@ class Subject:
         return not (row and row.unless and row.unless(self.results))
 
     def answer(self, quantity: Quantity) -> Any:
-        """Return a key value in SI, see `Answer`; of many machines arrays."""
+        """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 

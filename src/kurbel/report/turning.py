@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -209,8 +208,9 @@ def _uniform(torque: Orders) -> bool:
 def _orders_of_cylinder(cylinder: CylinderOrders, system: str) -> Iterator[PlaceTable]:
     name, torque = cylinder.forces.drive.name, cylinder.own
     rows = _order_rows(torque)
-    for _, values in rows if cylinder.area else ():
-        values["t_order"] = values["M_amplitude"] / cylinder.area
+    for (_, values), amplitude in zip(rows, torque.whole.amplitudes.tolist()):
+        if cylinder.area:
+            values["t_order"] = abs(amplitude) / cylinder.area
     title = f"Orders of the torque of {name}, φ from its own inner dead centre"
     table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
     yield table._replace(in_note=_uniform(torque))
@@ -234,7 +234,7 @@ def _orders_of_machine(
         yield place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
 
 
-def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, Any]]]:
+def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, float | None]]]:
     """Return the orders of a torque; major: those to mark."""
     rows = []
     for index, order in enumerate(torque.whole.orders.tolist()):
