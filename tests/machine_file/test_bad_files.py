@@ -35,7 +35,7 @@ def test_pretty_shows_the_source_line_and_a_caret(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize("cells", [30, 60, 104])
 def test_the_caret_is_below_the_fault_in_a_line_that_is_cut(cells: int) -> None:
     pairs = ", ".join(f"[{i}, 1]" for i in range(360))
-    for text in (f"effort: {{unit: N m, points: [{pairs}, [360, x]]}}", "speed: x", f"speed: x  # {pairs}"):
+    for text in (f"effort: {{unit: N m, points: [{pairs}, [360, x]]}}", "{cylinders: x}", f"cylinders: x  # {pairs}"):
         with pytest.raises(MachineFileError) as caught:
             loads(text)
         _, source, caret = caught.value.pretty(cells).split("\n")

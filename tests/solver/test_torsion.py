@@ -149,7 +149,7 @@ def test_every_order_solves_its_equations(count: int, ground: str) -> None:
     frequencies = np.array([[0.7, 20.0], [150.0, 900.0]])
     draw = np.random.default_rng(4)
     torques = draw.normal(size=(count, 2, 2)) + 1j * draw.normal(size=(count, 2, 2))
-    found = response(chain, frequencies, torques).angles
+    found = response(chain, frequencies, torques)
     for place, w in np.ndenumerate(frequencies):
         with mpmath.workdps(40):
             still, dampers = (mpmath.diag(one.tolist()) for one in (chain.stiffnesses, chain.segment_damping))
@@ -251,7 +251,7 @@ def test_the_mean_torque_goes_to_the_load() -> None:
     masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]
     found = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
     assert [one.M_shaft_mean for one in found.pieces] == pytest.approx([10.0, 0.0], abs=1e-14)
-    held = shaft(effort, 5.0, "ground", piece, masses[0], piece, masses[2])
+    held = shaft(effort, 5.0, ShaftPart(word="ground"), piece, masses[0], piece, masses[2])
     assert [one.M_shaft_mean for one in held.pieces] == pytest.approx([-10.0, 0.0], abs=1e-14)
 
 
@@ -271,13 +271,8 @@ def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
 
 def test_a_shaft_held_at_both_ends() -> None:
     """A mean torque goes to both ends as their stiffness, k₁/(k₁ + k₂); one mass swings by M/(k₁ + k₂ − J Ω²)."""
-    parts = [
-        "ground",
-        ShaftPart(stiffness=3e4),
-        ShaftPart(inertia=2.0, damping=1e-9),
-        ShaftPart(stiffness=1e4),
-        "ground",
-    ]
+    ground, mass = ShaftPart(word="ground"), ShaftPart(inertia=2.0, damping=1e-9)
+    parts = [ground, ShaftPart(stiffness=3e4), mass, ShaftPart(stiffness=1e4), ground]
     effort, omega = Harmonics(80.0, ((2.0, 0.0, 12.0),)), 2 * 2 * math.pi * 5
     found = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
     swing = 12 / (4e4 - 2 * omega**2)

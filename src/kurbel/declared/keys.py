@@ -5,16 +5,26 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import Field, dataclass, fields
-from types import MappingProxyType, NoneType
-from typing import Any, ClassVar, NamedTuple, Union
+from dataclasses import MISSING, Field, dataclass, fields
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Flags
+from kurbel.arrays import Truth
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, Step, refuse, refused
+from kurbel.numerics.arithmetic import is_number
+
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+else:  # typing has it from Python 3.11 on
+
+    def dataclass_transform(**_):
+        """Return a decorator that changes nothing."""
+        return lambda made: made
+
 
 TOO_EXTREME = "these numbers are too large or too small to compute with"
 Values = Mapping[str, Any]
@@ -76,31 +86,22 @@ def without(keys: Keys, name: str) -> str:
 
 
 class Rule(NamedTuple):
-    """A condition that is an error: the entry or path that is wrong, the condition, the message, and its numbers.
+    """A condition that is an error: the key or path that is wrong, the condition, the message, and its numbers.
 
     broken: true if the condition holds, for many machines an array (machines,); an unknown number (NaN) breaks no rule.
     sentence: the message; braces hold entries and numbers: `{bore}` is written with its unit, `{x:length}` as a length.
     """
 
     place: Union[str, Path]
-    broken: Union[bool, Flags]
+    broken: Truth
     sentence: str
     numbers: Values = MappingProxyType({})
     at_key: bool = False
 
-    @classmethod
-    def of(cls, fault: Fault) -> "Rule":
-        """Return a broken rule for a fault that was found in another way."""
-        return cls(fault.path, True, fault.message, at_key=fault.at_key)
-
     def below(self, *path: Step) -> "Rule":
         """Return the rule with its place relative to an outer record."""
-        return self._replace(place=(*path, *self.path))
-
-    @property
-    def path(self) -> Path:
-        """The place, relative to its record."""
-        return self.place if isinstance(self.place, tuple) else (self.place,)
+        inner = self.place if isinstance(self.place, tuple) else (self.place,)
+        return self._replace(place=(*path, *inner))
 
     def fault(self, record: "Record | None" = None) -> Fault:
         """Return the fault, with numbers of the rule and entries of the record filled into its message."""
@@ -116,7 +117,8 @@ class Rule(NamedTuple):
                 return found[0]
             return str(value) if isinstance(value, str) else show(value, kind) if kind else f"{value:g}"
 
-        return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
+        path = self.place if isinstance(self.place, tuple) else (self.place,)
+        return Fault(path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
 
 
 def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
@@ -132,22 +134,30 @@ def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
             yield Rule((), True, f"'{other}' or '{name}' is missing; {keys[shown].write(shown)}")
 
 
-def _broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]:
+def broken(rules: Iterable[Rule], record: "Record | None" = None) -> list[Fault]:
     """Return the faults of one machine; rules with arrays of many machines are evaluated by the sweep."""
     return [rule.fault(record) for rule in rules if np.ndim(rule.broken) == 0 and rule.broken]
 
 
 def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
-    forms = {name: key.form for name, key in keys.items() if name in given}
-    found = ((name, form.out_of_bounds(given[name])) for name, form in forms.items() if isinstance(form, NumberForm))
-    return [Fault((name,), f"{given[name]:g} {wrong}") for name, wrong in found if wrong]
+    numbers = ((name, keys[name].form, value) for name, value in given.items() if is_number(value))
+    wrong = ((name, value, form.out_of_bounds(value)) for name, form, value in numbers if isinstance(form, NumberForm))
+    return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+NOT_A_NUMBER = "nan is no number"
+
+
+@dataclass_transform(frozen_default=True, eq_default=False)
 class Record:
-    """A record of the machine file; each entry is declared once, by `field` or `alternative`."""
+    """A record of the machine file; each entry is declared once, by `field` or `alternative`.
+
+    A subclass is a dataclass whose one constructor is inherited, so that no code is generated for it; it cannot be
+    changed, and is compared by identity.
+    """
 
     KEYS: ClassVar[Keys] = {}
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
 
     def __init_subclass__(cls) -> None:
         own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
@@ -157,17 +167,29 @@ class Record:
                 attribute = name if isinstance(value, Field) else ""
                 own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
         cls.KEYS = own
+        dataclass(init=False, repr=False, eq=False)(cls)
 
-    def __post_init__(self) -> None:
+    def __init__(self, *values: Any, **named: Any) -> None:
+        defaults = {one.name: one.default for one in fields(self)}
+        given = {**dict(zip(defaults, values)), **named}
+        wrong = [name for name in given if name not in defaults]
+        wrong += [name for name, default in defaults.items() if default is MISSING and name not in given]
+        if wrong or len(values) > len(defaults):
+            raise TypeError(f"{type(self).__name__} takes the values {', '.join(defaults)}; see {', '.join(wrong)}")
+        vars(self).update(defaults | given)
         try:
-            refuse(*self.faults())
+            refuse(*self._faults())
         except ArithmeticError:
             refused(TOO_EXTREME)
 
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed; make another one by dataclasses.replace")
+
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
-        given = [(one.name, vars(self)[one.name]) for one in fields(self) if vars(self)[one.name] is not one.default]
-        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in given)})"
+        known = vars(self)
+        given = [f"{one.name}={known[one.name]!r}" for one in fields(self) if known[one.name] is not one.default]
+        return f"{type(self).__name__}({', '.join(given)})"
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
@@ -175,21 +197,20 @@ class Record:
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield the rules on the values by key, before they become a record; some may be REFUSED."""
+        """Yield the rules on the values by key, before they become a record."""
         return iter(())
 
-    def faults(self) -> list[Fault]:
+    def _faults(self) -> list[Fault]:
         """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
-        default = {one.name: one.default for one in fields(self)}
         keys = {name: key for name, key in self.KEYS.items() if key.attribute}
-        known = {name: (vars(self)[key.attribute], default.get(key.attribute)) for name, key in keys.items()}
-        given = {name: value for name, (value, absent) in known.items() if value is not absent}
-        scalars = {name: value for name, value in given.items() if not isinstance(value, (tuple, NoneType))}
-        numbers = {name: value for name, value in scalars.items() if np.ndim(value) == 0}
+        default = {one.name: one.default for one in fields(self)}
+        known = vars(self)
+        given = {name: known[one.attribute] for name, one in keys.items()}
+        given = {name: value for name, value in given.items() if value is not default[keys[name].attribute]}
         return (
-            _out_of_bounds(keys, numbers)
-            or _broken((*contradictions(keys, given), *self.rules()), self)
-            or [Fault((name,), "nan is no number") for name, value in numbers.items() if value != value]
+            _out_of_bounds(keys, given)
+            or broken((*contradictions(keys, given), *self.rules()), self)
+            or [Fault((name,), NOT_A_NUMBER) for name, one in given.items() if isinstance(one, float) and one != one]
         )
 
     @classmethod
@@ -200,22 +221,21 @@ class Record:
         values out of bounds, and for broken rules.
         """
         given = {name: value for name, value in values.items() if value is not None}
-        refuse(*_broken(contradictions(cls.KEYS, given)), *_out_of_bounds(cls.KEYS, given))
-        refuse(*_broken(cls.rules_of_keys(values)))
-        return cls.of_keys(**values)
+        refuse(*broken(contradictions(cls.KEYS, given)), *_out_of_bounds(cls.KEYS, given))
+        refuse(*broken(cls.rules_of_keys(given)))
+        return cls.of_keys(**given)
 
     @classmethod
     def of_keys(cls, *args: Any, **values: Any) -> Any:
         """Return the record of the values of its keys: its fields, and those that alternatives determine."""
-        keys = cls.KEYS
-        known = {keys[name].attribute if name in keys else name: value for name, value in values.items()}
+        known = {cls.KEYS[name].attribute: value for name, value in values.items()}
         known.pop("", None)
-        for name, key in keys.items():
+        for name, key in cls.KEYS.items():
             if key.gives and name in values:
                 known |= key.gives({**known, **values})
         return cls(*args, **known)
 
     @classmethod
-    def faults_of_keys(cls, given: Values) -> list[Fault]:
-        """Return what is wrong with values by key, of which some are REFUSED: contradictions and rules on keys."""
-        return _broken((*contradictions(cls.KEYS, given), *cls.rules_of_keys(given)))
+    def faults_of_some(cls, given: Values) -> list[Fault]:
+        """Return what is wrong with values by key of which some are REFUSED: keys that contradict one another."""
+        return broken(contradictions(cls.KEYS, given))

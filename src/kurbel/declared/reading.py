@@ -46,14 +46,14 @@ class StopReading(Exception):
 class Reading:
     """One pass over a machine file, with the faults found so far.
 
-    folder: to which paths in the file are relative; places: returns (words for its place, key) of every key of a file;
-    key_values: returns the quantities that may have limits and expectations, by id.
+    folder: to which paths in the file are relative; places: returns (words for its place, path, key) of every key of a
+    file; key_values: returns the quantities that may have limits and expectations, by id.
     """
 
     def __init__(
         self,
         folder: str = "",
-        places: Callable[[], Iterable[tuple[str, str]]] = tuple,
+        places: Callable[[], Iterable[tuple[str, Path, str]]] = tuple,
         key_values: Callable[[], Mapping[str, Quantity]] = dict,
     ) -> None:
         self.folder, self.key_values = folder, key_values
@@ -68,16 +68,14 @@ class Reading:
         Near are the mappings above the path and those directly below it; if none of these has the key, any further
         below. A key of that name elsewhere means something else.
         """
-        here = [step for step in path if isinstance(step, str)]
-        if here[:1] == ["cylinders"]:  # the places are those within a cylinder
-            here = here[2 if here[1:2] == ["each"] else 1 :]
-        near, below = [], []
-        for words in dict.fromkeys(words for words, name in self._places() if name == key):
-            there = words.split("'")[1].split(".") if words.startswith("under '") else []
-            near += [words] if here[: len(there)] == there or there[:-1] == here else []
-            below += [words] if there[: len(here)] == here else []
-        found = near or below
-        return "it belongs " + " or ".join(found[:3]) if found else ""
+        here = tuple(step for step in path if isinstance(step, str))
+        if here[:1] == ("cylinders",):  # the places are those within a cylinder
+            here = here[2 if here[1:2] == ("each",) else 1 :]
+        found = dict.fromkeys((words, there) for words, there, name in self._places() if name == key)
+        near = [words for words, there in found if here[: len(there)] == there or there[:-1] == here]
+        below = [words for words, there in found if there[: len(here)] == here]
+        listed = (near or below)[:3]
+        return "it belongs " + " or ".join(listed) if listed else ""
 
     def note(self, fault: Fault) -> Any:
         """Keep a fault and return REFUSED, which replaces the value that could not be read.

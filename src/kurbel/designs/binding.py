@@ -12,17 +12,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Indivisible
-from kurbel.declared.forms.structures import Given, Maker, too_extreme
+from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
-from kurbel.declared.keys import Record
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import REFUSED, Plain, Reading, StopReading, Tree, shown
-from kurbel.errors import Path, RuleError, UsageError, path_text
+from kurbel.declared.reading import Plain, Reading, StopReading, Tree, shown
+from kurbel.errors import KurbelError, MachineFileError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import by_numbers, dotted, leaves, path_of, set_over, tree_of
+from kurbel.machine_file.overrides import dotted, leaves, path_of, set_over, tree_of, value_at
 from kurbel.machine_file.reader import read_tree, read_values, reading_of
 from kurbel.near_words import did_you_mean
 
@@ -63,15 +62,13 @@ class Binder:
         for key in keys[cases:]:
             owner, name, inner = _owner(path_of(key), every)
             form = owner.form.keys[name].form
-            bare = inner and NUMBER.fullmatch(_at(owner.mapping.get(name), inner) or "")  # the number of a point, say
+            text = value_at(owner.mapping.get(name), inner)
+            bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
-    def bound(self, rows: Sequence[Sequence[str]], wanted: range | None = None) -> Batches:
-        """Return the machines of rows of texts, in batches, and why other rows have none.
-
-        wanted: the rows that are needed, all if None; other rows are not read one by one.
-        """
+    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
+        """Return the machines of rows of texts, in batches, and why other rows have none."""
         found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
         for place, row in enumerate(rows):
@@ -83,8 +80,7 @@ class Binder:
                 batches, apart = self._together(np.array(places), rows)
                 found.batches.extend(batches)
             for place in apart:
-                if wanted is None or place in wanted:
-                    self._bind_alone(place, rows[place], found)
+                self._bind_alone(place, rows[place], found)
         return found
 
     def _with(self, texts: Sequence[str]) -> Origin:
@@ -93,96 +89,52 @@ class Binder:
         case = texts[0] if self._cases else self._origin.case
         return self._origin._replace(case=case, varied=given[self._cases :])
 
-    def _read(self, texts: Sequence[str], reading: Reading) -> Any:
-        """Return the result of the first pass over the file with these texts; REFUSED after reporting its faults.
-
-        Raises UsageError for a key that is unknown with these texts.
-        """
-        origin = self._with(texts)
-        tree = parse(origin.text, reading)
-        set_over(tree, origin)
-        return read_tree(tree, origin, reading)
-
     def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
         """Add the machine of one row, or the reason why there is none."""
         reading = reading_of(self._origin)
         try:
-            root = self._read(texts, reading)
-            machine = REFUSED if root is REFUSED else Maker(reading).made(root)
+            machine = read_values(self._with(texts), reading).made
         except UsageError as error:
             found.failures[row] = str(error)
-            return
-        except StopReading:
-            machine = REFUSED
-        if machine is not REFUSED and not reading.faults:
+        except MachineFileError:
+            faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
+            found.failures[row] = "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
+        else:
             found.batches.append(Batch(machine, [row]))
-            return
-        faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
-        found.failures[row] = "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
 
     def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Batch], list[int]]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
         words = rows[places[0]]
-        texts = [first if number else word for first, number, word in zip(self._start, self._numeric, words)]
-        reading = reading_of(self._origin)
+        origin = self._with([one if number else word for one, number, word in zip(self._start, self._numeric, words)])
+        columns = {
+            key: [rows[place][column] for place in places]
+            for column, key in enumerate(self._keys)
+            if self._numeric[column]
+        }
+        reading = reading_of(origin)
         try:
-            every = list(_every(self._read(texts, reading)))
-            columns = {
-                key: [rows[place][number] for place in places]
-                for number, key in enumerate(self._keys)
-                if self._numeric[number]
-            }
-            values, read = _values(columns, every, len(places))
-            if reading.faults or not read.any():
-                return [], places.tolist()
-            maker = _Maker(reading, values, every, int(read.sum()))
+            tree = parse(origin.text, reading)
+            set_over(tree, origin)
+            every = list(_every(read_tree(tree, origin, reading)))
+            read = _put(columns, every, len(places))
+            maker = Maker(reading, int(read.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(every[-1])
+            if reading.faults or not read.any():
+                return [], places.tolist()
         # a formula works for a single machine only
-        except (RuleError, UsageError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError):
-            return [], places.tolist()
-        if reading.faults:
+        except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
             return [], places.tolist()
         batches = []
-        for at in _structures(machine, np.flatnonzero(~maker.broken)):
+        for fit in _structures(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
-            batch = changed(machine, lambda numbers, at=at: _column(numbers[at]))  # type: ignore[misc]
-            batches.append(Batch(batch, places[read][at].tolist()))
+            batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
+            batches.append(Batch(batch, places[read][fit].tolist()))
         return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
 
 
-class _Maker(Maker):
-    """Makes records with arrays (count,) instead of some numbers; broken: which of the machines break a rule."""
-
-    def __init__(
-        self, reading: Reading, values: dict[tuple[int, str], Any], every: Sequence[Given], count: int
-    ) -> None:
-        super().__init__(reading)
-        self._values, self.broken = values, np.zeros(count, dtype=bool)
-        own = {at for at, _ in values}
-        self._around = {id(one) for one in every if any(id(inner) in own for inner in _every(one))}
-
-    def _record(self, given: Given) -> Any:
-        if id(given) not in self._around:
-            return super()._record(given)
-        values = {name: self._values.get((id(given), name), self.made(one)) for name, one in given.values.items()}
-        if any(one is REFUSED for one in values.values()):
-            return REFUSED
-        kind = given.form.record
-        record = kind.of_keys(**values)
-        rules = list(kind.rules_of_keys(values))
-        if isinstance(record, Record):
-            rules += record.rules()
-            self.broken |= too_extreme(record, values)
-        for rule in rules:
-            self.broken |= rule.broken
-        return record
-
-
-def _values(
-    columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int
-) -> tuple[dict[tuple[int, str], Any], Flags]:
-    """Return the arrays that replace numbers, by the id of their mapping and their key, and the rows that have all.
+def _put(columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int) -> Flags:
+    """Put arrays in place of numbers, of the rows that have all of them; return which rows these are.
 
     columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
     UsageError for a key whose value is not a number.
@@ -198,12 +150,12 @@ def _values(
         if plain is None:  # one by one, nan for a text that is no number
             known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
             plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
-        numbers = np.array(plain)
-        read &= ~np.isnan(numbers)
-        for one in every:
-            if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name):
-                slots.append((one, name, form.number, numbers))
-    return {(id(one), name): form.of_numbers(numbers[read]) for one, name, form, numbers in slots}, read
+        alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
+        slots += [(one, name, form.number, np.array(plain)) for one in alike]
+        read &= ~np.isnan(plain)
+    for one, name, number, numbers in slots:
+        one.values[name] = number.of_numbers(numbers[read])
+    return read
 
 
 def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
@@ -274,23 +226,13 @@ def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str, Path]:
     return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]
 
 
-def _at(tree: Any, path: Path) -> str | None:
-    """Return the text at a path in a tree; None where there is none."""
-    try:
-        for step in path:
-            tree = tree[step]
-    except (KeyError, IndexError, TypeError):
-        return None
-    return tree if isinstance(tree, str) else None
-
-
 def written(tree: Tree, key: str) -> str:
     """Return the text of a dotted key; raises UsageError where it has no value, with the key probably meant."""
-    text = _at(tree, path_of(key))
-    if text is not None:
+    text = value_at(tree, path_of(key))
+    if isinstance(text, str):
         return text
     paths = [path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"]
-    meant = did_you_mean(by_numbers(tree, key), tuple(map(dotted, paths)))
+    meant = did_you_mean(key, tuple(map(dotted, paths)))
     for path in reversed(paths):
         names = ".".join(step for step in path if isinstance(step, str))
         if f".{names}".endswith(f".{key}"):

@@ -18,8 +18,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, has_refused, shown
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.reading import REFUSED, shown
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
 from kurbel.machine.crankshaft import Crankshaft
@@ -28,10 +28,9 @@ from kurbel.machine.ideal_cards import Diesel, Otto
 from kurbel.machine.indicator import Rectangle
 from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
-from kurbel.machine.parts import Piston
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
-from kurbel.machine.shaft_line import ShaftLine, ShaftPart, line_of, shaft_faults
+from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
 from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, Load, Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
@@ -44,16 +43,11 @@ FORMAT = 1
 STANDARD_ATMOSPHERE = 101325.0
 
 
-def _names(cylinders: Sequence[Cylinder]) -> list[str]:
-    return [one.name or f"cylinder {number}" for number, one in enumerate(cylinders, 1)]
+def _names(cylinders: Sequence[Cylinder] | EqualCylinders) -> list[str]:
+    each = cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders
+    return [one.name or f"cylinder {number}" for number, one in enumerate(each, 1)]
 
 
-def _shaft_faults(parts: Sequence[ShaftPart | str], cylinders: Sequence[Cylinder] | EqualCylinders) -> list[Fault]:
-    names = _names(cylinders.cylinders if isinstance(cylinders, EqualCylinders) else cylinders)
-    return [fault.below(("shaft",)) for fault in shaft_faults(parts, names)]
-
-
-@record
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
@@ -67,7 +61,6 @@ class LoadCase(Record):
     )
 
 
-@record
 class Machine(Record):
     """A whole machine.
 
@@ -96,7 +89,6 @@ class Machine(Record):
         default=1.0,
         above=0,
         most=1,
-        absent="1",
     )
     ambient: float = field(
         "pressure",
@@ -152,7 +144,6 @@ class Machine(Record):
         [BalanceShaft],
         "Balance shafts, turning once, twice, … per turn of the crank, with or against it",
         default=(),
-        absent="none",
     )
     moment_reference: float | None = field(
         "length",
@@ -164,7 +155,7 @@ class Machine(Record):
         Locomotive, "Driven wheels, for hammer blow and swaying couple", absent="no locomotive"
     )
     shaft: ShaftLine | None = field(
-        Listing(OneOf(Choice(("ground", "flywheel")), RecordForm(ShaftPart))),
+        SHAFT,
         "Shaft line for torsional vibration, in order along the shaft: masses, shaft segments between them, one pair "
         "of gears, `flywheel` (that of the machine) and `ground` (a fixed end)",
         absent="no torsional vibration",
@@ -175,20 +166,17 @@ class Machine(Record):
         "Limits of key values, checked by `kurbel check` for each cylinder that has the value, else for the machine; "
         "`machine.T_max` is of the whole machine, `NAME.T_max` of one cylinder",
         default=(),
-        absent="none",
     )
     expect: tuple[tuple[str, Expected], ...] = field(
         EXPECTATIONS,
         "Expected key values, compared by `kurbel check`; names as in `limits`",
         default=(),
-        absent="none",
     )
     uncertainty: tuple[tuple[str, str], ...] = field(
         UNCERTAINTIES,
         "Standard uncertainties of values of this file, by dotted key; forces, flywheel and stress propagate them to "
         "the key values",
         default=(),
-        absent="none",
     )
     rotation: str | None = field(
         ("over", "under"),
@@ -224,36 +212,30 @@ class Machine(Record):
         cylinder: Cylinder | None = None,
         cylinders: tuple[Cylinder, ...] | EqualCylinders = (),
         firing_order: tuple[int, ...] | None = None,
-        shaft: tuple[ShaftPart | str, ...] | None = None,
+        shaft: tuple[ShaftPart, ...] | None = None,
         **keys: Any,
     ) -> Machine:
         """Return the machine that these keys of a machine file describe; raises RuleError."""
         given = (cylinder,) if cylinder else cylinders
-        faults = _shaft_faults(shaft, given) if shaft else []
-        keys.pop("kurbel", None)
+        faults = shaft_faults(shaft, _names(given)) if shaft else []
         try:
-            if firing_order or not isinstance(given, tuple) or len(given) > 1:
-                given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
-            if shaft and not faults:
-                keys["shaft"] = line_of(shaft, _names(given))
-            elif not given:
-                refuse(*faults)
-            if len(given) == 1 and given[0].crank_position is None:
-                given = (replace(given[0], crank_position=0.0),)
-            named = tuple(one if one.name else replace(one, name=name) for one, name in zip(given, _names(given)))
+            given = in_order(given, firing_order, keys.get("cycle", "two-stroke"))
+            if shaft:
+                keys["shaft"] = ShaftLine((), ()) if faults else line_of(shaft, _names(given))
+            named = tuple(replace(one, name=name) for one, name in zip(given, _names(given)))
             machine: Machine = super().of_keys(cylinders=named, **keys)
         except RuleError as error:
-            raise RuleError(*dict.fromkeys((*error.faults, *faults))) from None
+            raise RuleError(*error.faults, *faults) from None
         refuse(*faults)
         return machine
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield the rules on the shaft line if other keys could not be read."""
+    def faults_of_some(cls, given: Values) -> list[Fault]:
+        """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
         shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
-        if has_refused(given.values()) and isinstance(shaft, tuple) and not unknown:
-            yield from map(Rule.of, _shaft_faults(shaft, cylinders))
+        known = shaft_faults(shaft, _names(cylinders)) if isinstance(shaft, tuple) and not unknown else []
+        return super().faults_of_some(given) + known
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the machine as a whole."""
@@ -268,14 +250,13 @@ class Machine(Record):
                 inside = ("tandem", number - 1) if number else ()
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
-        for index, cylinder in enumerate(self.cylinders):
             of_yoke = cylinder.mechanism.pin_diameter if isinstance(cylinder.mechanism, ScotchYoke) else None
-            rubbing = cylinder.friction.faults_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
-            yield from (Rule.of(fault.below(("cylinders", index, "friction"))) for fault in rubbing)
+            rubbing = cylinder.friction.rules_beside(self.crankshaft, of_yoke) if cylinder.friction else ()
+            yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
-        for key, diagram in (("effort", self.effort), ("load", self.load)):
+        for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
             if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
-                yield Rule.of(Fault((key, diagram.key), message))
+                yield Rule((key, diagram.key), True, message)
         if isinstance(self.effort, Swing):
             message = "needs the effort over the angle; of this one the swing of energy alone is given"
             yield Rule("load", self.load is not None and self.load.varies, message)
@@ -292,13 +273,12 @@ class Machine(Record):
         names = [cylinder.name for cylinder in self.cylinders]
         for index, name in enumerate(names):
             place = ("cylinders", index, "name")
-            yield Rule.of(Fault(place, f"two cylinders are called '{name}'"))._replace(broken=name in names[:index])
+            yield Rule(place, name in names[:index], f"two cylinders are called '{name}'")
             whole = f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
             yield Rule(place, name == MACHINE, whole)
         cases = [case.name for case in self.cases]
         for index, name in enumerate(cases):
-            twice = Rule.of(Fault(("cases", index, "name"), f"two cases are called '{name}'"))
-            yield twice._replace(broken=name in cases[:index])
+            yield Rule(("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'")
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
         scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
@@ -307,7 +287,7 @@ class Machine(Record):
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
                     written = getattr(figure, "name", "") or id
                     message = f"no cylinder is called '{shown(scope)}'{hint}"
-                    yield Rule.of(Fault((key, written), message, at_key=True))
+                    yield Rule((key, written), True, message, at_key=True)
 
     def cycle_of(self, cylinder: Cylinder) -> str:
         """Return the working cycle of a cylinder: its own, or that of the machine."""
@@ -355,15 +335,12 @@ class Machine(Record):
     def strength_obstacle(self) -> str:
         """Why the strength of the crankshaft cannot be examined, or an empty text."""
         if self.crankshaft is None:
-            return (
-                "no 'crankshaft' is given; its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
-            )
-        if len(self.cylinders) != 1:
-            return (
-                f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
-                if self.cylinders
-                else "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
-            )
+            lengths = "its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
+            return f"no 'crankshaft' is given; {lengths}"
+        if not self.cylinders:
+            return "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+        if len(self.cylinders) > 1:
+            return f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
         cylinder = self.cylinders[0]
         if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
             return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
@@ -377,21 +354,20 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
     cycle = 360 * machine.revolutions
     found = []
     for number, cylinder in enumerate(machine.cylinders, 1):
-        centres = cylinder.mechanism.dead_centres
-        each: list[tuple[int, float]] = []  # of every end that fires the length of its cycle, and its dead centre
+        mechanism, each = cylinder.mechanism, list[tuple[int, bool]]()  # of every end that fires its turns, and which
         four = machine.cycle_of(cylinder) == "four-stroke"
-        if four and cylinder.mechanism.slides and not any(one.chambers for one in cylinder.pistons):
-            each.append((720, centres()[0]))
+        if four and mechanism.slides and not any(one.chambers for one in cylinder.pistons):
+            each.append((2, False))
         for index, piston in enumerate(cylinder.pistons):
             turns = CYCLES[machine.cycle_of_piston(cylinder, index)]
             for end, chamber in piston.chambers.items():
                 # one pressure on every stroke does no work; other cards of two strokes may be those of steam or a pump
                 idle = isinstance(chamber, Rectangle) and chamber.mean <= 0
                 if isinstance(chamber, (Otto, Diesel)) or (turns == 2 and not idle):
-                    each.append((360 * turns, centres()[end == "crank_end"]))
-        for length, angle in each:
-            firing = (turn + angle + cylinder.crank_position for turn in range(0, cycle, length))
-            found += [(within_cycle(one, float(cycle)), number) for one in firing]
+                    each.append((turns, end == "crank_end"))
+        for turns, outer in each:
+            first = mechanism.dead_centres()[outer] + cylinder.crank_position
+            found += [(within_cycle(turn + first, float(cycle)), number) for turn in range(0, cycle, 360 * turns)]
     return sorted(found)
 
 
@@ -400,27 +376,23 @@ def of_cycle(machine: Machine, number: int) -> Machine:
 
     Raises UsageError if no trace has several cycles, or one has fewer.
     """
-    counts = [len(trace.over(period).samples) for trace, period in _of_several(machine)]
+    counts: list[int] = []
+    alone: dict[int, Trace] = {}  # a mirrored end stays the same trace
+    cylinders = []
+    for cylinder in machine.cylinders:
+        pistons = []
+        for index, piston in enumerate(cylinder.pistons):
+            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
+            ends: dict[str, Any] = {}
+            for end, chamber in piston.chambers.items():
+                if isinstance(chamber, Trace) and (count := len(chamber.over(period).samples)) > 1:
+                    counts.append(count)
+                    ends[end] = alone.setdefault(id(chamber), chamber.of_cycle(min(number, count), period))
+            shown = replace(piston.indicator, **ends) if piston.indicator else None
+            pistons.append(replace(piston, indicator=shown))
+        cylinders.append(replace(cylinder, pistons=tuple(pistons)))
     if not counts:
         raise UsageError("--cycle: no trace of this machine has several cycles; leave it out")
     if number > min(counts):
         raise UsageError(f"--cycle {number}: there are {min(counts)} cycles, counted from 1")
-    # a mirrored end stays the same trace
-    alone: dict[int, Any] = {id(trace): trace.of_cycle(number, period) for trace, period in _of_several(machine)}
-
-    def changed(piston: Piston) -> Piston:
-        ends = {end: alone[id(chamber)] for end, chamber in piston.chambers.items() if id(chamber) in alone}
-        return replace(piston, indicator=replace(piston.indicator, **ends)) if piston.indicator else piston
-
-    cylinders = (replace(one, pistons=tuple(map(changed, one.pistons))) for one in machine.cylinders)
     return replace(machine, cylinders=tuple(cylinders))
-
-
-def _of_several(machine: Machine) -> Iterator[tuple[Trace, float]]:
-    """Yield the traces of several cycles, each with the length of a cycle in degrees."""
-    for cylinder in machine.cylinders:
-        for index, piston in enumerate(cylinder.pistons):
-            period = 360.0 * CYCLES[machine.cycle_of_piston(cylinder, index)]
-            for chamber in piston.chambers.values():
-                if isinstance(chamber, Trace) and len(chamber.over(period).samples) > 1:
-                    yield chamber, period

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 
 from kurbel.declared.forms.values import Choice
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, alternative, field
 
 
-@record
 class _Weight(Record):
     """A weight that turns with a shaft: u = m r."""
 
@@ -36,7 +35,6 @@ class _Weight(Record):
     )
 
 
-@record
 class Counterweight(_Weight):
     """A weight that turns with the crank; without a place it is at its cylinder, one of the machine has no place."""
 
@@ -52,7 +50,6 @@ class Counterweight(_Weight):
     axial_position: float | None = field("length", "Its place along the shaft", "z", absent="that of its cylinder")
 
 
-@record
 class SharedCounterweights(Record):
     """Counterweights opposite each throw, for the rotating mass and a share of the reciprocating mass.
 
@@ -84,7 +81,6 @@ class SharedCounterweights(Record):
         yield Rule("planes", count not in (0, 2) or same, f"{count} of them, {different} different; {message}")
 
 
-@record
 class BalanceShaft(_Weight):
     """A shaft with a weight that turns `order` times in a turn of the crank, with it or against it."""
 
@@ -112,7 +108,6 @@ class BalanceShaft(_Weight):
     axial_position: float | None = field("length", "Its place along the shaft", "z", absent="moments left out")
 
 
-@record
 class Locomotive(Record):
     """The driven wheels of a locomotive, with its counterweights; the cylinders are halfway between them."""
 

@@ -1,17 +1,17 @@
 """One crank throw between two bearings or overhung beyond one, with a flywheel (Öl- und Gasmaschinen)."""
 
+import functools
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from kurbel.declared.record import Record, Rule, field, record
+from kurbel.declared.record import Record, Rule, field
 
 _ROUNDED = 1.05
 """What lengths may contradict one another by: printed examples round them."""
 
 
-@record
 class Crankshaft(Record):
     """A crank throw between bearing A and bearing B, the one on the side of the flywheel; lengths in m.
 
@@ -63,7 +63,6 @@ class Crankshaft(Record):
         bool,
         "True if the pin is overhung: outside bearing A, at the end of the shaft",
         default=False,
-        absent="false",
     )
 
     bearing_metal: str | None = field(
@@ -86,23 +85,10 @@ class Crankshaft(Record):
         for name, place in (("a", self.a), ("b", self.b)):
             inside = "puts the bearing inside the web ({end:length} from the pin); measure to the middle of the bearing"
             yield Rule(name, place <= self._web_end, f"{{{name}}} {inside}", numbers)
-        yield from self._flywheel_rules(numbers)
-        yield Rule(
-            "pin_length",
-            (self.pin_length > _ROUNDED * numbers["gap"]) & (numbers["gap"] > 0),
-            f"{{pin_length}} does not fit {beside}, which leave{'s' * self.overhung} {{gap:length}}: twice "
-            "web_distance less web_thickness",
-            numbers,
-        )
-        yield from self._journal_rules()
-
-    def _flywheel_rules(self, numbers: dict[str, float]) -> Iterator[Rule]:
-        position = self.flywheel_position
-        beyond: Any = position <= -self.span
+        beyond: Any = self.flywheel_position <= -self.span
         if self.overhung:
             before = self.b <= self.a
-            sentence = "{b} puts B before bearing A ({a}); an overhung pin lies beyond A"
-            yield Rule("b", before, sentence)
+            yield Rule("b", before, "{b} puts B before bearing A ({a}); an overhung pin lies beyond A")
             beyond = beyond & ~np.asarray(before)
         yield Rule(
             "flywheel_position",
@@ -114,38 +100,42 @@ class Crankshaft(Record):
             room = self._web_end - self.b
             yield Rule(
                 "flywheel_position",
-                ~np.asarray(beyond) & (position <= room) & (room < 0),
+                ~np.asarray(beyond) & (self.flywheel_position <= room) & (room < 0),
                 "{flywheel_position} is not between web and bearing B, which leave {room:length}; "
                 "B is the bearing next to the flywheel",
                 {"room": -room},
             )
+        yield Rule(
+            "pin_length",
+            (self.pin_length > _ROUNDED * numbers["gap"]) & (numbers["gap"] > 0),
+            f"{{pin_length}} does not fit {beside}, which leave{'s' * self.overhung} {{gap:length}}: twice "
+            "web_distance less web_thickness",
+            numbers,
+        )
+        yield from self._journal_rules()
 
     def _journal_rules(self) -> Iterator[Rule]:
-        """Yield the rule of the journal in each room, broken where that is the shortest one."""
+        """Yield the rule of the journal in each room, broken where that is the shortest one.
+
+        A room is the distance from the middle of a bearing to pin, flywheel or half the way to the other bearing.
+        """
         if self.journal_length is None:
             return
-        rooms = list(self._rooms)
-        shortest = rooms[0][0]
-        for room, _ in rooms[1:]:
-            shortest = np.minimum(shortest, room)
-        for room, what in rooms:
+        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
+        rooms: dict[str, Any] = {
+            "the middle of bearing A and web A": self.a - self._web_end,
+            "the middle of bearing B and web B": np.inf if self.overhung else self.b - self._web_end,
+            "the middle of bearing A and half the way to B": self.span / 2 if self.overhung else np.inf,
+            "the middles of bearing B and flywheel": np.where(has_flywheel, abs(self.flywheel_position), np.inf),
+        }
+        shortest = functools.reduce(np.minimum, rooms.values())
+        for what, room in rooms.items():
             sentence = (
                 f"half of {{journal_length}} does not fit between {what}, which leave {{room:length}}; "
                 "'a', 'b' and 'flywheel_position' go to the middle of a bearing"
             )
             short = (self.journal_length / 2 > _ROUNDED * room) & (room > 0) & (room == shortest)
             yield Rule("journal_length", short, sentence, {"room": room})
-
-    @property
-    def _rooms(self) -> Iterator[tuple[Any, str]]:
-        """Distances in m between middles of bearings, pin and flywheel, each with what is at its two ends."""
-        yield self.a - self._web_end, "the middle of bearing A and web A"
-        if self.overhung:
-            yield self.span / 2, "the middle of bearing A and half the way to B"
-        else:
-            yield self.b - self._web_end, "the middle of bearing B and web B"
-        has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
-        yield np.where(has_flywheel, abs(self.flywheel_position), np.inf), "the middles of bearing B and flywheel"
 
     @property
     def place_A(self) -> float:

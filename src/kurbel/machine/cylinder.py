@@ -11,11 +11,19 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
-from kurbel.errors import Fault
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.balance import Counterweight, SharedCounterweights
-from kurbel.machine.parts import Friction, GasOnRings, Masses, Moment, Piston, RamForce, RodPoint, TandemPiston
+from kurbel.machine.parts import (
+    ConnectingRod,
+    Friction,
+    GasOnRings,
+    Masses,
+    Moment,
+    Piston,
+    RamForce,
+    RodPoint,
+    TandemPiston,
+)
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -41,11 +49,9 @@ def counterweights() -> Any:
         OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),
         "Counterweights on the crank: a share of the reciprocating mass, or a list of them",
         default=(),
-        absent="none",
     )
 
 
-@record
 class Cylinder(Record):
     """One cylinder with its crank mechanism and all that is on the same rod.
 
@@ -68,6 +74,7 @@ class Cylinder(Record):
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
         absent="none",
+        also=("<<",),
     )
     _piston = alternative(Inline(Piston), "The cylinder's own piston")
     _tandem = alternative(
@@ -126,7 +133,7 @@ class Cylinder(Record):
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
-        yield Rule("like", bool(given.get("like")) and not has_refused(given.values()), like)
+        yield Rule("like", "like" in given, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
         yield Rule("tandem", bool(given.get("tandem")) and "piston" not in given, alone)
 
@@ -143,8 +150,12 @@ class Cylinder(Record):
         at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
         yield from at_point
         if not any(rule.broken for rule in at_point):
-            yield from map(Rule.of, _of_output(self))
-            yield from _of_rod(self) if self.mechanism.slides else ()
+            yield from _of_output(self)
+            rod = self.masses.connecting_rod if self.masses else None
+            if self.friction and self.mechanism.slides:
+                yield from (rule.below("friction") for rule in _of_friction(self.friction, self))
+            if rod and self.mechanism.slides:
+                yield from (rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism))
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
@@ -169,19 +180,18 @@ def may_lock(cylinder: Cylinder) -> bool:
     return coefficient > 0 and any(coefficient * abs(float(sin)) >= cos for sin, cos in widest)
 
 
-def _of_output(cylinder: Cylinder) -> Iterator[Fault]:
-    kind = cylinder.mechanism.name
+def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
+    kind, moment = cylinder.mechanism.name, cylinder.moment
     if cylinder.mechanism.slides:
-        if cylinder.moment is not None:
-            yield Fault(("moment",), f"a {kind} moves its output to and fro; give 'ram_force', a force, instead")
+        to_and_fro = f"a {kind} moves its output to and fro; give 'ram_force', a force, instead"
+        yield Rule("moment", moment is not None, to_and_fro)
         return
-    own = ("bore",) if cylinder.pistons else ()
-    for key in (*own, *(key for key in _SLIDING if vars(cylinder)[key] is not None)):
-        yield Fault((key,), f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
-    if cylinder.mechanism.turns and cylinder.moment and cylinder.moment.back:
-        yield Fault(
-            ("moment", "return"), f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
-        )
+    given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
+    for key, value in given.items():
+        yield Rule(key, value is not None, f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
+    returns = bool(cylinder.mechanism.turns and moment and np.any(moment.back))
+    message = f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
+    yield Rule(("moment", "return"), returns, message)
 
 
 _INSTEAD = {
@@ -191,49 +201,44 @@ _INSTEAD = {
 """What else to do where nothing slides that could have this key."""
 
 
-def _of_rod(cylinder: Cylinder) -> Iterator[Rule]:
-    """Friction of a crosshead needs a side force N and a guide for it; the mass of a rod needs a rod."""
-    mechanism, masses, friction = cylinder.mechanism, cylinder.masses, cylinder.friction
+def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
+    """A crosshead needs a side force and a guide, rings a bore, pins a rod; a yoke must not lock."""
+    mechanism, pistons, rings = cylinder.mechanism, cylinder.pistons, friction.rings
     kind, has_rod = mechanism.name, mechanism.has_rod
-    if friction is not None:
-        on_bore = friction.rings is not None and not cylinder.pistons
-        yield Rule(("friction", "rings"), on_bore, "rings rub on the bore; give the cylinder a 'bore'")
-        by_gas = friction.rings is not None and isinstance(friction.rings.pressure, GasOnRings)
-        without = by_gas and bool(cylinder.pistons) and cylinder.pistons[0].indicator is None
-        yield Rule(("friction", "rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
-        reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
-        unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
-        yield Rule(("friction", "crosshead"), unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
-        yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
-        for key in friction.of_pins:
-            without = not has_rod and (yoke is None or key == "crosshead_pin")
-            yield Rule(("friction", key), without, f"a {kind} has no connecting rod; leave '{key}' out")
-        yield from _of_yoke(yoke, friction, kind)
-    rod = masses.connecting_rod if masses else None
-    if rod is not None:
-        message = f"a {kind} has no connecting rod; give the reciprocating mass as 'other'"
-        yield Rule(("masses", "connecting_rod"), not has_rod, message)
-        if has_rod and rod.center_of_gravity is not None:
-            place, length = ("masses", "connecting_rod", "center_of_gravity"), mechanism.rod_length
-            endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
-            yield Rule(place, np.isinf(length), endless)
-            # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
-            beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
-            numbers = {"at": rod.center_of_gravity, "length": length}
-            yield Rule(place, rod.center_of_gravity > length, beyond, numbers)
-
-
-def _of_yoke(yoke: ScotchYoke | None, friction: Friction, kind: str) -> Iterator[Rule]:
-    """Only the yoke has a block and a pair of guides, whose distance must be known; they must not lock it."""
+    yield Rule("rings", rings is not None and not pistons, "rings rub on the bore; give the cylinder a 'bore'")
+    by_gas = rings is not None and isinstance(rings.pressure, GasOnRings)
+    without = by_gas and bool(pistons) and pistons[0].indicator is None
+    yield Rule(("rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
+    reason = "crosshead guide" if has_rod else "connecting rod to press a crosshead on its guide"
+    unguided = friction.crosshead is not None and not (has_rod and mechanism.guided)
+    yield Rule("crosshead", unguided, f"a {kind} has no {reason}; leave 'crosshead' out")
+    yoke = mechanism if isinstance(mechanism, ScotchYoke) else None
+    for key in friction.of_pins:
+        without = not has_rod and (yoke is None or key == "crosshead_pin")
+        yield Rule(key, without, f"a {kind} has no connecting rod; leave '{key}' out")
     for key, given in (("block", friction.block), ("guides", friction.guides)):
-        if yoke is None:
-            yield Rule(("friction", key), given is not None, f"a {kind} is no scotch-yoke; leave '{key}' out")
+        without = yoke is None and given is not None
+        yield Rule(key, without, f"a {kind} is no scotch-yoke; leave '{key}' out")
     if yoke is not None and friction.guides is not None:
         apart = yoke.guide_length
-        yield Rule(("friction", "guides"), apart is None, "'guides' needs their distance; give 'guide_length'")
+        yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
         locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
         message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
-        yield Rule(("friction", "guides"), locks, message)
+        yield Rule("guides", locks, message)
+
+
+def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
+    """The mass of a rod needs a rod, and its centre of gravity lies on it."""
+    message = f"a {mechanism.name} has no connecting rod; give the reciprocating mass as 'other'"
+    yield Rule((), not mechanism.has_rod, message)
+    if mechanism.has_rod and rod.center_of_gravity is not None:
+        length = mechanism.rod_length
+        endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        yield Rule("center_of_gravity", np.isinf(length), endless)
+        # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
+        beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"
+        numbers = {"at": rod.center_of_gravity, "length": length}
+        yield Rule("center_of_gravity", rod.center_of_gravity > length, beyond, numbers)
 
 
 _PLACE = ("name", "crank_position", "bank_angle", "axial_position", "counterweights")

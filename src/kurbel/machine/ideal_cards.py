@@ -4,17 +4,16 @@ Fractions are fractions of the stroke from the chamber's smallest volume, as on 
 the stroke volume. Exponents are those of p V^n.
 """
 
-import dataclasses
 import math
 from collections.abc import Iterator
+from dataclasses import MISSING
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.values import NumberForm
-from kurbel.declared.reading import REFUSED, has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.record import Record, Rule, alternative, field
 
 CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
@@ -30,8 +29,8 @@ def _pressure(text: str, **more: Any) -> Any:
     return field("pressure", text, most=1e15, **more)
 
 
-def _exponent(text: str, absent: str, default: Any = AIR_EXPONENT) -> Any:
-    return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3")
+def _exponent(text: str, absent: str, default: float | None = None, **more: Any) -> Any:
+    return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3", **more)
 
 
 def _order(key: str, high: Number, low_name: str, low: Number) -> Rule:
@@ -64,7 +63,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
 
 def _diagram_factor() -> Any:
     text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
-    return field("ratio", text, "κ_d", default=1.0, above=0, most=1, absent="1")
+    return field("ratio", text, "κ_d", default=1.0, above=0, most=1)
 
 
 def _factor_notes(factor: float) -> tuple[str, ...]:
@@ -75,45 +74,21 @@ def _factor_notes(factor: float) -> tuple[str, ...]:
     return (f"diagram_factor {factor:g}: a real card loses at its corners and keeps its peak, here up to {most} low",)
 
 
-class _TwoStroke(Record):
-    """The common part of cards of two-stroke machines: a higher and a lower pressure."""
-
-    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
-    higher: ClassVar[str]
-    lower: ClassVar[str]
-
-    @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        high, low = given.get(cls.higher, REFUSED), given.get(cls.lower, REFUSED)
-        if has_refused(given.values()) and high is not REFUSED and low is not REFUSED:
-            yield _order(cls.higher, high, cls.lower, low)
-
-    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield the rules on the cycle of the machine, and on absolute pressures."""
-        two = f"a {type(self).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
-        yield Rule((), cycle != "two-stroke", two)
-        both = (self.higher, self.lower)
-        yield from _above_vacuum(lift, **{key: vars(self)[key] for key in self.KEYS if key in both})
+def _only_two_stroke(card: Record, cycle: str) -> Rule:
+    two = f"a {type(card).__name__.lower()} card is one of a two-stroke cycle; leave out 'cycle: {cycle}'"
+    return Rule((), cycle != "two-stroke", two)
 
 
-@record
-class Steam(_TwoStroke):
+class Steam(Record):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
 
     admission: float = _pressure("Pressure while steam is admitted", required=True)
     exhaust: float = _pressure("Pressure while steam leaves", required=True)
     cut_off: float = field("ratio", "Fraction of the stroke at which admission ends", above=0, most=1, required=True)
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", required=True)
-    release: float = field(
-        "ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1, absent="1"
-    )
+    release: float = field("ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1)
     compression: float = field(
-        "ratio",
-        "Fraction of the return stroke at which the exhaust closes",
-        default=0.0,
-        least=0,
-        below=1,
-        absent="0",
+        "ratio", "Fraction of the return stroke at which the exhaust closes", default=0.0, least=0, below=1
     )
     lead: float = field(
         "ratio",
@@ -121,12 +96,11 @@ class Steam(_TwoStroke):
         default=0.0,
         least=0,
         below=1,
-        absent="0",
     )
     exponent: float = _exponent("Exponent of expansion and compression", "1, the hyperbola", 1.0)
     diagram_factor: float = _diagram_factor()
 
-    higher, lower = "admission", "exhaust"
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
 
     @property
     def back_pressure(self) -> float:
@@ -147,24 +121,27 @@ class Steam(_TwoStroke):
         message = "compression needs a final volume; give 'clearance', or leave 'compression' out"
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 
+    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
+        """Yield the rules on the cycle of the machine, and on absolute pressures."""
+        yield _only_two_stroke(self, cycle)
+        yield from _above_vacuum(lift, admission=self.admission, exhaust=self.exhaust)
 
-@record
-class Compressor(_TwoStroke):
+
+class Compressor(Record):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
     suction: float = _pressure("Pressure while the chamber fills", required=True)
     delivery: float = _pressure("Pressure while the chamber empties", required=True, also=("discharge",))
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", required=True)
-    exponent: float = _exponent("Exponent of compression and expansion", "1.4, air")
-    expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression", None)
+    exponent: float = _exponent("Exponent of compression and expansion", "1.4, air", AIR_EXPONENT)
+    expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression")
     unloaded: bool = field(
         bool,
         "Whether the suction valves are held open, so that nothing is delivered; may also be given with `compressor`",
         default=False,
-        absent="false",
     )
 
-    higher, lower = "delivery", "suction"
+    cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
@@ -176,7 +153,8 @@ class Compressor(_TwoStroke):
 
     def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
         """Yield what does not fit the cycle or the absolute pressures; also a delivery that is never reached."""
-        yield from super().rules_in(cycle, lift)
+        yield _only_two_stroke(self, cycle)
+        yield from _above_vacuum(lift, suction=self.suction, delivery=self.delivery)
         c = self.clearance
         with np.errstate(all="ignore"):
             enclosed = np.where(np.equal(c, 0), np.nan, c)
@@ -188,51 +166,41 @@ class Compressor(_TwoStroke):
         yield Rule((), (self.delivery < top) & (self.delivery >= left), full)
 
 
-_RATIO = alternative(
-    "ratio",
-    "Largest over smallest volume; or give `clearance`",
-    "ε",
-    least=1.00001,
-    most=1e6,
-    required=True,
-    example="8",
-    gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
-)
+class _Engine(Record):
+    """The common part of the cards of combustion engines.
 
+    exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
+    changes its gas at the outer dead centre.
+    """
 
-def _clearance() -> Any:
-    text = f"{_CLEARANCE}; or give `compression_ratio`"
-    return field(CLEARANCE, text, "c", default=dataclasses.MISSING, instead="compression_ratio")
-
-
-def _exhaust() -> Any:
-    text = "Pressure while the burnt gas leaves, in a four-stroke cycle"
-    return _pressure(text, absent="that of the intake")
-
-
-def _compression_exponent() -> Any:
-    return field(
+    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
+    peak: float | None = _pressure(
+        "Pressure of injection, reached at constant volume", absent="that at the end of compression"
+    )
+    _compression_ratio = alternative(
         "ratio",
+        "Largest over smallest volume; or give `clearance`",
+        "ε",
+        least=1.00001,
+        most=1e6,
+        required=True,
+        example="8",
+        gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
+    )
+    clearance: float = field(
+        CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", default=MISSING, instead="compression_ratio"
+    )
+    exhaust: float | None = _pressure(
+        "Pressure while the burnt gas leaves, in a four-stroke cycle", absent="that of the intake"
+    )
+    exponent: float = _exponent(
         "Exponent of the compression",
-        "n",
-        default=AIR_EXPONENT,
-        above=0,
-        most=10,
-        absent="1.4, air",
-        example="1.3",
+        "1.4, air",
+        AIR_EXPONENT,
         gives=lambda given: {"expansion_exponent": given.get("expansion_exponent", given["exponent"])},
     )
-
-
-class _Engine(Record):
-    """The common part of cards of combustion engines."""
-
-    intake: float
-    exhaust: float | None
-    peak: float | None
-    clearance: float
-    exponent: float
-    diagram_factor: float
+    expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression", AIR_EXPONENT)
+    diagram_factor: float = _diagram_factor()
 
     def rules(self) -> Iterator[Rule]:
         if self.peak is not None:
@@ -244,14 +212,9 @@ class _Engine(Record):
         return ("two-stroke", "four-stroke") if self.exhaust is None else ("four-stroke",)
 
     @property
-    def leaving(self) -> float:
-        """Pressure of the exhaust stroke in Pa."""
-        return self.intake if self.exhaust is None else self.exhaust
-
-    @property
     def back_pressure(self) -> float:
-        """Pressure in Pa about which a diagram factor lowers the card."""
-        return self.leaving
+        """Pressure in Pa of the exhaust stroke, about which a diagram factor lowers the card."""
+        return self.intake if self.exhaust is None else self.exhaust
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -271,25 +234,12 @@ class _Engine(Record):
             yield Rule((), low, below, {"peak": self.peak, "end": end})
 
 
-@record
 class Otto(_Engine):
-    """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume.
+    """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume."""
 
-    exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
-    changes its gas at the outer dead centre.
-    """
-
-    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     peak: float = _pressure("Largest pressure, after combustion", required=True)
-    _compression_ratio = _RATIO
-    clearance: float = _clearance()
-    exhaust: float | None = _exhaust()
-    exponent: float = _compression_exponent()
-    expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression")
-    diagram_factor: float = _diagram_factor()
 
 
-@record
 class Diesel(_Engine):
     """A Diesel engine: injection at constant pressure up to the cut-off.
 
@@ -297,17 +247,7 @@ class Diesel(_Engine):
     pressure of injection is that at the end of the compression.
     """
 
-    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
     cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1, required=True)
-    _compression_ratio = _RATIO
-    clearance: float = _clearance()
-    exhaust: float | None = _exhaust()
-    peak: float | None = _pressure(
-        "Pressure of injection, reached at constant volume", absent="that at the end of compression"
-    )
-    exponent: float = _compression_exponent()
-    expansion_exponent: float = _exponent("Exponent of the expansion", "that of the compression")
-    diagram_factor: float = _diagram_factor()
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

@@ -1,23 +1,23 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Union
 
 import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.figures import Bound
 from kurbel.declared.forms.structures import Keyed, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, NumberForm, Points, size_faults, unit_name
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.forms.values import Choice, NumberForm, Points, order_faults, size_faults, unit_name
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
-from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, Otto, Steam
+from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.measured import Measured
+from kurbel.traces.correct import Trace
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,6 @@ class Rectangle:
             yield Rule((), self.level + lift < 0, below, {"level": self.level, "vacuum": 0.0 - lift})
 
 
-@record
 class Drawn(Record):
     """The paper of a card: its length, and the scale of the spring in m/Pa.
 
@@ -78,19 +77,6 @@ class Drawn(Record):
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
 
 
-class Chamber(Protocol):
-    """The pressure in one end of a cylinder: a card, an ideal card or a trace."""
-
-    @property
-    def cycles(self) -> tuple[str, ...]:
-        """The working cycles that it can be part of."""
-        ...
-
-    def rules_in(self, cycle: str, lift: Number) -> Iterator[Rule]:
-        """Yield what does not fit the cycle of the machine, or pressures that `lift` makes absolute (Pa)."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Line:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
@@ -108,7 +94,6 @@ STROKES = {"two-stroke": ("expansion", "compression"), "four-stroke": ("expansio
 """Cycle -> the lines of a card from the chamber's (firing) dead centre on; the volume grows along every other one."""
 
 
-@record
 class Card(Record):
     """A card: its lines in the order of the process from the smallest volume on, and how to join their points.
 
@@ -173,30 +158,23 @@ class Card(Record):
         cycle = "four-stroke" if {"intake", "exhaust"} & given.keys() else "two-stroke"
         missing = [name for name in STROKES[cycle] if name not in given]
         faults = [Fault((), f"the '{name}' line of the {cycle} card is missing") for name in missing]
-        faults += _line_faults(given, whole, paper)
         if interpolate == "polytropic" and not clearance:
-            needed = "'polytropic' needs the 'clearance' volume over the stroke volume"
-            faults.append(Fault(("interpolate",), needed + (", more than 0" if clearance == 0 else "")))
+            needed = "'polytropic' needs the 'clearance' volume over the stroke volume, more than 0"
+            faults.append(Fault(("interpolate",), needed))
         for name, points in given.items():
-            faults += size_faults(points, factor, "pressure", (name,))
+            large = size_faults(points, factor, "pressure")
+            faults += (fault.below((name,)) for fault in _line_faults(points, whole, paper) + large)
         refuse(*faults)
         lines, notes = [], []
-        for index, name in enumerate(STROKES[cycle]):
-            points, start = given[name], index % 2
+        for start, name in zip((0, 1, 0, 1), STROKES[cycle]):
+            points = given[name]
             ordered = points if (points[0][0] <= points[-1][0]) == (start == 0) else points[::-1]
-            kept = [point for i, point in enumerate(ordered) if i == 0 or point != ordered[i - 1]]
+            kept = [point for before, point in zip([None, *ordered], ordered) if point != before]
             if len(kept) < len(points):
                 notes.append(f"{name}: a point given twice counts once")
             pressures = tuple(p * factor[0] / factor[1] for _, p in kept)
             lines.append(Line(name, tuple(x / whole for x, _ in kept), pressures, start))
         return cls(tuple(lines), interpolate, clearance, tuple(notes), drawn is not None)
-
-    @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        """Yield what is wrong with the lines that could be read, where others could not be."""
-        if has_refused(given.values()) and "drawn" not in given:
-            lines = {name: value for name, value in given.items() if isinstance(value, list)}
-            yield from map(Rule.of, _line_faults(lines, 1.0, ""))
 
     @property
     def flat(self) -> bool:
@@ -223,41 +201,26 @@ class Card(Record):
             yield Rule((), lowest + lift < 0, below, numbers)
 
 
-def _line_faults(lines: Mapping[str, list[Point]], whole: float, unit: str) -> list[Fault]:
-    """Return the faults of lines that do not run once through the whole stroke; points outside are reported once."""
-    faults = []
-    for name, points in lines.items():
-        beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
-        if not beyond:
-            faults += _order_faults(name, points, whole, unit)
-            continue
+def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
+    """Return the first fault of a line that does not run once through the whole stroke.
+
+    whole: the stroke in a unit of the paper, '' for fractions of it.
+    """
+    beyond = [index for index, (x, _) in enumerate(points) if not 0 <= x <= whole]
+    if beyond:
         x = points[beyond[0]][0]
         message = f"{x:g} {unit} is not on the card, which is {whole:g} {unit} long; its own dead centre is at 0"
         if not unit:
             hint = f"; write {x / 100:g} here if the line is in percent" if 1 < x <= 100 and len(beyond) > 1 else ""
             message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
-        return [Fault((name, beyond[0]), message)]
-    return faults
+        return [Fault((beyond[0],), message)]
+    low, high = sorted((points[0][0], points[-1][0]))
+    if (low, high) == (0.0, whole):
+        return order_faults(points, f"{{:g}} {unit}" if unit else "fraction {:g}")
+    of, own = unit or "of the stroke", "0 is this chamber's own dead centre, where it is smallest"
+    return [Fault((), f"the line must reach from 0 to {whole:g} {of}; it runs from {low:g} to {high:g} {of}; {own}")]
 
 
-def _order_faults(name: str, points: list[Point], whole: float, unit: str) -> list[Fault]:
-    word, unit = ("", f" {unit}") if unit else ("fraction ", "")
-    along = [x for x, _ in points]
-    forward = along[0] <= along[-1]
-    low, high = (along[0], along[-1]) if forward else (along[-1], along[0])
-    if (low, high) != (0.0, whole):
-        own = "0 is this chamber's own dead centre, where it is smallest"
-        reach = f"the line must reach from {word}0 to {whole:g}{unit}; it runs from {low:g} to {high:g}{unit}; {own}"
-        return [Fault((name,), reach)]
-    for i in range(1, len(points)):
-        if (along[i] < along[i - 1]) if forward else (along[i] > along[i - 1]):
-            return [Fault((name, i), f"{word}{along[i]:g}{unit} after {along[i - 1]:g}{unit}: the line turns back")]
-        if i >= 2 and along[i] == along[i - 2] and points[i - 2] != points[i - 1] != points[i]:
-            return [Fault((name, i), f"three points at {word}{along[i]:g}{unit}; a jump has two")]
-    return []
-
-
-@record
 class Constant(Record):
     """Constant pressure on each stroke: an ideal pump."""
 
@@ -292,6 +255,8 @@ _CHAMBER = Keyed(
 _ONE_PRESSURE = NumberForm(
     "pressure", or_else=", or a card below it", becomes=lambda pressure, _: Rectangle(level=pressure)
 )
+Chamber = Union[Rectangle, Card, IdealCard, Trace]
+"""The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
 def _loaded(chamber: Any) -> Any:
@@ -300,7 +265,6 @@ def _loaded(chamber: Any) -> Any:
     return replace(chamber, unloaded=False) if unloaded else chamber
 
 
-@record
 class Indicator(Record):
     """The pressures in the two ends of a cylinder; an end that is None is open to the ambient.
 

@@ -6,29 +6,33 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.declared.forms.values import Points, unit_name
-from kurbel.declared.reading import has_refused
 from kurbel.declared.record import Rule, Values, alternative
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import refused
 from kurbel.machine.measured import Columns
-from kurbel.machine.turning import HARMONICS, MEAN_TORQUE, Effort, Harmonics, InUnit, Known, Swing
+from kurbel.machine.turning import (
+    HARMONICS,
+    MEAN,
+    POINTS,
+    UNIT,
+    Effort,
+    InUnit,
+    Known,
+    Swing,
+    harmonics_need_a_unit,
+    harmonics_of,
+    in_unit,
+    points_of,
+)
 from kurbel.traces.cycles import Samples, samples_of_file
-from kurbel.traces.read import Layout
 
 
 class KnownEffort(Columns):
     """What becomes an `Effort`, `Harmonics` or a `Swing`."""
 
     what = "torque"
-    unit = alternative(unit_name("torque"), "Unit of the torques")
-    points = alternative(
-        Points("deg", "torque"),
-        "Torque over the crank angle; two points at one angle are a jump; or give `file` or `harmonics`",
-        "M",
-        instead="file",
-        needs="unit",
-    )
+    unit = UNIT
+    points = POINTS._replace(text=f"{POINTS.text}; or give `file` or `harmonics`", instead="file")
     file = Columns.file._replace(
         text="File with a column of angles in degrees and one of torques", needs="unit", example="effort.csv"
     )
@@ -36,13 +40,8 @@ class KnownEffort(Columns):
     angle_zero = alternative(
         "angle", "Angle of the firing or inner dead centre in the file", absent="0 deg", needs="file"
     )
-    mean = alternative(MEAN_TORQUE, "Mean torque with its unit, or bare in that of the harmonics", "M_m")
-    harmonics = alternative(
-        HARMONICS,
-        "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
-        needs="mean",
-    )
-
+    mean = MEAN
+    harmonics = HARMONICS
     swing = alternative("energy", "Swing of energy, where nothing else of the effort is known", "ΔE", least=0)
     coefficient = alternative(
         "ratio",
@@ -55,8 +54,6 @@ class KnownEffort(Columns):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if has_refused(given.values()):
-            return
         forms = [name for name in ("points", "file", "harmonics", "swing", "coefficient") if name in given]
         message = "give one of 'points', 'file' or 'harmonics', or 'swing', or 'coefficient' beside 'mean'"
         yield Rule((), len(forms) != 1 and forms != ["swing", "coefficient"], message)
@@ -66,9 +63,7 @@ class KnownEffort(Columns):
         )
         bare = "unit" not in given and isinstance(given.get("mean"), InUnit)
         yield Rule("mean", bare, f"{given.get('mean', 0.0):g} has no unit; write it with one, such as '500 N m'")
-        if "harmonics" in given:
-            lacking = next((name for name in ("unit", "mean") if name not in given), "")
-            yield Rule("harmonics", bool(lacking), f"'harmonics' needs '{lacking}' beside it")
+        yield harmonics_need_a_unit(given)
         yield from super().rules_of_keys(given)
 
     @classmethod
@@ -77,7 +72,7 @@ class KnownEffort(Columns):
         unit: Factor = (1.0, 1.0),
         points: list[Point] | None = None,
         file: str | None = None,
-        harmonics: list[tuple[float, float, float]] | None = None,
+        harmonics: list[Point] | None = None,
         mean: float | None = None,
         swing: float | None = None,
         coefficient: float | None = None,
@@ -86,25 +81,19 @@ class KnownEffort(Columns):
     ) -> Known:
         """Return the effort that these keys describe, its file read; raises RuleError."""
         if harmonics is not None:
-            return Harmonics.of_keys(unit, mean or 0.0, harmonics)
+            return harmonics_of(unit, mean or 0.0, harmonics)
         if swing is not None or coefficient is not None:
-            return Swing(swing, coefficient, mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean)
-        return (
-            Effort.of_points(unit, points or [])
-            if file is None
-            else _from_file(unit, file, cls.layout(layout), angle_zero)
-        )
-
-
-def _from_file(unit: Factor, file: str, layout: Layout, angle_zero: float) -> Effort:
-    up, down = unit
-    samples = samples_of_file(file, layout, "torque", lambda torques: torques * up / down)
-    if len(samples.values) > 1:
-        lap = samples.angles[-1] - samples.angles[0]
-        refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
-    angles, torques = _from_zero(samples, angle_zero)
-    closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
-    return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
+            return Swing(swing, coefficient, None if mean is None else in_unit(mean, unit))
+        if file is None:
+            return points_of(unit, points or [])
+        up, down = unit
+        samples = samples_of_file(file, cls.layout(layout), "torque", lambda torques: torques * up / down)
+        if len(samples.values) > 1:
+            lap = samples.angles[-1] - samples.angles[0]
+            refused(f"holds {len(samples.values)} laps of {lap:g} deg; keep one cycle", "file")
+        angles, torques = _from_zero(samples, angle_zero)
+        closed = ("the closing sample is missing; the first one closes the cycle",) if samples.completed else ()
+        return Effort(tuple(angles.tolist()), tuple(torques.tolist()), (file,), (*samples.notes, *closed))
 
 
 def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:

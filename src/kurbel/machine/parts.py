@@ -8,10 +8,9 @@ import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import Choice, Form, NumberForm
+from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
-from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of, record
-from kurbel.errors import Fault
+from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
 from kurbel.machine.pumped import Gas
 from kurbel.mechanisms import Mechanism
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
 
 
-@record
 class ConnectingRod(Record):
     """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
@@ -46,15 +44,12 @@ class ConnectingRod(Record):
 
     def at_crosshead(self, length: float) -> float:
         """Reciprocating mass in kg: the share, or m (1 − a/L) with the length L of the rod in m."""
-        if self.center_of_gravity is None:
-            return self.mass * self.share
-        return self.mass * (1 - self.center_of_gravity / length)
+        share = self.share if self.center_of_gravity is None else 1 - self.center_of_gravity / length
+        return self.mass * share
 
     def at_pin(self, length: float) -> float:
         """Mass in kg that turns with the crank pin: what the share leaves, or m a/L with the length L in m."""
-        if self.center_of_gravity is None:
-            return self.mass * (1 - self.share)
-        return self.mass * self.center_of_gravity / length
+        return self.mass - self.at_crosshead(length)
 
     def excess_inertia(self, length: float) -> float:
         """I_r − m a (L − a) in kg m²: what the two masses have too little of; for an exact rod of length L in m.
@@ -67,32 +62,11 @@ class ConnectingRod(Record):
         return self.inertia - self.mass * self.center_of_gravity * (length - self.center_of_gravity)
 
 
-_ONE_OR_MORE: Form = OneOf(NumberForm("mass", least=0), Listing(NumberForm("mass", least=0)))
-_PARTS = ("reciprocating", "piston", "piston_rod", "crosshead", "other")
-
-
-def _sum(given: Values) -> dict[str, Any]:
-    """Return the sum of the parts, what of it is the crosshead's, and whether it was given as one."""
-    each = {name: given[name] for name in _PARTS if given.get(name) is not None}
-    sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in each.items()}
-    return {
-        "parts": total(*sums.values()),
-        "crosshead": sums.get("crosshead"),
-        "undivided": "reciprocating" in sums,
-        "pistons": each["piston"] if isinstance(each.get("piston"), tuple) else (),
-    }
-
-
-def _rod(given: Values) -> dict[str, Any]:
-    rod = given["connecting_rod"]
-    return {"connecting_rod": rod if isinstance(rod, ConnectingRod) else ConnectingRod(rod)}
-
-
 def _part(text: str) -> Key:
-    return alternative(_ONE_OR_MORE, text, instead="reciprocating", gives=_sum)
+    each = NumberForm("mass", least=0)
+    return alternative(OneOf(each, Listing(each)), text, instead="reciprocating")
 
 
-@record
 class Masses(Record):
     """Moving masses in kg: what reciprocates besides the connecting rod, the connecting rod, and what turns.
 
@@ -107,7 +81,6 @@ class Masses(Record):
         "Total reciprocating mass, including its share of the connecting rod; instead of the parts",
         "m",
         least=0,
-        gives=_sum,
     )
     _piston = _part("Piston, or a list of pistons")
     _piston_rod = _part("Piston rod")
@@ -118,7 +91,6 @@ class Masses(Record):
         "Connecting rod: its mass, half of which counts as reciprocating, or a mapping",
         instead="reciprocating",
         also=("con_rod", "conrod"),
-        gives=_rod,
     )
 
     parts: float = 0.0
@@ -129,7 +101,6 @@ class Masses(Record):
         "m_rot",
         default=0.0,
         least=0,
-        absent="0",
     )
     crosshead: float | None = None
     undivided: bool = False
@@ -140,6 +111,23 @@ class Masses(Record):
         none = "no mass is given; leave 'masses' out or give 'reciprocating', or 'piston', 'crosshead', …"
         yield Rule((), not given, none)
 
+    @classmethod
+    def of_keys(
+        cls, connecting_rod: float | ConnectingRod | None = None, rotating: float = 0.0, **parts: Any
+    ) -> "Masses":
+        """Return the masses of these keys; each part is a mass or a tuple of masses."""
+        sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
+        if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
+            connecting_rod = ConnectingRod(connecting_rod)
+        return cls(
+            parts=total(*sums.values()),
+            connecting_rod=connecting_rod,
+            rotating=rotating,
+            crosshead=sums.get("crosshead"),
+            undivided="reciprocating" in sums,
+            pistons=piston if isinstance(piston := parts.get("piston"), tuple) else (),
+        )
+
     def at_pin(self, rod_length: float) -> float:
         """Mass in kg that turns with the crank pin, with the share of a connecting rod of this length in m."""
         return self.rotating + (self.connecting_rod.at_pin(rod_length) if self.connecting_rod else 0.0)
@@ -149,7 +137,6 @@ class Masses(Record):
         return self.parts + (self.connecting_rod.at_crosshead(rod_length) if self.connecting_rod else 0.0)
 
 
-@record
 class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
@@ -158,7 +145,6 @@ class GasOnRings(Record):
     )
 
 
-@record
 class Rings(Record):
     """Piston rings."""
 
@@ -174,7 +160,6 @@ class Rings(Record):
     coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
 
 
-@record
 class Guide(Record):
     """The shoe with which a crosshead presses on its guide."""
 
@@ -190,7 +175,6 @@ _PINS: dict[str, tuple[str, str]] = {
 """Where pins and journals rub: the keys of their diameters here, and in `crankshaft`."""
 
 
-@record
 class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
@@ -242,34 +226,29 @@ class Friction(Record):
         given = (self.crank_pin, self.crosshead_pin, self.journals)
         return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
 
-    def faults_beside(self, shaft: "Crankshaft | None", pin_of_yoke: float | None) -> Iterator[Fault]:
+    def rules_beside(self, shaft: "Crankshaft | None", pin_of_yoke: float | None) -> Iterator[Rule]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft.
 
         pin_of_yoke: diameter in m of the crank pin that a Scotch yoke gives.
         """
         for name in self.of_pins:
             here, there = _PINS[name]
-            in_shaft = there and shaft is not None and vars(shaft)[there] is not None
-            given = vars(self)[here] is not None
+            elsewhere = f"'{there}' in 'crankshaft'" if there and shaft and vars(shaft)[there] is not None else ""
             if name == "crank_pin" and pin_of_yoke is not None:
-                if given:
-                    yield Fault((here,), "'pin_diameter' gives the same; leave one of them out")
-            elif not given and not in_shaft:
-                needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
-                yield Fault((name,), f"{needed}, or give '{there}' in 'crankshaft'" if there else needed)
-            elif given and in_shaft:
-                yield Fault((here,), f"'{there}' in 'crankshaft' gives the same; leave one of them out")
+                elsewhere = "'pin_diameter'"
+            given = vars(self)[here] is not None
+            yield Rule(here, given and bool(elsewhere), f"{elsewhere} gives the same; leave one of them out")
+            needed = f"'{name}' needs a diameter: write for instance '{here}: 120 mm'"
+            or_there = f", or give '{there}' in 'crankshaft'" if there else ""
+            yield Rule(name, not given and not elsewhere, needed + or_there)
 
 
-@record
 class RamForce(Record):
     """A force on the ram that opposes its motion, constant on each stroke: cutting out, dragging back."""
 
-    work: float = field(
-        "force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0, absent="0"
-    )
+    work: float = field("force", "Force opposing the motion on the working stroke", "P_a", default=0.0, least=0)
     back: float = field(
-        "force", "Force opposing the motion on the return stroke", "P_r", default=0.0, least=0, absent="0", key="return"
+        "force", "Force opposing the motion on the return stroke", "P_r", default=0.0, least=0, key="return"
     )
 
     @classmethod
@@ -277,25 +256,20 @@ class RamForce(Record):
         yield Rule((), not given, "give 'work', the force on the working stroke, or 'return', or both")
 
 
-@record
 class Moment(RamForce):
     """A moment on a member that swings or turns, opposing its motion; what turns has no return stroke."""
 
-    work: float = field(
-        "torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0, absent="0"
-    )
+    work: float = field("torque", "Moment opposing the motion on the working stroke", "M_a", default=0.0, least=0)
     back: float = field(
         "torque",
         "Moment opposing the motion on the return stroke",
         "M_r",
         default=0.0,
         least=0,
-        absent="0",
         key="return",
     )
 
 
-@record
 class RodPoint(Record):
     """A point along the rod from one of its pins toward the other, or beyond it, and across from its line.
 
@@ -315,7 +289,6 @@ class RodPoint(Record):
         "length",
         "Distance from the centre line of the rod, positive toward the side of the outstroke",
         default=0.0,
-        absent="0",
     )
 
     def from_crank_pin(self, mechanism: Mechanism) -> float:
@@ -330,7 +303,6 @@ class RodPoint(Record):
         yield Rule("from", other, f"the pins of a {mechanism.name} are crank_pin and {mechanism.far_pin}")
 
 
-@record
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -338,13 +310,12 @@ class Piston(Record):
     """
 
     bore: float = field("length", "Diameter of the cylinder", "d", above=0, required=True)
-    head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0, absent="0")
+    head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0)
     crank_end_rod: float = field(
         "length",
         "Diameter of the rod through the crank end",
         default=0.0,
         least=0,
-        absent="0",
         also=("piston_rod", "rod_diameter"),
     )
     indicator: Indicator | None = field(
@@ -392,7 +363,6 @@ class Piston(Record):
             yield from (rule.below("indicator", end) for rule in first_of(chamber.rules_in(cycle, lift)))
 
 
-@record
 class TandemPiston(Piston):
     """A further piston on the same rod, or driven from the crosshead by a rocker."""
 

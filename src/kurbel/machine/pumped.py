@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from kurbel.declared.record import Record, Rule, alternative, field, record
+from kurbel.declared.record import Record, Rule, alternative, field
 
 GAS_CONSTANT = 8.31446261815324
 """J/(mol K)."""
@@ -10,7 +10,6 @@ WATER = 1000.0, 2339.0
 """Density in kg/m³ of water, and its vapour pressure in Pa at 20 °C."""
 
 
-@record
 class Gas(Record):
     """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
 
@@ -44,7 +43,6 @@ class Gas(Record):
     )
 
 
-@record
 class Liquid(Record):
     """What a pump moves."""
 
@@ -58,7 +56,6 @@ class Liquid(Record):
     )
 
 
-@record
 class Vessel(Record):
     """An air vessel; its volume of air, or the swing of pressure for which its volume is wanted."""
 
@@ -81,7 +78,6 @@ class Vessel(Record):
         yield Rule((), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have")
 
 
-@record
 class Pipe(Record):
     """A pipe with all chambers of the pump on it."""
 
@@ -94,13 +90,10 @@ class Pipe(Record):
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
 
-@record
 class Pump(Record):
     """What a pump's flow depends on besides its pistons."""
 
-    slip: float = field(
-        "ratio", "Share of the displaced volume that is not delivered", default=0.0, least=0, below=1, absent="0"
-    )
+    slip: float = field("ratio", "Share of the displaced volume that is not delivered", default=0.0, least=0, below=1)
     liquid: Liquid = field(Liquid, "What is pumped", default=Liquid(), absent="water")
     suction_pipe: Pipe | None = field(Pipe, "Pipe to the pump", absent="suction lift left out")
     delivery_pipe: Pipe | None = field(Pipe, "Pipe from the pump", absent="left out")

@@ -2,33 +2,26 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import groupby, pairwise, product
-from typing import Any
+from itertools import groupby, product
 
 from kurbel.declared.forms.structures import RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER
-from kurbel.declared.reading import has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.record import Record, Rule, field
 from kurbel.declared.units import MOST_ITEMS
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES, Cylinder
 
 
-@record
 class EqualCylinders(Record):
-    """Cylinders that differ only in name, crank position and place.
+    """Cylinders that differ only in name, crank position and place."""
 
-    cylinders: with bank angle γ in degrees and place along the shaft in m; firing_order: their numbers, from 1; placed:
-    their crank positions are given; shared: every bank has one cylinder, so that all can share one crank pin.
-    """
-
-    _count = alternative(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4")
+    count: int = field(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4")
     firing_order: tuple[int, ...] | None = field(
         FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
         absent="that of the machine; if every bank has one cylinder, all share one crank pin",
     )
-    _crank_positions = alternative(
+    crank_positions: tuple[float, ...] | None = field(
         ["angle"],
         "Angles by which the cranks lag crank 1, one for each cylinder, if not given by a firing order; if all are "
         "less than 360 deg, four-stroke cylinders fire with the most even intervals possible",
@@ -36,96 +29,56 @@ class EqualCylinders(Record):
         instead="firing_order",
         example="[0 deg, 120 deg, 240 deg]",
     )
-    _spacing = alternative(
+    spacing: float | None = field(
         "length",
         "Distance between neighbouring cylinders of a bank along the shaft, the first of every bank at 0; 0 mm: two "
         "rods at one place; for rods side by side list the cylinders, each with its axial_position",
         least=0,
         absent="unbalanced moments left out",
     )
-    _bank_angles = alternative(
+    bank_angles: tuple[float, ...] = field(
         ["angle"],
         "Angles of the stroke lines in the sense of rotation: one for each cylinder, or for the cylinders in turn "
         "(1, 2, 1, 2, …)",
         "γ",
+        default=(0.0,),
         least=-360,
         most=360,
         absent="in line",
     )
-    _each = alternative(
-        RecordForm(Cylinder, inline_too=True),
-        "The keys of one cylinder",
-        required=True,
-        gives=lambda given: _equal(**given),
-    )
-    cylinders: tuple[Cylinder, ...] = ()
-    placed: bool = False
-    shared: bool = False
+    each: Cylinder = field(RecordForm(Cylinder, inline_too=True), "The keys of one cylinder", required=True)
 
-    @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if has_refused(given.values()):
-            return
-        count, banks = given["count"], given.get("bank_angles", (0.0,))
-        number = f"{len(banks)} angles for {count} cylinders; give one for each bank or for each cylinder"
-        yield Rule("bank_angles", count % len(banks) != 0, number)
-        if positions := given.get("crank_positions"):
-            number = f"{len(positions)} angles for {count} cylinders; give one for each"
-            yield Rule("crank_positions", len(positions) != count, number)
-            twice = given["each"].crank_position is not None
-            yield Rule(("each", "crank_position"), twice, "'crank_positions' sets it; leave it out")
+    def rules(self) -> Iterator[Rule]:
+        positions, banks = self.crank_positions or (), self.bank_angles
+        number = f"{len(banks)} angles for {self.count} cylinders; give one for each bank or for each cylinder"
+        yield Rule("bank_angles", self.count % len(banks) != 0, number)
+        number = f"{len(positions)} angles for {self.count} cylinders; give one for each"
+        yield Rule("crank_positions", bool(positions) and len(positions) != self.count, number)
+        twice = bool(positions) and self.each.crank_position is not None
+        yield Rule(("each", "crank_position"), twice, "'crank_positions' sets it; leave it out")
 
-    def positioned(self, order: tuple[int, ...] | None, cycle: str) -> tuple[Cylinder, ...]:
-        """Return the cylinders with their crank positions; order: of the machine; cycle: of the machine."""
-        if order and (self.firing_order or self.placed):
-            given = "crank positions are also given" if self.placed else "a firing order is also given"
-            refused(f"{given} in 'cylinders'; leave one of them out", "firing_order")
-        if order or self.firing_order:
-            where: Path = ("cylinders", "firing_order") if self.firing_order else ("firing_order",)
-            return fired(self.cylinders, self.firing_order or order or (), _degrees(self.cylinders, cycle), where)
-        if self.placed:
-            only_pins = all(0 <= one.crank_position < 360 for one in self.cylinders)
-            return in_even_turns(self.cylinders, [only_pins] * len(self.cylinders), cycle)
-        if not self.shared:
-            message = (
-                "'firing_order' is missing: positions of the cranks; write for instance 'firing_order: 1-3-4-2', or "
-                "'crank_positions', one for each cylinder"
+    @property
+    def cylinders(self) -> tuple[Cylinder, ...]:
+        """Each with its name and its place; its crank position if that is given."""
+        each, angles = self.each, self.bank_angles * (self.count // len(self.bank_angles))
+        cylinders = []
+        for index, angle in enumerate(angles):
+            bank, incline, along = angle - angles[0], each.inclination, each.axial_position
+            if bank and incline is not None:
+                incline = (incline + bank + 180.0) % 360.0 - 180.0
+            if self.spacing is not None:
+                along = self.spacing * angles[:index].count(angle) + (along or 0.0)
+            cylinders.append(
+                replace(
+                    each,
+                    name=f"{each.name or 'cylinder'} {index + 1}",
+                    crank_position=self.crank_positions[index] if self.crank_positions else each.crank_position,
+                    bank_angle=each.bank_angle + bank,
+                    inclination=incline,
+                    axial_position=along,
+                )
             )
-            refused(message, "cylinders")
-        # on one pin each dead centre follows by the angle between the stroke lines
-        on_pin = [replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in self.cylinders]
-        return in_even_turns(on_pin, [True] * len(on_pin), cycle)
-
-
-def _equal(
-    count: int,
-    each: Cylinder,
-    crank_positions: tuple[float, ...] | None = None,
-    spacing: float | None = None,
-    bank_angles: tuple[float, ...] = (0.0,),
-    **more: Any,
-) -> dict[str, Any]:
-    """Return the fields of the record that these keys of a machine file describe."""
-    angles = [bank_angles[index % len(bank_angles)] for index in range(count)]
-    cylinders = []
-    for index, angle in enumerate(angles):
-        bank, incline, along = angle - angles[0], each.inclination, each.axial_position
-        if bank and incline is not None:
-            incline = (incline + bank + 180.0) % 360.0 - 180.0
-        if spacing is not None:
-            along = spacing * angles[:index].count(angle) + (along or 0.0)
-        cylinders.append(
-            replace(
-                each,
-                name=f"{each.name or 'cylinder'} {index + 1}",
-                crank_position=(crank_positions or (each.crank_position,) * count)[index],
-                bank_angle=each.bank_angle + bank,
-                inclination=incline,
-                axial_position=along,
-            )
-        )
-    placed, shared = crank_positions is not None, len(set(angles)) == count
-    return {"cylinders": tuple(cylinders), "placed": placed, "shared": shared}
+        return tuple(cylinders)
 
 
 def in_order(
@@ -133,48 +86,54 @@ def in_order(
 ) -> tuple[Cylinder, ...]:
     """Return the cylinders with their crank positions, those of the firing order if there is one.
 
-    cycle: that of the machine.
+    order, cycle: those of the machine.
     """
-    if not isinstance(cylinders, tuple):
-        return cylinders.positioned(order, cycle)
-    if order:
-        return fired(cylinders, order, _degrees(cylinders, cycle), ("firing_order",))
-    free = [one.crank_position is None for one in cylinders]
-    at_pins = [replace(one, crank_position=0.0) if alone else one for one, alone in zip(cylinders, free)]
-    return in_even_turns(at_pins, free, cycle)
+    if isinstance(cylinders, tuple):
+        if order:
+            return fired(cylinders, order, cycle, ("firing_order",))
+        free = [one.crank_position is None for one in cylinders]
+        at_pins = [replace(one, crank_position=0.0) if alone else one for one, alone in zip(cylinders, free)]
+        return in_even_turns(at_pins, free, cycle)
+    equal, each = cylinders, cylinders.cylinders
+    if order and (equal.firing_order or equal.crank_positions):
+        given = "crank positions are" if equal.crank_positions else "a firing order is"
+        refused(f"{given} also given in 'cylinders'; leave one of them out", "firing_order")
+    if order or equal.firing_order:
+        where: Path = ("cylinders", "firing_order") if equal.firing_order else ("firing_order",)
+        return fired(each, equal.firing_order or order or (), cycle, where)
+    if equal.crank_positions:
+        only_pins = all(0 <= angle < 360 for angle in equal.crank_positions)
+        return in_even_turns(each, [only_pins] * equal.count, cycle)
+    if len(set(equal.bank_angles)) < equal.count:
+        message = (
+            "'firing_order' is missing: positions of the cranks; write for instance 'firing_order: 1-3-4-2', or "
+            "'crank_positions', one for each cylinder"
+        )
+        refused(message, "cylinders")
+    # on one pin each dead centre follows by the angle between the stroke lines
+    on_pin = [replace(one, crank_position=(one.crank_position or 0.0) + one.bank_angle) for one in each]
+    return in_even_turns(on_pin, [True] * equal.count, cycle)
 
 
-def _degrees(cylinders: Sequence[Cylinder], cycle: str) -> float:
-    """Return the longest cycle of the cylinders, in degrees; cycle: that of the machine."""
-    return 360.0 * max((CYCLES[one.cycle or cycle] for one in cylinders), default=1)
+def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: str, where: Path) -> tuple[Cylinder, ...]:
+    """Return the cylinders with the crank positions, from cylinder 1, of a firing order.
 
-
-def fired(cylinders: Sequence[Cylinder], order: tuple[int, ...], cycle: float, where: Path) -> tuple[Cylinder, ...]:
-    """Return the cylinders with the crank positions, from cylinder 1, of a firing order over a cycle in degrees.
-
-    where: the place of the order, for errors. Raises RuleError if it does not name each cylinder once, and if crank
-    positions are given, too.
+    cycle: that of the machine; where: the place of the order, for errors. Raises RuleError if it does not name each
+    cylinder once, and if crank positions are given, too.
     """
     if len(order) != len(cylinders):
         refused(f"it names {len(order)} cylinders, the machine has {len(cylinders)}", *where)
-    refuse(
-        *(
-            Fault(("cylinders", index, "crank_position"), "'firing_order' sets the crank positions; leave it out")
-            for index, one in enumerate(cylinders)
-            if one.crank_position
-        )
-    )
-    first = order.index(1)
-    late = [(order.index(number) - first) % len(order) for number in range(1, len(order) + 1)]
-    return tuple(replace(one, crank_position=cycle * turn / len(order)) for one, turn in zip(cylinders, late))
+    given = [("cylinders", index, "crank_position") for index, one in enumerate(cylinders) if one.crank_position]
+    refuse(*(Fault(place, "'firing_order' sets the crank positions; leave it out") for place in given))
+    longest = 360.0 * max(CYCLES[one.cycle or cycle] for one in cylinders)
+    late = [(order.index(number) - order.index(1)) % len(order) for number in range(1, len(order) + 1)]
+    return tuple(replace(one, crank_position=longest * turn / len(order)) for one, turn in zip(cylinders, late))
 
 
 _TOGETHER = 12
 """Cylinders of which all combinations of turns are compared; of more, those of one crank pin after another."""
 _ON_A_PIN = 9
 """Cylinders that are compared together where there are more: a row of a large radial engine."""
-_EQUAL = 1e-9
-"""Share by which sums of squared intervals differ that are equal but for rounding."""
 
 
 def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: str) -> tuple[Cylinder, ...]:
@@ -188,41 +147,31 @@ def in_even_turns(cylinders: Sequence[Cylinder], free: Sequence[bool], cycle: st
     angles = {place: cylinders[place].crank_position for place in firing}
     fixed = {place: angle for place, angle in angles.items() if place not in choosing}
     for pin in _pins(cylinders, choosing) if len(firing) > _TOGETHER else [choosing] if choosing else []:
-        fixed = _most_even(fixed, {place: angles[place] for place in pin})
+        turns = product(*((angles[place], angles[place] + 360.0) for place in pin))
+        fixed = min(({**fixed, **dict(zip(pin, chosen))} for chosen in turns), key=_unevenness)
     return tuple(
         replace(one, crank_position=fixed[place]) if place in choosing else one for place, one in enumerate(cylinders)
     )
 
 
-def _pins(cylinders: Sequence[Cylinder], places: Iterable[int]) -> list[list[int]]:
+def _pins(cylinders: Sequence[Cylinder], places: Sequence[int]) -> list[list[int]]:
     """Return the places in the list of the cylinders that share a crank pin, pin by pin along the shaft."""
-
-    def pin(place: int) -> tuple[float, float]:
+    pins = {}
+    for place in places:
         one = cylinders[place]
-        return one.axial_position or 0.0, round((one.bank_angle - one.crank_position) % 360.0, 6) % 360.0
+        turned = round((one.bank_angle - one.crank_position) % 360.0, 6) % 360.0
+        pins[place] = one.axial_position or 0.0, turned
+    along = sorted(places, key=lambda place: pins[place][0])
+    each = [list(group) for _, group in groupby(along, lambda place: pins[place])]
+    return [one[start : start + _ON_A_PIN] for one in each for start in range(0, len(one), _ON_A_PIN)]
 
-    along = sorted(places, key=lambda place: pin(place)[0])
-    pins = [list(group) for _, group in groupby(along, pin)]
-    return [one[start : start + _ON_A_PIN] for one in pins for start in range(0, len(one), _ON_A_PIN)]
 
-
-def _most_even(fixed: Mapping[int, float], open_: Mapping[int, float]) -> dict[int, float]:
-    """Return the angles of those that are fixed and of those of which each may fire a turn later."""
-    sums: list[float] = []
-    choices = [(angle, angle + 360.0) for angle in open_.values()]
-    here = [within_cycle(angle, 720.0) for angle in fixed.values()]
-    for angles in product(*([within_cycle(angle, 720.0) for angle in both] for both in choices)):
-        along = sorted([*here, *angles])
-        sums.append(sum((after - one) ** 2 for one, after in pairwise((*along, along[0] + 720.0))))
-    least = min(sums) * (1 + _EQUAL)
-    found = ({**fixed, **dict(zip(open_, angles))} for angles, size in zip(product(*choices), sums) if size <= least)
-
-    def order(angles: Mapping[int, float]) -> list[int]:
-        """Return the cylinders in the order in which they fire, from the first one on."""
-        first = angles[min(angles)]
-        return sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
-
-    return min(found, key=order)
+def _unevenness(angles: Mapping[int, float]) -> tuple[float, list[int]]:
+    """Return the sum of the squared firing intervals, and the cylinders in the order in which they fire."""
+    # rounded, since equal sums may differ by rounding
+    squares = round(sum(one * one for one in intervals(angles.values(), 720.0)), 6)
+    first = angles[min(angles)]
+    return squares, sorted(angles, key=lambda place: (within_cycle(angles[place] - first, 720.0), place))
 
 
 def within_cycle(angle: float, cycle: float) -> float:

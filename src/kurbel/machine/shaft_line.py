@@ -7,13 +7,13 @@ of the cranks.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
-from kurbel.declared.forms.structures import Listing, OneOf
-from kurbel.declared.forms.values import TEXT
+from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
+from kurbel.declared.forms.values import TEXT, Choice
 from kurbel.declared.reading import REFUSED
-from kurbel.declared.record import Record, Rule, field, record
-from kurbel.errors import Fault, refuse
+from kurbel.declared.record import Record, Rule, field
+from kurbel.errors import Fault, Path, refuse
 from kurbel.near_words import did_you_mean
 
 STEEL = 82e9
@@ -21,13 +21,20 @@ STEEL = 82e9
 GROUND, FLYWHEEL = "ground", "flywheel"
 """Words in the list: an end that is held fast, and the flywheel of the machine."""
 
-_OF_MASS = ("inertia", "cylinder", "load")
-_OF_PIECE = ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor")
+SEGMENT = "shaft segment"
+_KEYS = {
+    "mass": ("inertia", "cylinder", "load"),
+    SEGMENT: ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor"),
+    "gear": ("gear",),
+}
+"""Kind of an item -> the keys that only such an item has."""
 
 
-@record
 class ShaftPart(Record):
-    """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None."""
+    """One item of the list: a mass, a piece of shaft, or a pair of gears; what is not given is None.
+
+    word: `ground` or `flywheel`, which have no keys, else an empty text.
+    """
 
     name: str | None = field(str, "What the table calls it", absent="the cylinder, or mass 1, mass 2, …")
     inertia: float | None = field(
@@ -78,40 +85,42 @@ class ShaftPart(Record):
         "ratio", "Speed ratio: speed after the gear over speed before it, in the order of the list", "u", above=0
     )
 
+    word: str = ""
+
     def rules(self) -> Iterator[Rule]:
-        each = {"a mass": _OF_MASS, "a shaft segment": _OF_PIECE, "a gear": ("gear",)}
-        found = [(kind, key) for kind, keys in each.items() for key in keys if vars(self)[key] is not None]
-        others = [(kind, key) for kind, key in found if kind != found[0][0]]
-        if others:
-            (one, first), (other, second) = found[0], others[0]
-            message = f"'{first}' is of {one}, '{second}' of {other}; make two items of them"
-            yield Rule(second, True, message)
-        elif not found:
-            piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
-            yield Rule((), True, f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'")
-        elif kind_of(self) == "piece":
-            none = self.stiffness is None and self.length is None
-            yield Rule((), none, "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'")
-        elif kind_of(self) == "mass":
-            none = self.inertia is None and self.cylinder is None
-            yield Rule("load", none, "the mass has no inertia: give 'inertia' or 'cylinder'")
+        given = [(kind, key) for kind, keys in _KEYS.items() for key in keys if vars(self)[key] is not None]
+        piece = "'stiffness', or 'diameter' and 'length', of a shaft segment"
+        nothing = f"give 'inertia' or 'cylinder' of a mass, {piece}, or 'gear'"
+        yield Rule((), not given and not self.word, nothing)
+        for kind, key in given:
+            first, other = given[0]
+            message = f"'{other}' is of a {first}, '{key}' of a {kind}; make two items of them"
+            yield Rule(key, kind != first, message)
+        kind = self.kind if len(dict(given)) == 1 else ""
+        none = self.stiffness is None and self.length is None
+        message = "the segment has no stiffness: give 'stiffness', or 'diameter' and 'length'"
+        yield Rule((), kind == SEGMENT and none, message)
+        none = self.inertia is None and self.cylinder is None
+        yield Rule("load", kind == "mass" and none, "the mass has no inertia: give 'inertia' or 'cylinder'")
         both = self.gear is not None and self.damping is not None
         yield Rule("damping", both, "is for a mass or a shaft segment; a gear has none")
         if self.bore is not None and self.diameter is not None:
             yield Rule("bore", self.bore >= self.diameter, "{bore} is not less than the diameter ({diameter})")
 
+    @property
+    def kind(self) -> str:
+        """What it is: `mass`, `shaft segment`, `gear` or `ground`; a mass, too, is the flywheel of the machine."""
+        given = [kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)]
+        return GROUND if self.word == GROUND else (*given, "mass")[0]
 
-Part = Union[ShaftPart, str]
 
-
-def kind_of(part: Part) -> str:
-    """Return the kind of an item of the list: `mass`, `piece`, `gear` or `ground`."""
-    if isinstance(part, str):
-        return GROUND if part == GROUND else "mass"
-    for kind, keys in (("mass", _OF_MASS), ("piece", _OF_PIECE)):
-        if any(vars(part)[key] is not None for key in keys):
-            return kind
-    return "gear"
+SHAFT = Listing(
+    OneOf(
+        Choice((GROUND, FLYWHEEL), means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)}),
+        RecordForm(ShaftPart),
+    )
+)
+"""The form of a shaft line."""
 
 
 class ShaftSection(NamedTuple):
@@ -171,114 +180,87 @@ class ShaftLine:
 
 def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
     """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
-    found = _of_cylinders(parts, cylinders)
-    if REFUSED in parts:
-        return [fault for fault in found if fault.path]
-    return [*found, *_of_order(parts), *_of_whole(parts)]
-
-
-def _of_cylinders(parts: Sequence[Part], cylinders: Sequence[str]) -> list[Fault]:
     faults, seen = [], set[str]()
-    for index, part in enumerate(parts):
-        for name in (part.cylinder or ()) if isinstance(part, ShaftPart) else ():
-            place = index, "cylinder"
-            if name not in cylinders:
-                there = f"the machine has {', '.join(cylinders) or 'none'}"
-                near = did_you_mean(name, tuple(cylinders))
-                faults.append(Fault(place, f"no cylinder '{name}'{near}; {there}"))
-            elif name in seen:
-                faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
-            seen.add(name)
+    named = [(index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED]
+    for place, name in [((index, "cylinder"), name) for index, names in named for name in names]:
+        if name not in cylinders:
+            there = f"the machine has {', '.join(cylinders) or 'none'}"
+            faults.append(Fault(place, f"no cylinder '{name}'{did_you_mean(name, tuple(cylinders))}; {there}"))
+        elif name in seen:
+            faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
+        seen.add(name)
     absent = [name for name in cylinders if name not in seen]
-    if absent and not seen - set(cylinders):
-        item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
-        faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
-    return faults
+    if REFUSED not in parts:
+        if absent and not seen - set(cylinders):
+            item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
+            faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
+        faults += (Fault(place, message) for broken, place, message in _of_order(parts) if broken)
+    return [fault.below(("shaft",)) for fault in faults]
 
 
-def _of_order(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield the faults in the order of the items."""
-    kinds = [kind_of(part) for part in parts]
+def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
+    """Yield what may be wrong with the order and the number of items: whether it is, the place, the message."""
+    kinds = [part.kind for part in parts]
     for index, (before, kind, after) in enumerate(zip(["", *kinds], kinds, [*kinds[1:], ""])):
-        if kind == "piece" and not (before and after):
-            yield Fault((index,), "a shaft line begins and ends with a mass, or with 'ground'")
-        if kind == before == "mass":
-            yield Fault((index,), "no shaft segment between this mass and the one before; give it, or one mass")
-        damped = any(isinstance(one, ShaftPart) and one.damping for one in parts[max(index - 1, 0) : index + 1])
-        if kind == before == "piece" and damped:
-            yield Fault((index,), "segments in series with a damper cannot be combined; give a mass between them")
-        if kind == GROUND and before and after:
-            yield Fault((index,), "'ground' is a fixed end; it must be first or last")
-        if kind == "gear" and not (before and after):
-            yield Fault((index, "gear"), "a gear joins two parts; give what comes before and after it")
-        elif kind == "gear" and "mass" not in (before, after):
-            yield Fault((index, "gear"), "gears have inertia; give it as a mass before or after the gear")
-        if GROUND in (kind, before) and {kind, before} & {"mass", "gear"}:
-            yield Fault((index,), "a shaft segment is missing between 'ground' and the first mass; give its stiffness")
+        here, gear, inside = (index,), (index, "gear"), bool(before and after)
+        yield kind == SEGMENT and not inside, here, "a shaft line begins and ends with a mass, or with 'ground'"
+        twice = "no shaft segment between this mass and the one before; give it, or one mass"
+        yield kind == before == "mass", here, twice
+        damped = kind == before == SEGMENT and bool(parts[index].damping or parts[index - 1].damping)
+        yield damped, here, "segments in series with a damper cannot be combined; give a mass between them"
+        yield kind == GROUND and inside, here, "'ground' is a fixed end; it must be first or last"
+        at_end = kind == "gear" and not inside
+        yield at_end, gear, "a gear joins two parts; give what comes before and after it"
+        massless = kind == "gear" and inside and "mass" not in (before, after)
+        yield massless, gear, "gears have inertia; give it as a mass before or after the gear"
+        held = GROUND in (kind, before) and bool({kind, before} & {"mass", "gear"})
+        yield held, here, "a shaft segment is missing between 'ground' and the first mass; give its stiffness"
+    gears, grounds, cranks, loads = (
+        [index for index, of_this in enumerate(each) if of_this]
+        for each in zip(*((part.gear, part.word == GROUND, part.cylinder, part.load) for part in parts))
+    )
+    one = "one reduction is all that a shaft line may have; refer the others to it by u²"
+    yield len(gears) > 1, (*gears[1:2], "gear"), one
+    both = "a shaft that is held at both ends does not turn a crank; leave one 'ground' out"
+    yield len(grounds) > 1 and bool(cranks), (*cranks[:1],), both
+    single = "a single mass cannot vibrate; give a second one and the shaft segment between them"
+    yield kinds.count("mass") + min(len(grounds), 1) < 2, (), single
+    yield len(loads) > 1, (*loads[1:2], "load"), "one mass takes the load; leave one of them out"
+    around = bool(gears and cranks and cranks[0] < gears[0] < cranks[-1])
+    yield around, (*gears[:1], "gear"), "there are cranks before and after the gear; all must turn at one speed"
 
 
-def _of_whole(parts: Sequence[Part]) -> Iterator[Fault]:
-    """Yield faults of the whole list: items that are missing, or given too often."""
-    kinds = [kind_of(part) for part in parts]
-    gears = [index for index, kind in enumerate(kinds) if kind == "gear"]
-    grounds = [index for index, kind in enumerate(kinds) if kind == GROUND]
-    if len(gears) > 1:
-        yield Fault((gears[1], "gear"), "one reduction is all that a shaft line may have; refer the others to it by u²")
-    cranks = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.cylinder]
-    if len(grounds) > 1 and cranks:
-        yield Fault((cranks[0],), "a shaft that is held at both ends does not turn a crank; leave one 'ground' out")
-    if kinds.count("mass") + min(len(grounds), 1) < 2:
-        second = "give a second one and the shaft segment between them"
-        yield Fault((), f"a single mass cannot vibrate; {second}")
-    loads = [index for index, part in enumerate(parts) if isinstance(part, ShaftPart) and part.load]
-    if len(loads) > 1:
-        yield Fault((loads[1], "load"), "one mass takes the load; leave one of them out")
-    if gears and cranks and cranks[0] < gears[0] < cranks[-1]:
-        yield Fault((gears[0], "gear"), "there are cranks before and after the gear; all must turn at one speed")
-
-
-def line_of(parts: Sequence[Part], cylinders: Sequence[str] = ()) -> ShaftLine:
+def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
 
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
     refuse(*shaft_faults(parts, cylinders))
-    gear = next((index for index, part in enumerate(parts) if kind_of(part) == "gear"), len(parts))
-    ratios = 1.0, next((part.gear for part in parts if isinstance(part, ShaftPart) and part.gear), 1.0)
-    if any(isinstance(part, ShaftPart) and part.cylinder for part in parts[gear:]):
-        ratios = 1 / ratios[1], 1.0
+    kinds = [part.kind for part in parts]
+    gear = kinds.index("gear") if "gear" in kinds else len(parts)
+    ratio = next((part.gear for part in parts if part.gear), 1.0)
+    ratios = (1 / ratio, 1.0) if any(part.cylinder for part in parts[gear:]) else (1.0, ratio)
     masses: list[ShaftMass] = []
     pieces: list[ShaftPiece] = []
     loads: list[int] = []
-    before = ""
-    for index, part in enumerate(parts):
-        kind, ratio = kind_of(part), ratios[index > gear]
+    for index, (part, kind, before) in enumerate(zip(parts, kinds, ["", *kinds])):
+        turns = ratios[index > gear]
         if kind == "mass":
-            mass = _mass(part, ratio, len(masses) + 1)
-            if before == "gear" and kind_of(parts[gear - 1]) == "mass":
-                mass = _geared(masses.pop(), mass)
-            masses.append(mass)
-            if isinstance(part, ShaftPart) and part.load:
+            square, cranks = turns**2, part.cylinder or ()
+            name = part.word or part.name or " + ".join(cranks) or f"mass {len(masses) + 1}"
+            inertia, damping = square * (part.inertia or 0.0), square * (part.damping or 0.0)
+            mass = ShaftMass(name, inertia, cranks, square * (part.word == FLYWHEEL), damping, turns)
+            joined = before == "gear" and kinds[gear - 1] == "mass"
+            masses.append(_geared(masses.pop(), mass) if joined else mass)
+            if part.load:
                 loads.append(len(masses) - 1)
-        elif kind == "piece":
-            piece = _piece(part, ratio)
-            pieces.append(_in_series(pieces.pop(), piece) if before == "piece" else piece)
-        before = kind
-    ground = {(True, True): "both", (True, False): "before", (False, True): "after"}.get(
-        (parts[0] == GROUND, parts[-1] == GROUND), ""
-    )
+        elif kind == SEGMENT:
+            piece = _piece(part, turns)
+            pieces.append(_in_series(pieces.pop(), piece) if before == SEGMENT else piece)
+    ends = {(True, True): "both", (True, False): "before", (False, True): "after", (False, False): ""}
     # the driving or driven machine is at an end, and is no crank
     usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
-    return ShaftLine(tuple(masses), tuple(pieces), ground, (*loads, usual)[0])
-
-
-def _mass(part: Part, ratio: float, number: int) -> ShaftMass:
-    square = ratio**2
-    if isinstance(part, str):
-        return ShaftMass(FLYWHEEL, flywheel=square, ratio=ratio)
-    cylinders = part.cylinder or ()
-    name = part.name or " + ".join(cylinders) or f"mass {number}"
-    return ShaftMass(name, square * (part.inertia or 0.0), cylinders, 0.0, square * (part.damping or 0.0), ratio)
+    return ShaftLine(tuple(masses), tuple(pieces), ends[kinds[0] == GROUND, kinds[-1] == GROUND], (*loads, usual)[0])
 
 
 def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
@@ -293,9 +275,8 @@ def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
     )
 
 
-def _piece(part: Part, ratio: float) -> ShaftPiece:
+def _piece(part: ShaftPart, ratio: float) -> ShaftPiece:
     """Return a piece; where no stiffness is given, it is G π (d⁴ − d_i⁴)/(32 l) in N m/rad."""
-    assert isinstance(part, ShaftPart)
     stiffness, bore = part.stiffness, part.bore or 0.0
     if stiffness is None:
         assert part.diameter is not None

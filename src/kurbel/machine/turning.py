@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from kurbel.declared.forms.structures import OneOf
-from kurbel.declared.forms.values import NumberForm, Points, size_faults, unit_name
+from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
 from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Node, Reading, has_refused
-from kurbel.declared.record import Record, Rule, Values, alternative, field, record
+from kurbel.declared.reading import Node, Reading
+from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
 from kurbel.machine.cylinder import CYCLES
@@ -23,7 +23,6 @@ _HIGHEST = 1000
 """Periods per turn of a harmonic; each is followed, so that more of them take long."""
 
 
-@record
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
@@ -76,8 +75,8 @@ class Rim(Record):
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        if "outer_diameter" in given and "inner_diameter" in given and not has_refused(given.values()):
-            inner, outer = given["inner_diameter"], given["outer_diameter"]
+        inner, outer = given.get("inner_diameter"), given.get("outer_diameter")
+        if inner is not None and outer is not None:
             sentence = "{inner:length} leaves no rim inside of the outer diameter ({outer:length})"
             yield Rule("inner_diameter", inner >= outer, sentence, {"inner": inner, "outer": outer})
 
@@ -120,7 +119,6 @@ class Rim(Record):
         return self.density * self.speed(omega) ** 2
 
 
-@record
 class Flywheel(Record):
     """A flywheel by its moment of inertia, by the wanted fluctuation of the speed, or both."""
 
@@ -193,13 +191,6 @@ class Effort:
     files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
-    @classmethod
-    def of_points(cls, unit: Factor, points: list[Point]) -> "Effort":
-        """Return the diagram of the value of `points` in a machine file; raises RuleError."""
-        refuse(*(_angle_faults(points, ("points",)) or size_faults(points, unit, "torque", ("points",))))
-        up, down = unit
-        return cls(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
-
     def cycle_fault(self, cycle: str, turns: int) -> str:
         """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
         last, whole = self.angles[-1], 360.0 * turns
@@ -228,22 +219,6 @@ class Harmonics:
     terms: tuple[tuple[float, float, float], ...]
 
     key: ClassVar[str] = "harmonics"
-
-    @classmethod
-    def of_keys(cls, unit: Factor, mean: float, terms: list[tuple[float, float, float]]) -> "Harmonics":
-        """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
-        up, down = unit
-        for index, (order, _, _) in enumerate(terms):
-            if not 0 < order <= _HIGHEST:
-                message = (
-                    f"order {order:g} is no number of periods per turn; it must be more than 0, at most {_HIGHEST}"
-                )
-                refused(message, "harmonics", index, 0)
-        bare = isinstance(mean, InUnit)
-        sizes = [(0.0, mean if bare else 0.0), *((order, abs(c) + abs(s)) for order, c, s in terms)]
-        refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque", ())))
-        level = mean * up / down if bare else mean
-        return cls(level, tuple((n, c * up / down, s * up / down) for n, c, s in terms))
 
     def cycle_fault(self, cycle: str, turns: int) -> str:
         """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
@@ -304,11 +279,48 @@ class _MeanTorque(OneOf):
         return InUnit(found) if bare and isinstance(found, float) else found
 
 
-MEAN_TORQUE = _MeanTorque()
-HARMONICS = Points("order", "cos", "sin", least=1)
+UNIT = alternative(unit_name("torque"), "Unit of the torques")
+POINTS = alternative(
+    Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
+)
+MEAN = alternative(_MeanTorque(), "Mean torque, bare in the unit of the harmonics", "M_m")
+HARMONICS = alternative(
+    Points("order", "cos", "sin", least=1),
+    "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
+    needs="mean",
+    instead="points",
+)
 
 
-@record
+def harmonics_need_a_unit(given: Values) -> Rule:
+    """Return the rule that coefficients of harmonics have the unit of their key."""
+    return Rule("harmonics", "harmonics" in given and "unit" not in given, "'harmonics' needs 'unit' beside it")
+
+
+def points_of(unit: Factor, points: list[Point]) -> Effort:
+    """Return the diagram of the value of `points` in a machine file; raises RuleError."""
+    refuse(*(fault.below(("points",)) for fault in _angle_faults(points) or size_faults(points, unit, "torque")))
+    up, down = unit
+    return Effort(tuple(angle for angle, _ in points), tuple(torque * up / down for _, torque in points))
+
+
+def harmonics_of(unit: Factor, mean: float, terms: list[Point]) -> Harmonics:
+    """Return those of the values of `unit`, `mean` and `harmonics` in a machine file; raises RuleError."""
+    for index, (order, *_) in enumerate(terms):
+        if not 0 < order <= _HIGHEST:
+            most = f"it must be more than 0, at most {_HIGHEST}"
+            refused(f"order {order:g} is no number of periods per turn; {most}", "harmonics", index, 0)
+    sizes = [(0.0, mean if isinstance(mean, InUnit) else 0.0), *((n, abs(c) + abs(s)) for n, c, s in terms)]
+    refuse(*(fault._replace(path=("harmonics",)) for fault in size_faults(sizes, unit, "torque")))
+    up, down = unit
+    return Harmonics(in_unit(mean, unit), tuple((n, c * up / down, s * up / down) for n, c, s in terms))
+
+
+def in_unit(mean: float, unit: Factor) -> float:
+    """Return a mean torque in N m, where a bare number is in this unit."""
+    return mean * unit[0] / unit[1] if isinstance(mean, InUnit) else mean
+
+
 class Load(Record):
     """The resistance at the shaft, in exactly one of four forms.
 
@@ -320,26 +332,11 @@ class Load(Record):
     slip: float | None = field(
         "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
     )
-    _unit = alternative(unit_name("torque"), "Unit of the torques")
-    _points = alternative(
-        Points("deg", "torque"),
-        "Torque over the crank angle; two points at one angle are a jump",
-        "M",
-        needs="unit",
-        gives=lambda given: {"diagram": Effort.of_points(given["unit"], given["points"])},
-    )
-    _mean = alternative(
-        MEAN_TORQUE,
-        "Mean torque, added to the harmonics, in the unit",
-        "M_m",
-        needs="harmonics",
-    )
-    _harmonics = alternative(
-        HARMONICS,
-        "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
-        needs="unit",
-        instead="points",
-        gives=lambda given: {"diagram": Harmonics.of_keys(given["unit"], given["mean"], given["harmonics"])},
+    _unit = UNIT
+    _points = POINTS._replace(gives=lambda given: {"diagram": points_of(given["unit"], given["points"])})
+    _mean = MEAN._replace(needs="harmonics")
+    _harmonics = HARMONICS._replace(
+        gives=lambda given: {"diagram": harmonics_of(given["unit"], given["mean"], given["harmonics"])}
     )
     diagram: Effort | Harmonics | None = None
 
@@ -347,15 +344,15 @@ class Load(Record):
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
         lone = "unit" in given and not {"points", "harmonics"} & given.keys()
         yield Rule("unit", lone, "'unit' needs 'points' or 'harmonics' beside it")
-        yield Rule("harmonics", "harmonics" in given and "mean" not in given, "'harmonics' needs 'mean' beside it")
+        yield harmonics_need_a_unit(given)
 
     def rules(self) -> Iterator[Rule]:
         forms = {"power_law": self.power, "slip": self.slip, self.key: self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
         yield Rule((), not given, message)
-        names = " and ".join(f"'{name}'" for name in given)
-        yield Rule((given[1:] or ("",))[0], len(given) > 1, f"{names} are different loads; keep one of them")
+        both = f"{' and '.join(map(repr, given))} are different loads; keep one of them"
+        yield Rule(given[-1] if given else (), len(given) > 1, both)
 
     @property
     def varies(self) -> bool:
@@ -367,36 +364,26 @@ class Load(Record):
         """The key of the torques in the machine file."""
         return self.diagram.key if self.diagram else "points"
 
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        return self.diagram.cycle_fault(cycle, turns) if self.diagram else ""
 
-
-@record
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 
     stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
     inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0, required=True)
-    damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0, absent="0")
+    damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0)
 
 
-def _angle_faults(points: list[Point], path: Path) -> list[Fault]:
-    """Return what is wrong with the angles of a diagram over one cycle.
-
-    They run from 0 to the end of a turn and do not turn back; two points at one angle are a jump, three one too many.
-    """
-    for i, (angle, _) in enumerate(points):
+def _angle_faults(points: list[Point]) -> list[Fault]:
+    """Return what is wrong with the angles of a diagram over one cycle: from 0 to the end of a turn, in order."""
+    for index, (angle, _) in enumerate(points):
         if not 0 <= angle <= 360 * MOST_TURNS:
-            return [Fault((*path, i), f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg")]
-        if i and angle < points[i - 1][0]:
-            return [
-                Fault((*path, i), f"{angle:g} deg after {points[i - 1][0]:g} deg; put the points in order of the angle")
-            ]
-        if i >= 2 and angle == points[i - 2][0]:
-            return [Fault((*path, i), f"three points at {angle:g} deg; a jump has two")]
-    if not points or points[0][0] != 0 or points[-1][0] == 0 or points[-1][0] % 360:
-        runs = f"this one runs from {points[0][0]:g} to {points[-1][0]:g} deg" if points else "this one has no points"
+            message = f"{angle:g} deg is outside the cycle; angles run from 0 to 360 or 720 deg"
+            return [Fault((index,), message)]
+    if faults := order_faults(points, "{:g} deg"):
+        return faults
+    first, last = points[0][0], points[-1][0]
+    if first != 0 or last == 0 or last % 360:
         whole = "a diagram runs from 0 to 360 deg, or to 720 deg in a four-stroke cycle"
-        return [Fault(path, f"{whole}, {runs}; give the values at both ends of the cycle, with angles in degrees")]
+        ends = "give the values at both ends of the cycle, with angles in degrees"
+        return [Fault((), f"{whole}, this one runs from {first:g} to {last:g} deg; {ends}")]
     return []

@@ -44,13 +44,9 @@ def read_override(text: str, option: str = "--set") -> Override:
         _refused(given, f"write KEY=VALUE, such as {one}, of one of several cylinders cylinders.0.bore='450 mm'")
     if any(str(step).endswith(":") for step in path):
         _refused(given, "write KEY=VALUE, without the colon")
-    try:  # bytes that the locale cannot decode are surrogates in an argument
-        content = value.encode("utf-8", "surrogateescape")
-    except UnicodeEncodeError:  # surrogates that are no byte are reported by the decoder
-        content = value.encode("utf-8", "surrogatepass")
     reading = Reading()
-    try:
-        tree = parse(decode(option, content).text, reading)
+    try:  # half of a surrogate pair is no text: let the decoder say so
+        tree = parse(decode(option, value.encode("utf-8", "surrogatepass")).text, reading)
     except MachineFileError as error:
         reading.faults += error.faults
     if reading.faults:
@@ -113,18 +109,34 @@ def set_over(tree: Node, origin: Origin) -> list[Override]:
     return overrides
 
 
+def _cases(tree: Tree) -> dict[str, Path]:
+    """Return the paths of the load cases of a file by their names."""
+    cases = tree.get("cases")
+    listed = cases if isinstance(cases, list) else ()
+    return {str(one.get("name")): ("cases", index) for index, one in enumerate(listed) if isinstance(one, dict)}
+
+
 def _of_case(tree: Tree, name: str) -> Iterator[Override]:
     """Yield the overrides of a load case of a file; raises UsageError where there is none of this name."""
-    cases = tree.get("cases")
-    listed = [one if isinstance(one, dict) else {} for one in (cases if isinstance(cases, list) else ())]
-    named = {str(one.get("name")): index for index, one in enumerate(listed)}
+    named = _cases(tree)
     if name not in named:
-        none = "'cases' of the file is no list of cases; see kurbel check" if cases else "the file has no 'cases'"
-        there = f"there are {', '.join(map(shown, named))}" if named else none
+        none = "'cases' of the file is no list of cases; see kurbel check" if "cases" in tree else ""
+        there = f"there are {', '.join(map(shown, named))}" if named else none or "the file has no 'cases'"
         raise UsageError(f"--case {shown(name)}: no such load case{did_you_mean(name, tuple(named))}; {there}")
-    values = listed[named[name]].get("set")
+    place: Path = (*named[name], "set")
+    values = value_at(tree, place)
     for key, value in values.items() if isinstance(values, dict) else ():
-        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, ("cases", named[name], "set", key))
+        yield Override(f"case {shown(name)}: {shown(key)}", path_of(key), value, (*place, key))
+
+
+def value_at(tree: Any, path: Path) -> Node | None:
+    """Return what is at a path of a tree; None where there is nothing."""
+    try:
+        for step in path:
+            tree = tree[step]
+    except (KeyError, IndexError, TypeError):
+        return None
+    return tree
 
 
 def _step(node: Node, one: Override, place: int) -> Any:
@@ -133,8 +145,8 @@ def _step(node: Node, one: Override, place: int) -> Any:
     above = dotted(one.path[:place])
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            instead = dotted((*one.path[:place], _near(step, node), *one.path[place + 1 :]))
-            _refused(one.given, f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…")
+            items = f"its items are {above}.0 to {above}.{len(node) - 1}"
+            _refused(one.given, f"'{above}' is a list; {items}, in the order of the file")
         if last:
             node[step] = one.value
         return node[step]
@@ -147,34 +159,6 @@ def _step(node: Node, one: Override, place: int) -> Any:
             _refused(one.given, f"there is no list '{dotted(one.path[: place + 1])}' in the file")
         node[str(step)] = {}
     return node[str(step)]
-
-
-def _near(step: str | int, items: Sequence[Node]) -> int:
-    """Return the item of a list that is probably meant: of that name, counted from its end, or else the last one."""
-    names = [item.get("name") if isinstance(item, dict) else None for item in items]
-    if step in names:
-        return names.index(step)
-    from_end = int(step) if re.fullmatch(f"-{_NUMBER}", str(step)) else -1
-    return max(len(items) + from_end, 0)
-
-
-def by_numbers(tree: Tree, key: str) -> str:
-    """Return a dotted key with the numbers of the items of lists, where it calls them otherwise.
-
-    >>> by_numbers({"cylinders": [{"name": "LP"}, {"name": "HP"}]}, "cylinders.HP.bore")
-    'cylinders.1.bore'
-    """
-    node: Node | None = tree
-    found: list[str | int] = []
-    for step in path_of(key):
-        if isinstance(node, list) and node:
-            number = step if isinstance(step, int) and step < len(node) else _near(step, node)
-            found.append(number)
-            node = node[number]
-        else:
-            found.append(step)
-            node = node.get(str(step)) if isinstance(node, dict) else None
-    return dotted(tuple(found))
 
 
 def named(fault: Fault, overrides: Sequence[Override]) -> Fault:
@@ -235,13 +219,12 @@ def _short(value: Node) -> str:
 
 def case_names(origin: Origin) -> tuple[str, ...]:
     """Return the names of the load cases of a file; raises UsageError where it has none."""
-    cases = tree_of(origin).get("cases")
-    names = [one.get("name") for one in cases if isinstance(one, dict)] if isinstance(cases, list) else []
-    if not names and cases:
-        raise UsageError("--cases: 'cases' of the file is no list of cases, each with a 'name'; see kurbel check")
-    if not names:
-        raise UsageError("--cases: the file has no 'cases'")
-    return tuple(map(str, names))
+    tree = tree_of(origin)
+    if names := tuple(_cases(tree)):
+        return names
+    none = "'cases' of the file is no list of cases, each with a 'name'; see kurbel check"
+    wrong = none if "cases" in tree else "the file has no 'cases'"
+    raise UsageError(f"--cases: {wrong}")
 
 
 # the text of a file with other values under some of its keys; all else, comments too, stays as it is written

@@ -48,20 +48,17 @@ def _of(form: Form, definitions: Schema) -> Schema:
     if isinstance(form, Listing):
         item = _of(form.item, definitions)
         if form.called and isinstance(form.item, RecordForm):  # one that is like another need not say everything
-            properties: Schema = {}
-            describe(form.item, properties, [], definitions)
-            short = {"type": "object", "additionalProperties": False, "properties": properties}
+            short = _mapping(definitions[form.item.record.__name__]["properties"])
             item = {"if": {"required": ["like"]}, "then": short, "else": item}
         return {"type": "array", "items": item, "minItems": 1, "maxItems": MOST_ITEMS}
     if isinstance(form, OneOf):
         return {"anyOf": [_of(one, definitions) for one in form.forms]}
     if isinstance(form, Keyed):
-        one = {"type": "object", "additionalProperties": False}
-        each: list[Schema] = []
+        each = []
         for name, case in form.cases.items():
             own = case.keys if isinstance(case, RecordForm) else {}
             beside = {key: _of(own[key].form, definitions) for key in form.beside if key in own}
-            each.append({**one, "required": [name], "properties": {name: _of(case, definitions), **beside}})
+            each.append(_mapping({name: _of(case, definitions), **beside}) | {"required": [name]})
         return {"anyOf": [*each, _of(form.otherwise, definitions)]}
     if isinstance(form, FigureForm):
         name = f"figure_{form.size.kind}"
@@ -73,6 +70,10 @@ def _of(form: Form, definitions: Schema) -> Schema:
         }
         return _reference(name)
     return dict(form.schema)
+
+
+def _mapping(properties: Schema) -> Schema:
+    return {"type": "object", "additionalProperties": False, "properties": properties}
 
 
 def _reference(name: str) -> Schema:
@@ -106,7 +107,7 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
             "examples": [form.example],
         }
         number = _reference(name)
-    others: list[Any] = [word for word, _ in form.words] + [0] * form.zero
+    others: list[Any] = [*form.words] + [0] * form.zero
     return {"anyOf": [number, {"enum": others}]} if others else number
 
 
@@ -135,7 +136,7 @@ def _of_figures(form: Figures, known: Mapping[str, Quantity], definitions: Schem
                 schemas[repr(schema)] = schema
                 names.setdefault(repr(schema), []).append(re.sub(r"[][\\^$.|?*+(){}/]", r"\\\g<0>", name))
     patterns = {f"^.+\\.({'|'.join(names[text])})$": schema for text, schema in schemas.items()}
-    return {"type": "object", "additionalProperties": False, "properties": properties, "patternProperties": patterns}
+    return {**_mapping(properties), "patternProperties": patterns}
 
 
 def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
@@ -143,8 +144,7 @@ def _of_mapping(form: RecordForm, definitions: Schema) -> Schema:
     properties: Schema = {}
     rules: list[Schema] = []
     describe(form, properties, rules, definitions)
-    schema = {"type": "object", "additionalProperties": False, "properties": properties}
-    return schema | _demands(form) | ({"allOf": rules} if rules else {})
+    return _mapping(properties) | _demands(form) | ({"allOf": rules} if rules else {})
 
 
 def describe(record: RecordForm, properties: Schema, rules: list[Schema], definitions: Schema) -> None:

@@ -71,6 +71,9 @@ class Angles(NamedTuple):
         return tuple(tuple(known[low:high]) for low, high in pairwise(ends))
 
 
+NOWHERE = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
+
+
 class SampledExtremes(NamedTuple):
     """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
 

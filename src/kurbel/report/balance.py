@@ -90,17 +90,14 @@ def balance_report(case: Case, frame: Frame) -> Report:
 
 
 def _notes(case: Case) -> Iterator[str]:
-    balance, free, square = case.balance, case.balance.free, (case.balance.omega or 0.0) ** 2
+    balance, free = case.balance, case.balance.free
     yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if free.moment is not None and balance.z_0 is not None:
         yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
     if free.next_order and balance.omega is not None:
-        most = f"{show(free.at_most(free.force) * square, 'force')} of the force"
-        if free.moment is not None:
-            most += f", {show(free.at_most(free.moment) * square, 'torque')} of the moment"
         yield (
-            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on: "
-            f"together at most {most}."
+            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; "
+            "all of them are in forces and moments."
         )
     if balance.counterweights or balance.machine.balance_shafts:
         yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
@@ -124,8 +121,8 @@ def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[Pla
         circle: dict[str, float | None] = {"order": order}
         ellipse: dict[str, float | None] = {"order": order}
         for name, vector, of_book in (
-            ("F", free.force, book and book.force),
-            ("M", free.moment, book and book.moment),
+            ("F", free.force, book.force if book else None),
+            ("M", free.moment, book.moment if book else None),
         ):
             if vector is None:
                 continue

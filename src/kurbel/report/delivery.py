@@ -12,7 +12,7 @@ from kurbel.report.left_out import missing
 from kurbel.report.tables import LeftOut, PlaceTable
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.delivery import CompressorEnd, CompressorStage, MachineDelivery
+from kurbel.solver.delivery import CompressorStage, MachineDelivery
 
 ENDS = by_id(
     Quantity("stroke_volume", "V_s", "volume", "Volume that the end sweeps in a turn"),
@@ -43,11 +43,9 @@ def _delivering(case: Case) -> list[Subject]:
 
 
 def _ends_tables(stage: CompressorStage, system: str) -> Iterator[PlaceTable]:
-    def values(end: CompressorEnd) -> dict[str, float | None]:
-        each = (end.volume, end.efficiency, end.capacity, end.mass_flow, end.temperature)
-        return {id: one for id, one in zip(ENDS, each) if one is not None}
-
-    rows: list[Row] = [((end.owner, end.end), values(end)) for end in stage.ends]
+    rows: list[Row] = [
+        ((one.owner, one.end), {id: one.figures[id] for id in ENDS if id in one.figures}) for one in stage.ends
+    ]
     pressures = ""
     if stage.suction is not None:
         pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
@@ -97,7 +95,7 @@ def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
     """Yield stages in series whose mass flows differ, vessels that are small, and a lift that is too high."""
     known = [one for one in found.stages if one.suction is not None]
     for one, after in pairwise(known):
-        flow, next_flow = one.answers["mass_flow"], after.answers["mass_flow"]
+        flow, next_flow = one.answers.get("mass_flow"), after.answers.get("mass_flow")
         low, high = _IN_SERIES
         if not (flow and next_flow and low <= after.suction / one.delivery <= high):
             continue

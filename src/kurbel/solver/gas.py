@@ -170,7 +170,7 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
             run(0, 0.0, burning, card.cut_off)
             run(0, card.cut_off, burning, 1.0, card.expansion_exponent)
         if four_stroke:
-            run(1, 1.0, card.leaving, 0.0)
+            run(1, 1.0, card.back_pressure, 0.0)
             run(2, 0.0, card.intake, 1.0)
     return sorted(lines, key=lambda line: line[0])
 

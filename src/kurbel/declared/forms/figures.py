@@ -7,7 +7,17 @@ from typing import Any
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
-from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, is_nothing, kind_of, shown
+from kurbel.declared.reading import (
+    LONGEST_VALUE,
+    REFUSED,
+    Node,
+    Plain,
+    Reading,
+    has_refused,
+    is_nothing,
+    kind_of,
+    shown,
+)
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
 from kurbel.near_words import did_you_mean
@@ -77,32 +87,29 @@ class Figures(Form):
         known = reading.key_values()
         found: dict[str, Any] = {}
         for name, written in value.items():
-            id, wrong = self._meant(name, known)
+            ids = called(name, known.values())
+            scope, own = ("", name) if ids else scoped(name)
+            ids = ids or called(own, known.values())
+            wrong = ambiguity(own, ids) if ids else self._unknown(name, known)
+            id = ".".join(filter(None, (scope, *ids[:1])))
+            if not wrong and known[ids[0]].listed:
+                wrong = f"'{name}' is a list of values; no {self.what} can be put on it"
             if id in found:
                 wrong = f"'{shown(name)}' is the symbol of {id}, which is given already; leave one of them out"
             if wrong:
                 reading.fault((*path, name), wrong, at_key=True)
                 continue
-            figure = self.figure_of(known[scoped(id)[1]]).read(reading, written, (*path, name))
+            figure = self.figure_of(known[ids[0]]).read(reading, written, (*path, name))
             if isinstance(figure, Expected):
                 figure = replace(figure, name=name)
             found[id] = Bound(figure, written_unit(str(written)), name) if isinstance(figure, float) else figure
-        return REFUSED if any(one is REFUSED for one in found.values()) else tuple(found.items())
+        return REFUSED if has_refused(found.values()) else tuple(found.items())
 
-    def _meant(self, name: str, known: Mapping[str, Quantity]) -> tuple[str, str]:
-        """Return the id that a name means, with its prefix, and what is wrong with it."""
-        found = called(name, known.values())
-        scope, own = scoped(name)
-        if scope and not found and called(own, known.values()):
-            id, wrong = self._meant(own, known)
-            return f"{scope}.{id}", wrong
-        if not found:
-            single = {id: one for id, one in known.items() if not one.listed}
-            hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
-            some = f"; known are {', '.join([*known][:6])}, …"
-            return "", f"unknown key value '{shown(name)}'{hint or some}"
-        wrong = f"'{name}' is a list of values; no {self.what} can be put on it" if known[found[0]].listed else ""
-        return found[0], ambiguity(name, found) or wrong
+    def _unknown(self, name: str, known: Mapping[str, Quantity]) -> str:
+        single = {id: one for id, one in known.items() if not one.listed}
+        hint = did_you_mean(name, tuple(single)) or in_sentences(name, single.values())
+        some = f"; known are {', '.join([*known][:6])}, …"
+        return f"unknown key value '{shown(name)}'{hint or some}"
 
 
 LIMITS = Figures("a mapping of key values to bounds, such as 'c_max: 6 m/s'", "`{key value: bound}`", "bound")
@@ -144,11 +151,11 @@ class FigureForm(Form):
         if not written_unit(figure) and not percent:
             figure = f"{figure} {written_unit(tolerance)}"  # 13.16 ± 0.05 m/s2
         middle = self.size.read(reading, Plain(figure), path)
-        if middle is REFUSED:
+        around = 1.0 if percent or middle is REFUSED else self.size.read(reading, Plain(tolerance), path)
+        if middle is REFUSED or around is REFUSED:
             return REFUSED
-        around = float(percent[1]) / 100 * abs(middle) if percent else self.size.read(reading, Plain(tolerance), path)
-        if around is REFUSED:
-            return REFUSED
+        if percent:
+            around = float(percent[1]) / 100 * abs(middle)
         if not around > 0:
             refused(f"the tolerance of '{value}' is {'0' if not around else 'negative'}; write how far off it may be")
         return Expected(middle - around, middle + around, written_unit(figure), str(value))
@@ -173,13 +180,12 @@ class ByKey(Form):
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         if not self.spreads:
             return tuple(value.items())
-        found: list[tuple[str, Any]] = []
+        found: dict[str, Any] = {}
         for name, one in value.items():
-            text = spread_text(one) if isinstance(one, str) and len(one) <= LONGEST_VALUE else ""
-            got = repr(shown(one) if isinstance(one, str) and len(one) <= LONGEST_VALUE else one)
-            wrong = f"expected a standard uncertainty above 0, such as {_SPREADS}, got {got}"
-            found.append((name, text or reading.fault((*path, name), wrong)))
-        return REFUSED if any(text is REFUSED for _, text in found) else tuple(found)
+            short = isinstance(one, str) and len(one) <= LONGEST_VALUE
+            wrong = f"expected a standard uncertainty above 0, such as {_SPREADS}, got {kind_of(one)}"
+            found[name] = (short and spread_text(str(one))) or reading.fault((*path, name), wrong)
+        return REFUSED if has_refused(found.values()) else tuple(found.items())
 
 
 UNCERTAINTIES = ByKey(f"a mapping of keys to standard uncertainties, such as {_SPREADS}", spreads=True)

@@ -6,7 +6,6 @@ then `Maker` makes records of these.
 
 import functools
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -15,7 +14,7 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import TOO_EXTREME, Key, Record, required
+from kurbel.declared.keys import NOT_A_NUMBER, TOO_EXTREME, Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
@@ -30,7 +29,7 @@ from kurbel.declared.reading import (
     shown,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Path, RuleError, refused
+from kurbel.errors import Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -46,16 +45,9 @@ class RecordForm(Form):
         super().__init__(f"a mapping with the keys {', '.join(self.keys)}", parts=parts)
         self.listed = next((form for _, form in self.parts if isinstance(form, Inline) and form.unless), None)
 
-    def every_key(self) -> Iterator[tuple[str, Key]]:
-        """Yield all keys that such a mapping can have; inline ones follow the key that adds them."""
-        for name, key in self.keys.items():
-            yield name, key
-            for record in key.form.inline:
-                yield from record.every_key()
-
-    def names(self, mapping: Tree) -> dict[str, None]:
-        """Return the names of all keys that this mapping may have: its own, inline ones, those of the variant."""
-        found = {name: None for name, key in self.keys.items() if not isinstance(key.form, Inline)}
+    def names(self, mapping: Tree) -> Keys:
+        """Return all keys that this mapping may have: its own, inline ones, those of the variant."""
+        found = {name: key for name, key in self.keys.items() if not isinstance(key.form, Inline)}
         for name, key in self.keys.items():
             if isinstance(key.form, Inline) and key.form.unless not in mapping:
                 found |= key.form.names(mapping)
@@ -81,7 +73,7 @@ class RecordForm(Form):
         for name, key in self.keys.items():
             form = key.form
             if isinstance(form, Inline):
-                if form.unless not in mapping and rest.keys() & form.names(mapping).keys():
+                if form.unless not in mapping and rest.keys() & form.names(mapping):
                     values[name] = form.build(reading, rest, path, inline=True)
             elif isinstance(form, Variant):
                 word = form.read(reading, mapping[name], (*path, name)) if name in mapping else form.default
@@ -98,23 +90,16 @@ class RecordForm(Form):
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Report each unknown key, and yield the known keys that were probably meant."""
-        known = self.names(mapping)
-        misplaced = self._misplaced(mapping)
-        other_words = {word: name for name, key in self.every_key() for word in (*key.also, key.symbol)}
+        known, moved = self.names(mapping), self._moved(mapping)
+        synonyms = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
-            place = self._as_here(reading.where_it_belongs(name, path), mapping)
-            word = other_words.get(name, "")
-            meant = word if word in known else near(name, tuple(known))
-            if name in misplaced:
-                message, meant = misplaced[name], ""
-            elif name == "<<":
-                message = (
-                    "merging is not supported; write the keys themselves; a cylinder may be 'like: NAME' of another"
-                )
-            elif meant:
+            place = moved.get(name) or reading.where_it_belongs(name, path)
+            meant = "" if name in moved else synonyms.get(name) or near(name, tuple(known))
+            if meant:
+                # a synonym of a key here may be the name of a key elsewhere
                 message = f"unknown key; did you mean '{meant}'?"
-                if place and meant == word:  # a synonym of a key here, and the name of a key elsewhere
+                if place and name in synonyms:
                     message, meant = f"{message} Or {place}", ""
             elif place:
                 message = f"does not belong here; {place}"
@@ -124,7 +109,7 @@ class RecordForm(Form):
             if meant and meant not in mapping:
                 yield meant
 
-    def _misplaced(self, mapping: Tree) -> dict[str, str]:
+    def _moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that belong below another key of this mapping, each with the message where to move it."""
         moved = {
             inner: f"move it below '{name}'"
@@ -135,36 +120,21 @@ class RecordForm(Form):
         if self.listed and self.listed.unless in mapping:
             unless = self.listed.unless
             there = f"'{unless}.each'" if isinstance(mapping[unless], dict) else f"the items of '{unless}'"
-            moved |= dict.fromkeys(self.listed.names(mapping), f"belongs {self.listed.item}; move it into {there}")
+            moved |= dict.fromkeys(self.listed.names(mapping), f"it belongs {self.listed.item}; move it into {there}")
         return moved
-
-    def _as_here(self, words: str, mapping: Tree) -> str:
-        """Return the words for a place as seen from this mapping: a key of a cylinder is in an item of 'cylinders'."""
-        if self.listed and self.listed.unless in mapping:
-            own, listed = self.listed.names(mapping), mapping[self.listed.unless]
-            item = f"{self.listed.unless}.{'each' if isinstance(listed, dict) else 0}"
-            for name in re.findall(r"under '(\w+)", words):
-                words = words.replace(f"under '{name}", f"under '{item}.{name}") if name in own else words
-        return words
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
         """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
-        faults = list(error.faults)
-        for place, fault in enumerate(faults):
-            if self.listed and len(fault.path) > 1 and fault.path[0] == self.listed.unless:
-                name, item, *inner = fault.path
-                listed = mapping.get(self.listed.unless)
+        unless = self.listed.unless if self.listed else ""
+        faults = []
+        for fault in error.faults:
+            name, item, *inner = (*fault.path, "", "")[: max(len(fault.path), 2)]
+            if unless and name == unless and isinstance(item, int):
+                listed = mapping.get(unless)
                 head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
-                faults[place] = fault._replace(path=(*head, *inner)) if isinstance(item, int) else fault
+                fault = fault._replace(path=(*head, *inner))
+            faults.append(fault)
         return RuleError(*faults)
-
-    def made(self, values: Tree) -> Any:
-        """Return the record of these values of its keys; raises RuleError."""
-        try:
-            record = self.record.from_keys(**values)
-        except ArithmeticError:
-            refused(TOO_EXTREME)
-        return refused(TOO_EXTREME) if too_extreme(record, values) else record
 
 
 class Inline(RecordForm):
@@ -201,20 +171,20 @@ def no_mapping(form: Form, value: Node) -> NoReturn:
     refused(f"expected {form.expected}, got {kind_of(value)}{glued_hint(value)}")
 
 
-def places(form: Form, path: str = "", words: str = "at the top of the file") -> Iterator[tuple[str, str]]:
-    """Yield (description of the mapping, key) for every key below a mapping of this form; path: of that mapping."""
+def places(form: Form, path: Path = (), words: str = "at the top of the file") -> Iterator[tuple[str, Path, str]]:
+    """Yield (description, path, key) for every key below a mapping of this form; both are of the key's mapping."""
     if isinstance(form, RecordForm) and form.inline_too:
         return
     for name, inner in form.parts:
         if isinstance(inner, Inline):
             yield from places(inner, path, inner.item if inner.unless else words)
             continue
-        below = f"{path}.{name}" if path and name else path or name
+        below: Path = (*path, name) if name else path
         if name:
-            yield words, name
+            yield words, path, name
         if isinstance(inner, Variant):
-            yield from ((f"to '{name}: {word}'", one) for word, case in inner.cases.items() for one in case.keys)
-        yield from places(inner, below, f"under '{below}'" if name else words)
+            yield from ((f"to '{name}: {word}'", (), one) for word, case in inner.cases.items() for one in case.keys)
+        yield from places(inner, below, f"under '{path_text(below)}'" if name else words)
 
 
 def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
@@ -232,45 +202,61 @@ def too_extreme(record: Any, values: Tree) -> Any:
 
     values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
     """
-
-    def numbers(of: Tree) -> dict[str, Any]:
-        return {name: one for name, one in of.items() if is_number(one) or isinstance(one, np.ndarray)}
-
-    given_infinite: Any = functools.reduce(np.logical_or, (one == math.inf for one in numbers(values).values()), False)
+    endless = [vars(type(record)).get(name) for name in vars(record)]
+    infinite: Any = any(one == math.inf for one in (*values.values(), *endless) if is_number(one))
     broken: Any = False
-    for name, value in numbers(vars(record)).items():
-        if isinstance(value, np.ndarray) and isinstance(record, Indivisible):
-            continue
-        infinite = (value == math.inf) & (given_infinite | (vars(type(record)).get(name) == math.inf))
-        broken = broken | ~np.asarray(np.isfinite(value) | infinite)
+    for value in vars(record).values():
+        if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
+            broken = broken | ~(np.isfinite(value) | (infinite & (value == math.inf)))
     return broken
 
 
 class Maker:
-    """The second pass: makes records of what was read, and reports what is wrong with them."""
+    """The second pass: makes records of what was read, and reports what is wrong with them.
 
-    def __init__(self, reading: Reading) -> None:
-        self.reading = reading
+    broken: which of many machines, whose numbers are arrays (count,), break a rule.
+    """
+
+    def __init__(self, reading: Reading, count: int = 0) -> None:
+        self.reading, self.broken = reading, np.zeros(count, dtype=bool)
 
     def made(self, value: Any) -> Any:
         """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
         if isinstance(value, Given):
-            value.made = self._record(value)
+            values = {name: self.made(one) for name, one in value.values.items()}
+            try:
+                value.made = self._record(value.form, values)
+            except ArithmeticError:
+                value.made = self.reading.fault(value.path, TOO_EXTREME)
+            except RuleError as error:
+                value.made = self.reading.refuse(value.path, value.form.flattened(error, value.mapping))
             return value.made
         if isinstance(value, tuple) and any(isinstance(one, Given) for one in value):
             return tuple(map(self.made, value))
         return value
 
-    def _record(self, given: Given) -> Any:
-        path, form = given.path, given.form
-        values = {name: self.made(one) for name, one in given.values.items()}
-        try:
-            if not any(one is REFUSED or (isinstance(one, tuple) and has_refused(one)) for one in values.values()):
-                return form.made(values)
-            # contradictions between keys are reported even where the value of one could not be read
-            return self.reading.refuse(path, RuleError(*form.record.faults_of_keys(values)))
-        except RuleError as error:
-            return self.reading.refuse(path, form.flattened(error, given.mapping))
+    def _record(self, form: RecordForm, values: dict[str, Any]) -> Any:
+        """Return the record of values by key; REFUSED after its rules have judged those that could be read."""
+        unread = [
+            name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
+        ]
+        stand_ins = {name: form.keys[name].form.unread for name in unread}
+        if None in stand_ins.values():
+            raise RuleError(*form.record.faults_of_some(values))
+        if unread:
+            try:
+                form.record.from_keys(**(values | stand_ins))
+            except RuleError as error:
+                raise RuleError(*(one for one in error.faults if one.message != NOT_A_NUMBER)) from None
+            return REFUSED
+        record = form.record.from_keys(**values)
+        extreme = too_extreme(record, values)
+        if len(self.broken):
+            rules = [*form.record.rules_of_keys(values), *(record.rules() if isinstance(record, Record) else ())]
+            self.broken = functools.reduce(np.logical_or, (rule.broken for rule in rules), self.broken | extreme)
+        elif extreme:
+            refused(TOO_EXTREME)
+        return record
 
 
 class Variant(Choice):
@@ -317,7 +303,6 @@ class Listing(Form):
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
-        pairs = [{name, key.instead} for name, key in self.item.every_key() if key.instead]
         above: dict[str, tuple[int, Tree]] = {}
         completed: list[Any] = []
         for index, item in enumerate(items):
@@ -328,6 +313,7 @@ class Listing(Form):
                 here: Path = (*path, index)
                 reading.alike[here] = (*path, place)
                 own = {key: value for key, value in item.items() if key != "like"}
+                pairs = [{name, key.instead} for name, key in self.item.names(other | own).items() if key.instead]
                 replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
                 whole = {key: value for key, value in other.items() if key not in replaced} | own
             elif like is not REFUSED:
@@ -351,6 +337,7 @@ class OneOf(Form):
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
         self.number = next((form.number for form in forms if form.number), None)
+        self.unread = next((form.unread for form in forms if form.unread is not None), None)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
@@ -396,19 +383,19 @@ class Keyed(Form):
                 if name not in known and (meant := near(name, (*known, *cases))) in cases:
                     return reading.fault((*path, name), f"unknown key; did you mean '{meant}'?", at_key=True)
             return self.otherwise.read(reading, value, path)
-        inside = value[deciding]
-        if isinstance(inside, dict):
-            case = cases[deciding]
-            keys = case.keys if isinstance(case, RecordForm) else {}
-            moved = {name: value[name] for name in self.beside if name in value and name in keys and name not in inside}
-            inside, value = {**inside, **moved}, {name: one for name, one in value.items() if name not in moved}
-        for name in value:
-            if name != deciding:
-                place = reading.where_it_belongs(name, path) or "leave it out"
-                fix = "leave one of them out" if name in known or name in cases else place
-                reading.fault((*path, name), f"cannot be combined with '{deciding}'; {fix}", at_key=True)
-        inner = cases[deciding].read(reading, inside, (*path, deciding))
-        return inner if len(value) == 1 else REFUSED
+        case, inside = cases[deciding], value[deciding]
+        moved: Tree = {}
+        if isinstance(inside, dict) and isinstance(case, RecordForm):
+            own = [name for name in self.beside if name in case.keys and name not in inside]
+            moved = {name: value[name] for name in own if name in value}
+            inside = {**inside, **moved}
+        others = [name for name in value if name != deciding and name not in moved]
+        for name in others:
+            place = "" if name in known or name in cases else reading.where_it_belongs(name, path) or "leave it out"
+            message = f"cannot be combined with '{deciding}'; {place or 'leave one of them out'}"
+            reading.fault((*path, name), message, at_key=True)
+        inner = case.read(reading, inside, (*path, deciding))
+        return REFUSED if others else inner
 
 
 def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:

@@ -5,8 +5,8 @@ import operator
 import os
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,7 +39,8 @@ class Form(ABC):
 
     expected: for 'expected …'; example: a value as a person writes it, '…' if that is longer than a line; written: a
     short description for pages. kind: of the number, or of each number of a list, '' for other values; number: the form
-    of the number that it becomes, which many machines have as an array; inline: records whose keys are in the same
+    of the number that it becomes, which many machines have as an array; unread: stands for a value that could not be
+    read, while rules judge the others, None if nothing can; inline: records whose keys are in the same
     mapping. schema: the JSON Schema of a value, as far as it does not depend on parts and units; parts: the forms that
     it consists of, each after its key, '' for none.
     """
@@ -48,6 +49,7 @@ class Form(ABC):
     """Of the tree: str, list or dict."""
     kind: str = ""
     number: "NumberForm | None" = None
+    unread: Any = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -106,12 +108,28 @@ def out_of_size(value: Any, kind: str) -> str:
     return ""
 
 
-def size_faults(points: Sequence[Point], unit: Factor, kind: str, path: Path) -> list[Fault]:
+def size_faults(points: Sequence[Point], unit: Factor, kind: str) -> list[Fault]:
     """Return a fault for the first point whose value in this unit of its kind is too large; [] if there is none."""
     up, down = unit
     for index, (_, value) in enumerate(points):
-        if not abs(value * up / down) <= KINDS[kind].largest:
-            return [Fault((*path, index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
+        if abs(value * up / down) > KINDS[kind].largest:
+            return [Fault((index, 1), f"{value:g} {out_of_size(math.inf, kind)}")]
+    return []
+
+
+def order_faults(points: Sequence[Point], place: str) -> list[Fault]:
+    """Return a fault for the first point at which a line turns back, or has a third value; place: how one is written.
+
+    >>> order_faults([(0, 5), (0.6, 4), (0.5, 3)], "fraction {:g}")[0].message
+    'fraction 0.5 after 0.6: the line turns back'
+    """
+    forward = points[0][0] <= points[-1][0]
+    for index in range(1, len(points)):
+        before, here = points[index - 1], points[index]
+        if here[0] != before[0] and (here[0] > before[0]) != forward:
+            return [Fault((index,), f"{place.format(here[0])} after {before[0]:g}: the line turns back")]
+        if index > 1 and points[index - 2][0] == here[0] and points[index - 2] != before != here:
+            return [Fault((index,), f"three points at {place.format(here[0])}; a jump has two")]
     return []
 
 
@@ -132,7 +150,7 @@ class NumberForm(Form):
     least: float | None = None
     below: float | None = None
     most: float | None = None
-    words: tuple[tuple[str, float], ...] = ()
+    words: Mapping[str, float] = field(default_factory=dict)
     zero: bool = False
     whole: bool = False
     share_of: str = ""
@@ -141,7 +159,7 @@ class NumberForm(Form):
     apart: bool = False
 
     def __post_init__(self) -> None:
-        instead, bare = [word for word, _ in self.words], self.kind == "ratio"
+        bare = self.kind == "ratio"
         if self.whole:
             sample, expected = str(max(self.least or 0, 3) if self.most is None else self.least), "a whole number"
         elif bare:
@@ -149,16 +167,16 @@ class NumberForm(Form):
         else:
             sample = example(self.kind)
             expected = f"a number with its unit, such as '{sample}'"
-        written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in instead)
-        super().__init__(expected + "".join(f" or '{word}'" for word in instead), sample, written)
+        written = "" if bare else f"`{sample}`" + "".join(f", or `{word}`" for word in self.words)
+        super().__init__(expected + "".join(f" or '{word}'" for word in self.words), sample, written)
         self.number = None if self.whole or self.apart else self
+        self.unread = None if self.number is None or self.becomes else math.nan
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the number, and compare it with its bounds."""
         text = one_line(value, self.expected)
-        for word, number in self.words:
-            if text == word:
-                return number
+        if text in self.words:
+            return self.words[text]
         if (self.words and text.strip()[0].isalpha()) or (self.or_else and not NUMBER.match(plain(text))):
             refused(f"expected {self.expected}{self.or_else}, got '{shown(text)}'")
         try:
@@ -213,9 +231,9 @@ class NumberForm(Form):
         for bound, wrong, too, must in bounds if known else ():
             if bound is None:
                 continue
-            if np.any((wrong(value, bound) | (value != value)) & ((value != 0) | (not self.zero))):
+            if np.any(wrong(value, bound) & ((value != 0) | (not self.zero))):
                 return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
-        return ""
+        return "must be finite" if known and not self.words and np.any(np.isinf(value)) else ""
 
 
 class Choice(Form):
@@ -225,11 +243,11 @@ class Choice(Form):
     """
 
     def __init__(
-        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, bool] | None = None
+        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, Any] | None = None
     ) -> None:
         self.words, self.also, self.means = words, also or {}, means or {}
         every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
-        schema: Schema = {"type": "boolean"} if means else {"enum": list(words)}
+        schema: Schema = {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
         super().__init__(" or ".join(every), words[0], written, schema)
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
@@ -262,6 +280,7 @@ class Text(Form):
         found = {"type": ["string", "integer"], "pattern": rf"^\s*{pattern}\s*$"} if pattern else schema
         super().__init__(expected, example, written, found)
         self.become, self.pattern, self.unit_of = become, pattern, unit_of
+        self.unread = (math.nan, 1.0) if unit_of else None
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read the text."""
