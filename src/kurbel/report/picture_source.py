@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -95,8 +95,10 @@ class Source:
         if isinstance(results, Results):  # others have no columns
             self.quantities = {one.id: one for one in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
-        if self.quantities:
-            self._start = results.at(np.zeros(1), np.full(1, 1e-3))
+
+    @cached_property
+    def _start(self) -> Any:
+        return self.results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, *ids: str) -> tuple[str, ...]:
         """Return those of these columns that the results have."""
