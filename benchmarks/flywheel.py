@@ -156,8 +156,8 @@ def timed(solve: Callable[[float], np.ndarray], inertia: float) -> tuple[np.ndar
 
 def two_cylinders(slip: float) -> float:
     """Seconds for everything that kurbel flywheel answers for a two-cylinder engine with this slip."""
+    from kurbel.report.commands import report_of
     from kurbel.report.frame import Frame
-    from kurbel.report.turning import flywheel_report
 
     card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
     both = tuple(
@@ -169,7 +169,7 @@ def two_cylinders(slip: float) -> float:
     times = []
     for _ in range(20):
         begin = time.perf_counter()
-        flywheel_report(Case(machine), Frame("flywheel", angles, None, "si"))
+        report_of(Case(machine), Frame("flywheel", angles, None, "si"))
         times.append(time.perf_counter() - begin)
     return statistics.median(times)
 

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 import kurbel
-from kurbel.report.frame import Subject, subjects_of
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Subject
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ANGLES = np.arange(361.0)

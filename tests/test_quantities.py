@@ -5,8 +5,8 @@ import pytest
 from kurbel import loads
 from kurbel.mechanisms import Mechanism
 from kurbel.quantities import RESULTS
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
-from kurbel.report.whole import report_of
 from kurbel.solver.figures import rows_of
 from representative import case_of
 

@@ -204,13 +204,7 @@ def joined(words: Iterable[str], quantities: Iterable[Quantity]) -> Iterator[str
         yield name
 
 
-PHI = Quantity(
-    "phi",
-    "φ",
-    "angle",
-    "Crank angle from the inner dead centre, in the sense of rotation",
-    commands=("motion", "forces", "flywheel", "stress", "bearings", "balance", "torsion", "delivery"),
-)
+PHI = Quantity("phi", "φ", "angle", "Crank angle from the inner dead centre, in the sense of rotation")
 """Over it all other columns are printed."""
 
 

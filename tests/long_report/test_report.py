@@ -51,7 +51,7 @@ def test_the_waterworks_machine_is_whole_and_small() -> None:
     assert len(page.encode()) <= LARGEST
     digest = sha256(CONFIGS["waterworks"].read_bytes()).hexdigest()
     assert digest in page
-    for id in ("input", "motion", "forces", "flywheel", "energy", "left-out"):
+    for id in ("input", "motion", "forces", "flywheel", "left-out"):
         assert f'<section id="{id}">' in page
         assert f'<a href="#{id}">' in page
     drawn = list(pictures(case_of("punch"), ("all",), PictureOptions()))

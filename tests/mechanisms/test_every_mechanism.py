@@ -21,8 +21,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.mechanisms.yoke_frame import YokeFrame
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
-from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 from representative import law_of_each
 

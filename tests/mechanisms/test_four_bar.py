@@ -11,7 +11,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.four_bar import FourBar
-from kurbel.report.crank import motion_report
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
@@ -47,7 +47,7 @@ def test_drag_link_in_a_machine_file():
     """Frame shortest: both cranks turn. No dead centres, strokes or swing; one turn takes out 2π of the moment."""
     keys = "crank: 300 mm\ncoupler: 250 mm\nrocker: 300 mm\nframe: 100 mm"
     case = Case(loads(f"speed: 60 rpm\nmechanism: four-bar\n{keys}\nmoment: {{work: 900 Nm}}"))
-    report = motion_report(case, Frame("motion", (0.0, 90.0), None, "si"))
+    report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
     told = {one.id for one in report.parts[0].key_values}
     assert {"theta_dot_max", "transmission_min"} <= told
     assert not {"phi_idc", "phi_odc", "swing", "theta_max", "time_ratio", "c_work_max"} & told

@@ -6,7 +6,7 @@ import pytest
 
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.report.crank import motion_report
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
@@ -21,7 +21,7 @@ def test_angles_and_times_need_no_lever(crank, frame, ratio, swing):
     The two strokes part the turn at cos β = r/e, or e/r (R p. 615); no ram, so no x, c, b and stroke.
     """
     case = Case(loads(f"speed: 60 rpm\nmechanism: slotted-lever\ncrank: {crank} mm\nframe: {frame} mm"))
-    report = motion_report(case, Frame("motion", (0.0, 90.0), None, "si"))
+    report = report_of(case, Frame("motion", (0.0, 90.0), None, "si"))
     told = {one.id: one.value for one in report.parts[0].key_values}
     # the book rounds the angle of the return stroke to 96.4°
     assert told["time_ratio"] == pytest.approx(ratio, abs=2e-3)

@@ -7,6 +7,7 @@ import pytest
 from jsonschema import Draft7Validator
 
 from command import run
+from kurbel.report.commands import REPORTS
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -32,6 +33,7 @@ MACHINES = [
     ("delivery", "compressor-two-stage"),
     ("delivery", "triplex-pump"),
 ]
+MACHINES += [(one.word, "waterworks") for one in REPORTS if one.word not in dict(MACHINES)]
 ANSWERS = [
     ["table", "--compare"],
     ["friction", "--incline", "30", "--coefficient", "0.1"],

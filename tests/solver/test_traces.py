@@ -26,7 +26,7 @@ from kurbel.machine.measured import Measured, Motored, dead_centre
 from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.report.crank import forces_report
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -154,7 +154,7 @@ def test_samples_too_far_apart_are_told(step: int, far: bool) -> None:
     points = [(a, float(smooth(a))) for a in range(0, 361, step)]
     piston = Piston(0.3, indicator=Indicator(Measured.from_keys(unit=(BAR, 1), points=points)))
     case = Case(Machine((Cylinder(CRANK, pistons=(piston,)),)))
-    (part,) = forces_report(case, Frame("forces", [0.0], None, "si")).parts
+    (part,) = report_of(case, Frame("forces", [0.0], None, "si")).parts
     assert far == any("the samples are too far apart" in warning for warning in part.warnings)
 
 

@@ -15,8 +15,9 @@ from kurbel.render import Look
 from kurbel.render.data import findings_json, findings_junit
 from kurbel.render.output import refuse_overwriting, stdout_look, write_out
 from kurbel.render.page import listing
-from kurbel.report.check import Checked, Findings, checked, faults_found, findings
+from kurbel.report.check import Checked, Finding, checked, faults_found, findings
 from kurbel.report.commands import BROKEN
+from kurbel.report.frame import provenance
 from kurbel.solver.case import Case
 
 _GRAVEST = 2, 3, BROKEN, DONE
@@ -24,12 +25,26 @@ _GRAVEST = 2, 3, BROKEN, DONE
 
 
 class Outcome(NamedTuple):
-    """What is found of a file: a machine with its checks, or why it cannot be read."""
+    """What is found of a file: a machine with its checks, or why it cannot be read; error: of its limits, too."""
 
     file: str
     error: KurbelError | None = None
     machine: Machine | None = None
     checked: Checked | None = None
+
+    @property
+    def status(self) -> int:
+        """The exit status of a check of this file alone."""
+        if self.error:
+            return self.error.exit_status
+        return BROKEN if self.checked and self.checked.broken else DONE
+
+    @property
+    def findings(self) -> list[Finding]:
+        """All findings in the file, or why it cannot be read."""
+        if self.machine and self.checked:
+            return findings(self.machine, self.checked, located)
+        return faults_found(self.file, self.error or KurbelError())
 
 
 def check_files(
@@ -47,16 +62,22 @@ def check_files(
     refuse_overwriting(file_name, files)
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
     look = Look(width=width) if file_name else stdout_look(Look(width=width))
-    texts = {"table": _as_text, "json": _as_json, "junit": _as_junit}[format]
-    write_out(texts(outcomes, look), file_name, "utf-8" if format == "junit" else None)
-    for one in outcomes:
-        if one.error and format == "table":
+    if format == "table":
+        write_out(_as_text(outcomes, look), file_name)
+        for error in (one.error for one in outcomes if one.error):
             if len(files) == 1:
-                raise one.error
-            to_stderr(message_of(one.error))
-    statuses = [one.error.exit_status if one.error else DONE for one in outcomes]
-    statuses += [BROKEN for one in outcomes if not one.error and one.checked and one.checked.broken]
-    return min(statuses, key=_GRAVEST.index)
+                raise error
+            to_stderr(message_of(error))
+    else:
+        found = [(one.file, [finding._asdict() for finding in one.findings]) for one in outcomes]
+        if format == "junit":
+            write_out(findings_junit(found, replace(look, encoding="utf-8")), file_name, "utf-8")
+        else:
+            only = outcomes[0].machine if len(outcomes) == 1 else None
+            name, made_from = (only.name, provenance(only)) if only else (None, None)
+            listed = [finding for _, each in found for finding in each]
+            write_out(findings_json(name, made_from, listed, look), file_name)
+    return min((one.status for one in outcomes), key=_GRAVEST.index)
 
 
 def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str | None) -> Outcome:
@@ -71,9 +92,10 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
     found = checked(Case(machine), cases)
+    errors = [one.error for one in found.unjudged]
     # all errors of a machine as one of the gravest kind
-    gravest = min(found.errors, key=lambda error: error.exit_status, default=None)
-    return Outcome(file, gravest and type(gravest)("\n".join(map(str, found.errors))), machine, found)
+    gravest = type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors))) if errors else None
+    return Outcome(file, gravest, machine, found)
 
 
 def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
@@ -85,25 +107,3 @@ def _as_text(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
             ]
             several = f"{one.file}: " if len(outcomes) > 1 else ""
             yield "\n" * (number > 0) + listing(several + one.checked.title, topics, look)
-
-
-def _found(outcomes: Sequence[Outcome]) -> list[Findings]:
-    """Return all findings, those of files that cannot be read, too."""
-    return [
-        findings(one.machine, one.checked, located)
-        if one.machine and one.checked
-        else faults_found(one.file, one.error or KurbelError())
-        for one in outcomes
-    ]
-
-
-def _as_junit(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    found = ([finding._asdict() for finding in each.findings] for each in _found(outcomes))
-    return findings_junit([*zip((one.file for one in outcomes), found)], replace(look, encoding="utf-8"))
-
-
-def _as_json(outcomes: Sequence[Outcome], look: Look) -> Iterator[str]:
-    found = _found(outcomes)
-    listed = [finding._asdict() for each in found for finding in each.findings]
-    name, made_from = (found[0].machine, found[0].provenance) if len(found) == 1 else (None, None)
-    return findings_json(name, made_from, listed, look)

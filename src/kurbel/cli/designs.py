@@ -4,6 +4,7 @@ from typing import Any
 
 import click
 
+from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     complete_ids,
     complete_override,
@@ -82,7 +83,7 @@ _who_computes = stacked(
 )
 
 
-@click.command()
+@kurbel.command()
 @machine_file
 @_what_varies
 @_what_is_printed
@@ -100,7 +101,7 @@ def sweep(**options: Any) -> None:
     run(**options)
 
 
-@click.command()
+@kurbel.command()
 @machine_file
 @click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_ids)
 @click.option(

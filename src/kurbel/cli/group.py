@@ -53,6 +53,11 @@ class _Kurbel(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
 
+    def add_command(self, cmd: click.Command, name: str | None = None) -> None:
+        super().add_command(cmd, name)
+        assert cmd.name
+        cmd.short_help, cmd.epilog = COMMANDS[cmd.name].summary, exit_statuses(cmd.name)
+
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         name = args[0]
         if name in COMMANDS or name.startswith("-"):

@@ -4,7 +4,7 @@ from typing import Any
 
 import click
 
-from kurbel.cli.group import Progress
+from kurbel.cli.group import Progress, kurbel
 from kurbel.cli.options import (
     Output,
     complete_picture,
@@ -22,7 +22,7 @@ from kurbel.cli.options import (
 )
 
 
-@click.command()
+@kurbel.command()
 @click.argument("files", metavar="FILE [FILE]", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--output", "-o", "file_name", metavar="FILE.html", help="Write to this file, not to standard output.")
@@ -31,7 +31,7 @@ from kurbel.cli.options import (
 @units_option
 @number_options
 def report(**options: Any) -> None:
-    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits, energy balance.
+    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits.
 
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.
@@ -41,7 +41,7 @@ def report(**options: Any) -> None:
     write_page(**options)
 
 
-@click.command()
+@kurbel.command()
 @click.argument("file", metavar="FILE", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.argument("names", metavar="[PICTURE]...", nargs=-1, shell_complete=complete_picture)
@@ -67,7 +67,7 @@ def plot(**options: Any) -> None:
     draw_pictures(**options)
 
 
-@click.command()
+@kurbel.command()
 @click.argument("files", metavar="FILE...", nargs=-1, required=True, type=click.Path(allow_dash=True))
 @set_options
 @format_option(
@@ -91,7 +91,7 @@ def check(format: str | None, file_name: str | None, **options: Any) -> int:
     return check_files(format=written, file_name=file_name, **options)
 
 
-@click.command()
+@kurbel.command()
 @click.argument("file", metavar="[FILE]", required=False, type=click.Path(allow_dash=True))
 @set_options
 @click.option("--quick", is_flag=True, help="Fewer scenes and repeats: for CI.")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Output,
     angle_options,
@@ -31,7 +32,7 @@ def _ratio(text: str) -> float:
     return math.inf if text in ("inf", "infinite") else number(text)
 
 
-@click.command(context_settings={"allow_extra_args": True})
+@kurbel.command(context_settings={"allow_extra_args": True})
 @click.option(
     "--ratio",
     "ratios",
@@ -96,7 +97,7 @@ def table(
     output.write(zusammenstellung(ratios, rows, printed, formula, compare))
 
 
-@click.command()
+@kurbel.command()
 @click.option("--incline", type=number, required=True, metavar="DEGREES", help="Plane against the horizontal.")
 @click.option("--coefficient", type=number, required=True, metavar="F", help="Coefficient of friction, such as 0.1.")
 @click.option(
@@ -118,7 +119,7 @@ def friction(incline: float, coefficient: float, direction: float, output: Outpu
     output.write(inclined_plane(incline, coefficient, direction))
 
 
-@click.command()
+@kurbel.command()
 @click.argument("name", required=False, shell_complete=completing(lambda ctx, _: shipped()))
 @output_option
 def example(name: str | None, file_name: str | None) -> None:
@@ -139,7 +140,7 @@ def example(name: str | None, file_name: str | None) -> None:
     write_out((files[bare],), file_name, "utf-8")
 
 
-@click.command()
+@kurbel.command()
 @click.argument("key", required=False, shell_complete=complete_key)
 def keys(key: str | None) -> None:
     """List the keys of a machine file with form, meaning and default; or KEY in full.
@@ -154,7 +155,7 @@ def keys(key: str | None) -> None:
     write_entries(whole if key is None else described(key))
 
 
-@click.command()
+@kurbel.command()
 @click.argument("kind", required=False, shell_complete=completing(lambda ctx, _: kinds()))
 def units(kind: str | None) -> None:
     """List the units that a machine file may use, a line for each kind of quantity; or only those of KIND.
@@ -169,7 +170,7 @@ def units(kind: str | None) -> None:
     write_entries(list(chosen.items()))
 
 
-@click.command()
+@kurbel.command()
 @click.option("--answers", is_flag=True, help="The schema of the output of -f json instead, for programs.")
 @output_option
 def schema(answers: bool, file_name: str | None) -> None:

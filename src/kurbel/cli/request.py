@@ -1,8 +1,7 @@
 """What the commands on one machine share: the machine with its results, the rows of its table, and the printing."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -14,9 +13,9 @@ from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import load_cases
 from kurbel.render.output import refuse_overwriting
+from kurbel.report.cases import cases_report
 from kurbel.report.commands import COMMANDS
-from kurbel.report.delivery import cases_report
-from kurbel.report.frame import Frame
+from kurbel.report.frame import Frame, Subject
 from kurbel.report.rows import over_stroke, rows_where
 from kurbel.report.tables import Report, crank_angles
 from kurbel.solver.case import Case
@@ -45,10 +44,12 @@ def cases_of(machine: Machine) -> list[Case]:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What a command that prints a table for a machine is called with, by the names of the options.
+    """What a command that reports on a machine is called with, by the names of the options.
 
     units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle;
-    cases: a row for each load case instead of all else.
+    cases: a row for each load case instead of all else; cycle: number of one of a measured trace; spreads:
+    uncertainties of inputs in addition to those of the file, None for a command without any; instead: the option that
+    asks for other tables instead of that over the crank angle.
     """
 
     command: str
@@ -66,72 +67,70 @@ class Request:
     over: str | None = None
     compare: bool = False
     cases: bool = False
-
-    def given(self, **others: object) -> list[str]:
-        """Return which of these options are given; others: options of single commands."""
-        named = {"--columns": self.columns, "--angles": self.angles, "--where": self.where, "--over": self.over}
-        return [option for option, value in (named | others).items() if value is not None]
+    cycle: int | None = None
+    spreads: Spreads | None = None
+    instead: str = ""
 
     def case(self, cycle: int | None = None) -> Case:
         """Return the machine with its results, each computed on first use; cycle: number of one of a trace."""
         case = case_of(self.file, self.case_name, self.overrides, self.output.file_name)
         return case if cycle is None else Case(of_cycle(case.machine, cycle))
 
-    def print(
-        self, report: Callable[..., Report], *how: object, case: Case | None = None, parts: int = 1, **also: Any
-    ) -> None:
-        """Print what `report` returns of the machine, the frame and `how`; parts: tables over the crank angle.
-
-        also: see `write`.
-        """
+    def print(self, **own: object) -> None:
+        """Print the report on the machine; own: options of this command alone, which its report takes."""
+        self._refuse_contradictions()
         if self.cases:
-            return self._print_cases()
-        case = case or self.case()
-        end = 360.0 * case.machine.revolutions if COMMANDS[self.command].turns else 360.0
-        if self.command == "balance":
-            end = case.balance.cycle
-        self.write(report(case, self.frame(end, parts), *how), case, **also)
+            machine = self.case().machine
+            report = cases_report(machine, cases_of(machine), self.command, self.units, self.columns)
+            return self._write(self._requested(report))
+        case = self.case(self.cycle)
+        report = self._requested(COMMANDS[self.command].functions.report(case, self._frame(case), **own))
+        if not self.instead and self.spreads is not None and (self.spreads or case.machine.uncertainty):
+            from kurbel.designs.uncertainty import with_uncertainty
 
-    def _print_cases(self) -> None:
-        """Print a row for each load case of the file. Raises UsageError where it has none."""
-        given = self.given(**{"--columns": None, "--case": self.case_name or None})
-        if given:
+            progress = Progress(self.command)
+            report = with_uncertainty(
+                report, case, self.spreads, self.units, lambda items: progress.counted(items, "machines", len(items))
+            )
+        self._write(report)
+
+    def _refuse_contradictions(self) -> None:
+        """Raise UsageError for options that ask for the rows of a table which others leave out, or for two tables."""
+        ways = {"--where": self.where, "--over": self.over, "--angles": self.angles}
+        rows = [way for way, value in ways.items() if value is not None]
+        table = [*(["--columns"] if self.columns else []), *(["--cycle"] if self.cycle else []), *rows]
+        if self.cases and (given := [*rows, *(["--case"] if self.case_name else [])]):
             raise click.UsageError(f"--cases has a row for every load case; leave {' and '.join(given)} out.")
-        machine = self.case().machine
-        self.write(cases_report(machine, cases_of(machine), self.command, self.units, self.columns))
-
-    def frame(self, end: float, parts: int) -> Frame:
-        """Return the frame of the report: rows from 0 to `end` degrees for each of so many parts, or as requested."""
-        if self.key_values_only and self.columns:
+        if self.instead and table:
+            raise click.UsageError(f"{self.instead} has no table over the angle; leave out {' and '.join(table)}.")
+        if self.key_values_only and self.columns and not self.cases:
             raise click.UsageError(
                 "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '"
             )
-        ways = {"--where": self.where, "--over": self.over, "--angles": self.angles or None}
-        given = [way for way, value in ways.items() if value is not None]
-        if len(given) > 1:
-            raise click.UsageError(f"{' and '.join(given)} both give crank angles; give only one of them.")
-        angles: Any
+        if len(rows) > 1:
+            raise click.UsageError(f"{' and '.join(rows)} both give crank angles; give only one of them.")
+
+    def _frame(self, case: Case) -> Frame:
+        """Return the frame of the report, with rows from 0 to the end of the cycle, or as requested."""
+        end = COMMANDS[self.command].functions.end(case)
+        angles: Sequence[float] | Callable[[Subject], Sequence[float]]
         if self.where is not None:  # where a force has a value there is a motion to print, too
             angles = rows_where(self.where, "forces" if self.command == "motion" else self.command, end)
         elif self.over:
             angles = over_stroke(self.step, end)
         else:
-            angles = crank_angles(self.step, self.angles, end, parts)
+            angles = crank_angles(self.step, self.angles, end, max(len(case.cylinders), 1))
         prose = self.output.look.format != "csv" or self.key_values_only
-        return Frame(self.command, angles, self.columns, self.units, "z" if self.over else "", self.compare, prose)
+        over, table = "z" if self.over else "", not self.instead
+        return Frame(self.command, angles, self.columns, self.units, over, self.compare, prose, table)
 
-    def write(self, report: Report, case: Case | None = None, spreads: Spreads | None = None) -> None:
-        """Write the requested part of the report; spreads: uncertainties of inputs in addition to those of the file."""
-        if self.cylinder is not None:
-            report = report.of_cylinder(self.cylinder)
-        report = report.key_values_alone() if self.key_values_only else report
-        if case and spreads is not None and (spreads or case.machine.uncertainty):
-            from kurbel.designs.uncertainty import with_uncertainty
+    def _requested(self, report: Report) -> Report:
+        """Return the requested part of the report."""
+        report = report if self.cylinder is None else report.of_cylinder(self.cylinder)
+        return report.key_values_alone() if self.key_values_only else report
 
-            progress = Progress(self.command)
-            report = with_uncertainty(
-                report, case, spreads, self.units, lambda items: progress.counted(items, "machines", len(items))
-            )
+    def _write(self, report: Report) -> None:
+        """Write the report, on a terminal a first selection unless options ask for something in particular."""
         context = click.get_current_context()
         names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
         given = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)

@@ -18,7 +18,8 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
-from kurbel.report.frame import Subject, subjects_of, too_large
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Subject, too_large
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 

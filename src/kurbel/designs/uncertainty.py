@@ -23,7 +23,7 @@ from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine_file.events import located
 from kurbel.machine_file.overrides import path_of, tree_of
-from kurbel.report.frame import subjects_of
+from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
 
@@ -172,8 +172,6 @@ def with_uncertainty(report: Report, case: Case, more: Spreads, system: str, cou
     if inputs is None:
         return report
     found = uncertainties(inputs, _numeric_answers(case, report.command), counted)
-    parts = [_with_table(part, found, inputs.keys, system) for part in report.all_parts]
-    last = parts.pop() if report.whole else None
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
     if any(one.sample for one in found):
         notes.append(
@@ -181,7 +179,8 @@ def with_uncertainty(report: Report, case: Case, more: Spreads, system: str, cou
             "shares are squared correlations, which add up to less than 100 % where a key value is not monotonic."
         )
     notes += dict.fromkeys(one.failed for one in found if one.failed)
-    return report._replace(parts=tuple(parts), whole=last, notes=(*report.notes, *notes))
+    report = report.changed(lambda part: _with_table(part, found, inputs.keys, system))
+    return report._replace(notes=(*report.notes, *notes))
 
 
 def _numeric_answers(case: Case, command: str) -> list[Answer]:

@@ -14,10 +14,10 @@ from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame, provenance
 from kurbel.report.picture import Axis, Curve, Panel, Picture, Words
 from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report
-from kurbel.report.whole import report_of
 from kurbel.solver.case import Case
 
 Loads = Callable[[str], Machine]

@@ -56,11 +56,11 @@ def shown_once(report: Report) -> Report:
 
     def content(part: Part) -> Hashable:
         if bearings:
-            return equal_loads(str(part.name), part.of, part.key_values), tuple(part.left_out)
+            return equal_loads(str(part.name), part.of, part.key_values), part.left_out
         columns = [part.columns, *(one.columns for one in part.place_tables)]
         curves = [(one.id, one.unit, _nine_digits(one.values)) for some in columns for one in some]
         titles = [(one.title, one.names) for one in part.place_tables]
-        return *curves, _figures(part.key_values), tuple(part.left_out), *titles
+        return *curves, _figures(part.key_values), part.left_out, *titles
 
     groups = grouped(report.parts, content)
     if len(groups) == len(report.parts):
@@ -101,9 +101,8 @@ def first_selection(report: Report, ids: Collection[str], across: int, rows: int
             left_out=(),
         )
 
-    whole = chosen(report.whole) if report.whole else None
     way_on = f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
-    return report._replace(parts=tuple(map(chosen, report.parts)), whole=whole, notes=(), head=(*report.head, way_on))
+    return report.changed(chosen)._replace(notes=(), head=(*report.head, way_on))
 
 
 _SHIFTED = (

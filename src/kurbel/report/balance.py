@@ -2,14 +2,14 @@
 
 import cmath
 import math
-from dataclasses import replace
+from collections.abc import Iterator
 from itertools import groupby
 
 import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Row, place_table, report_on, subjects_of
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import balance_left_out
 from kurbel.report.tables import PlaceTable, Report
 from kurbel.report.warnings import pin_warnings
@@ -69,49 +69,54 @@ _NOTHING = 1e-6
 """Degrees by which a direction may miss another by rounding."""
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
-def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Report:
-    """Return what is unbalanced and what balances it; orders_only: no columns over the crank angle.
+def _balanced(case: Case, compare: bool = False) -> list[Subject]:
+    balance = MachineBalance(case.effort, compare=True) if compare else case.balance
+    return [
+        Subject(
+            "whole machine",
+            balance,
+            None if case.machine.speed is None else balance.at,
+            left_out=balance_left_out(case, compare),
+            warnings=pin_warnings(case.machine),
+            tables=lambda system: [*_orders(case.balance, system, compare), *_weights(case.balance, system)],
+            whole=True,
+        )
+    ]
 
-    Raises UsageError if no masses move.
-    """
-    machine, balance = case.machine, case.balance
-    free = balance.free
-    notes = ["φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."]
+
+def balance_report(case: Case, frame: Frame) -> Report:
+    """Return what is unbalanced and what balances it; raises UsageError if no masses move."""
+    return report_on(frame, case.machine, BALANCE.title, _balanced(case, frame.compare), _notes(case))
+
+
+def _notes(case: Case) -> Iterator[str]:
+    balance, free = case.balance, case.balance.free
+    yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
     if free.moment is not None and balance.z_0 is not None:
-        notes.append(f"Moments are taken about z = {show(balance.z_0, 'length')}.")
+        yield f"Moments are taken about z = {show(balance.z_0, 'length')}."
     if free.next_order and balance.omega is not None:
-        notes.append(
+        yield (
             f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; "
             "all of them are in forces and moments."
         )
-    if balance.counterweights or machine.balance_shafts:
-        notes.append(
-            "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
-        )
+    if balance.counterweights or balance.machine.balance_shafts:
+        yield "Counterweights and shafts of the file are included in all that is free; the best weights replace them."
     if balance.roll is not None:
-        notes.append("M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft.")
-
-    (whole,) = subjects_of(case, "balance", frame.compare)
-    whole = replace(
-        whole,
-        tables=(*_orders(balance, frame.system, frame.compare), *_weights(balance, frame.system)),
-        at=None if orders_only or machine.speed is None else whole.at,
-        left_out=balance_left_out(case, frame.compare),
-        warnings=tuple(pin_warnings(machine)),
-    )
-    return report_on(frame, machine, "Balancing", (), whole, notes)
+        yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
 
 
-def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTable]:
-    """Return the orders of the unbalanced force and moment, as two circles and as an ellipse; none without a speed.
+BALANCE = Functions("Balancing", _balanced, _notes, lambda case: case.balance.cycle, balance_report)
+
+
+def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:
+    """Yield the orders of the unbalanced force and moment, as two circles and as an ellipse; none without a speed.
 
     An order is a circle with the crank, of complex radius f at φ = 0, and one against it, g; together an ellipse.
     """
     if balance.omega is None:
-        return []
-    square, circles, ellipses = balance.omega * balance.omega, list[Row](), list[Row]()
-    free, book = balance.free, balance.book if compare else None
+        return
+    square, free, book = balance.omega**2, balance.free, balance.book if compare else None
+    circles, ellipses = list[Row](), list[Row]()
     for order in free.orders:
         circle: dict[str, float | None] = {"order": order}
         ellipse: dict[str, float | None] = {"order": order}
@@ -121,40 +126,35 @@ def _orders(balance: MachineBalance, system: str, compare: bool) -> list[PlaceTa
         ):
             if vector is None:
                 continue
-            f, g = complex(vector.of(order)[0]), complex(vector.of(-order)[0])
-            circle[f"{name}_forward"], circle[f"{name}_backward"] = abs(f) * square, abs(g) * square
+            f, g = (complex(vector.of(one)[0]) * square for one in (order, -order))
+            whole = float((np.abs(vector.waves * square) ** 2).sum())
+            circle |= {f"{name}_forward": abs(f), f"{name}_backward": abs(g)}
+            circle[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
             if of_book is not None:
                 circle[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
                 circle[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
-            whole = float((np.abs(vector.waves) ** 2).sum())
-            circle[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
-
-            ellipse[f"{name}_long"] = (abs(f) + abs(g)) * square
-            ellipse[f"{name}_short"] = abs(abs(f) - abs(g)) * square
+            ellipse |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
             # both circles meet in the middle of their directions, here from 0 to below 180 degrees
             middle = math.degrees(cmath.phase(f * g)) / 2
             middle = middle + 180.0 if middle < -_NOTHING else max(middle, 0.0)
             ellipse[f"{name}_direction"] = middle if f and g else None
-            ellipse[f"{name}_forward_phase"], ellipse[f"{name}_backward_phase"] = _direction(f), _direction(g)
+            ellipse |= {f"{name}_forward_phase": _direction(f), f"{name}_backward_phase": _direction(g)}
         circles.append(((), circle))
         ellipses.append(((), ellipse))
     title = "Orders: circles with the crank (+) and against it (−)"
-    other = "Orders: ellipses, and phases of the rotating components at φ = 0"
-    return [
-        place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS),
-        place_table("ellipses", other, (), ELLIPSES, ellipses, system, alone=_DIGITS),
-    ]
+    yield place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS)
+    title = "Orders: ellipses, and phases of the rotating components at φ = 0"
+    yield place_table("ellipses", title, (), ELLIPSES, ellipses, system, alone=_DIGITS)
 
 
-def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
-    """Return the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
+def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
+    """Yield the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
 
-    def row(name: str, place: float | None, product: complex, square: float = 0.0) -> Row:
-        at = {} if place is None else {"axial_position": place}
-        blow = {"hammer_blow": abs(product) * square} if square else {}
-        return (name,), {**at, "product": abs(product), "angle": _direction(product), **blow}
+    def row(name: str, place: float | None, product: complex) -> tuple[tuple[str], dict[str, float | None]]:
+        at: dict[str, float | None] = {} if place is None else {"axial_position": place}
+        return (name,), {**at, "product": abs(product), "angle": _direction(product)}
 
-    tables, best = [], zip("AB", balance.best_in_planes)
+    best = zip("AB", balance.best_in_planes)
     rows = [row(f"counterweight {end}", one.place, one.product) for end, one in best if one.product]
     for order, weights in groupby(balance.best_shafts, lambda one: one.order):
         name, given = f"shaft n = {abs(order)}, {'with' if order > 0 else 'against'} the crank", [*weights]
@@ -162,17 +162,17 @@ def _weights(balance: MachineBalance, system: str) -> list[PlaceTable]:
             rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
     if rows:
         title = "Counterweights in two planes, and balance shafts"
-        tables.append(place_table("best_weights", title, ("weight",), WEIGHTS, rows, system))
+        yield place_table("best_weights", title, ("weight",), WEIGHTS, rows, system)
     if balance.machine.locomotive:
-        square = (balance.omega or 0.0) ** 2
-        rows, wheels = [], zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
+        rows, square = [], (balance.omega or 0.0) ** 2
+        wheels = zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
         for name, place, product, weight in wheels:
-            head, values = row(name, place, product, square)
-            whole = {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
-            rows.append((head, {**values, **whole}))
+            head, values = row(name, place, product)
+            values |= {"hammer_blow": abs(product) * square} if square else {}
+            values |= {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
+            rows.append((head, values))
         title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
-        tables.append(place_table("wheels", title, ("wheel",), WEIGHTS, rows, system))
-    return tables
+        yield place_table("wheels", title, ("wheel",), WEIGHTS, rows, system)
 
 
 def _direction(circle: complex) -> float | None:

@@ -2,19 +2,19 @@
 
 import math
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
-from kurbel.machine import Cylinder, Machine, firings
+from kurbel.machine import Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
 from kurbel.report.alike import grouped, together
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
-from kurbel.report.frame import provenance
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.limits import Entry, Unjudged, judged
-from kurbel.report.tables import LeftOut, Provenance
+from kurbel.report.limits import Entry, Unjudged, compared
+from kurbel.report.tables import LeftOut
 from kurbel.report.turning import torsion_left_out, torsion_warnings
 from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
 from kurbel.solver.case import Case
@@ -41,11 +41,6 @@ class Checked(NamedTuple):
     unjudged: tuple[Unjudged, ...]
 
     @property
-    def errors(self) -> tuple[KurbelError, ...]:
-        """The reasons why limits and expectations cannot be compared."""
-        return tuple(one.error for one in self.unjudged)
-
-    @property
     def shown_once(self) -> list[Topic]:
         """The sections, with one for identical cylinders."""
 
@@ -58,32 +53,29 @@ class Checked(NamedTuple):
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
-    machine = case.machine
-    unjudged: list[Unjudged] = []
-    figures: dict[str, list[Entry]] = {"limits": [], "expect": []}
-    for one in (case, *cases):
-        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
-        for verdict in judged(one):
-            if isinstance(verdict, Unjudged):
-                unjudged.append(verdict)
-            else:
-                figures[str(verdict.path[0])].append(verdict._replace(what=verdict.what + of_case))
-    notes = machine_notes(case)
-    of_whole = [Entry("note", text, "warning") for name, text in notes if name is None]
-    sections = (
+    machine, notes = case.machine, machine_notes(case)
+    figures, unjudged = compared(case, cases)
+    of_whole = (Entry("note", text, "warning") for name, text in notes if name is None)
+    topics: dict[str, Iterable[Entry]] = {
+        "Cranks": _crank_entries(machine),
+        "Whole machine": (*_turning_entries(machine), *of_whole),
+        "Crankshaft": _crankshaft_entries(case),
+        "Balance": _balance_entries(case),
+        "Shaft line": _shaft_entries(case),
+        "Delivery": _delivery_entries(case),
+        "Limits": [one for one in figures if one.path[0] == "limits"],
+        "Expected": [one for one in figures if one.path[0] == "expect"],
+    }
+    found = (
         Topic("Machine", tuple(_machine_entries(machine))),
-        *(_cylinder_section(machine, cylinder, notes) for cylinder in machine.cylinders),
-        Topic("Cranks", tuple(_crank_entries(machine))),
-        Topic("Whole machine", (*_turning_entries(machine), *of_whole)),
-        Topic("Crankshaft", tuple(_crankshaft_entries(case))),
-        Topic("Balance", tuple(_balance_entries(case))),
-        Topic("Shaft line", tuple(_shaft_entries(case))),
-        Topic("Delivery", tuple(_delivery_entries(case))),
-        Topic("Limits", tuple(figures["limits"])),
-        Topic("Expected", tuple(figures["expect"])),
+        *(
+            Topic(one.name, tuple(_cylinder_entries(machine, number, notes)), cylinder=True)
+            for number, one in enumerate(machine.cylinders)
+        ),
+        *(Topic(title, tuple(entries)) for title, entries in topics.items()),
     )
-    broken = any(one.severity == "error" for entries in figures.values() for one in entries)
-    sections = tuple(one for one in sections if one.entries)
+    sections = tuple(one for one in found if one.entries)
+    broken = any(one.severity == "error" for one in figures)
     return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(unjudged))
 
 
@@ -105,32 +97,34 @@ def _machine_entries(machine: Machine) -> Iterator[Entry]:
             yield Entry("note", f"the firing intervals are uneven: {least:g} to {most:g} deg", "info", path)
 
 
-def _cylinder_section(machine: Machine, cylinder: Cylinder, notes: Sequence[Note]) -> Topic:
-    mechanism, several = cylinder.mechanism, len(machine.cylinders) > 1
-    path: Path = ("cylinders", machine.cylinders.index(cylinder)) if several else ()
+def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[Entry]:
+    cylinder = machine.cylinders[number]
+    mechanism, path = cylinder.mechanism, ("cylinders", number) if len(machine.cylinders) > 1 else ()
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
         if key.form.kind != "ratio" and isinstance(size := getattr(mechanism, name, None), float) and size
     ]
-    entries = [
-        Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}"),
-        *(Entry(f"{piston.name}", f"bore {show(piston.bore, 'length')}") for piston in cylinder.pistons),
-        *_stages(stages(machine, cylinder), path),
-        *(Entry("note", text, "warning", path) for name, text in notes if name == cylinder.name),
-        *(Entry("note", note, "info", path) for note in mechanism.notes),
-    ]
-    return Topic(cylinder.name, tuple(entries), cylinder=True)
+    yield Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
+    for piston in cylinder.pistons:
+        yield Entry(piston.name, f"bore {show(piston.bore, 'length')}")
+    yield from _stages(stages(machine, cylinder), path)
+    yield from (Entry("note", text, "warning", path) for name, text in notes if name == cylinder.name)
+    yield from (Entry("note", note, "info", path) for note in mechanism.notes)
 
 
 def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[Entry]:
     """Yield what is computed, and what is left out and why."""
-    yield Entry("computed", ", ".join(what for what, why in stages.items() if not why))
-    yield from _left_out(missing(stages), path)
+    yield from _computed(", ".join(what for what, why in stages.items() if not why), missing(stages), path)
 
 
-def _left_out(found: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
-    return (Entry("left out", f"{what}: {why}", "info", path) for what, why in found)
+def _computed(what: str, left_out: Iterable[LeftOut], path: Path = ()) -> Iterator[Entry]:
+    yield Entry("computed", what)
+    yield from (_left_out(f"{what}: {why}", path) for what, why in left_out)
+
+
+def _left_out(text: str, path: Path = ()) -> Entry:
+    return Entry("left out", text, "info", path)
 
 
 def _crank_entries(machine: Machine) -> Iterator[Entry]:
@@ -152,12 +146,10 @@ def _turning_entries(machine: Machine) -> Iterator[Entry]:
     yield from _stages(turning_stages(machine))
     if load is None:
         text = "constant"
+    elif isinstance(load.diagram, Harmonics):
+        text = f"{len(load.diagram.terms)} harmonics"
     elif load.diagram:
-        text = (
-            f"{len(load.diagram.terms)} harmonics"
-            if isinstance(load.diagram, Harmonics)
-            else f"a diagram of {len(load.diagram.angles)} points"
-        )
+        text = f"a diagram of {len(load.diagram.angles)} points"
     else:
         text = f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
     yield Entry("load", text)
@@ -172,10 +164,9 @@ def _crankshaft_entries(case: Case) -> Iterator[Entry]:
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
     if machine.strength_obstacle:
-        yield Entry("left out", f"strength: {machine.strength_obstacle}", "info", path)
-        return
-    yield Entry("computed", "forces on the bearings, stresses in pin and webs")
-    yield from _left_out(strength_left_out(machine), path)
+        yield _left_out(f"strength: {machine.strength_obstacle}", path)
+    else:
+        yield from _computed("forces on the bearings, stresses in pin and webs", strength_left_out(machine), path)
 
 
 def _balance_entries(case: Case) -> Iterator[Entry]:
@@ -185,12 +176,11 @@ def _balance_entries(case: Case) -> Iterator[Entry]:
     if not (placed or machine.counterweights or machine.balance_shafts or machine.locomotive):
         return
     try:
-        lacking = balance_left_out(case)
+        lacking = [*balance_left_out(case)]
     except KurbelError as error:
-        yield Entry("left out", str(error), "info")
-        return
-    yield Entry("computed", "unbalanced forces and moments, their orders, best counterweights")
-    yield from _left_out(lacking)
+        yield _left_out(str(error))
+    else:
+        yield from _computed("unbalanced forces and moments, their orders, best counterweights", lacking)
 
 
 def _shaft_entries(case: Case) -> Iterator[Entry]:
@@ -206,30 +196,24 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
     try:
         found = case.torsion
     except KurbelError as error:
-        yield Entry("left out", f"torsional vibration: {error}", "info", path)
-        return
-    forced = "" if found.obstacle else ", torques and stresses"
-    yield Entry("computed", f"natural frequencies, critical speeds{forced}")
-    yield from _left_out(torsion_left_out(found), path)
+        yield _left_out(f"torsional vibration: {error}", path)
+    else:
+        forced = "" if found.obstacle else ", torques and stresses"
+        yield from _computed(f"natural frequencies, critical speeds{forced}", torsion_left_out(found), path)
 
 
 def _delivery_entries(case: Case) -> Iterator[Entry]:
     """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
-    try:
+    with suppress(KurbelError):  # nothing is delivered
         found = case.delivery
-    except KurbelError:  # nothing is delivered
-        return
-    try:
-        warnings = list(delivery_warnings(found))
-    except KurbelError as error:
-        yield Entry("left out", str(error), "info", ("pump",))
-        return
-    for text in warnings:
-        yield Entry("delivery", text, "warning")
-    pump = ["flow" * (case.machine.speed is not None), "fluctuating volume"] if found.pump else []
-    stages = ["stages and ends of compressors"] if found.stages else []
-    yield Entry("computed", ", ".join(filter(None, [*pump, *stages])))
-    yield from _left_out(delivery_left_out(found))
+        try:
+            yield from [Entry("delivery", text, "warning") for text in delivery_warnings(found)]
+        except KurbelError as error:
+            yield _left_out(str(error), ("pump",))
+            return
+        pump = ["flow"] * (case.machine.speed is not None) + ["fluctuating volume"] if found.pump else []
+        stages = ["stages and ends of compressors"] if found.stages else []
+        yield from _computed(", ".join([*pump, *stages]), delivery_left_out(found))
 
 
 # for programs: each finding with its place in the machine file
@@ -250,29 +234,20 @@ class Finding(NamedTuple):
     severity: str
 
 
-class Findings(NamedTuple):
-    """The outcome of a check for programs; machine: its name, None where the file describes none."""
-
-    machine: str | None
-    findings: tuple[Finding, ...]
-    provenance: Provenance | None = None
-
-
-def faults_found(file: str, error: KurbelError) -> Findings:
+def faults_found(file: str, error: KurbelError) -> list[Finding]:
     """Return what is wrong with a machine file that cannot be read."""
     if not isinstance(error, MachineFileError):
-        return Findings(None, (Finding(file, None, None, None, str(error), "error"),))
-    file = error.file_name
-    found = [
-        Finding(file, one.line, one.column, path_text(one.path) or None, one.message, "error") for one in error.faults
+        return [Finding(file, None, None, None, str(error), "error")]
+    return [
+        Finding(error.file_name, one.line, one.column, path_text(one.path) or None, one.message, "error")
+        for one in error.faults
     ]
-    return Findings(None, tuple(found))
 
 
 Locate = Callable[[str, "list[Fault]"], "list[Fault]"]
 
 
-def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
+def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding]:
     """Return the outcome of a check for programs; locate: adds to faults their places in the text of the file."""
     several, origin = len(machine.cylinders) > 1, machine.origin
     found: list[tuple[Path, str, str]] = []
@@ -282,10 +257,11 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> Findings:
     found += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
 
     at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
-    places = {fault.path: fault for fault in (locate(origin.text, at_keys) if origin and at_keys else ())}
-    listed = []
-    for path, text, severity in found:
-        line, column = (places[path].line, places[path].column) if path in places else (None, None)
-        name = origin.name if origin else machine.name
-        listed.append(Finding(name, line, column, path_text(path) or None, text, severity))
-    return Findings(machine.name, tuple(listed), provenance(machine))
+    located = locate(origin.text, at_keys) if origin and at_keys else ()
+    places = {fault.path: fault for fault in located}
+    unknown, file = Fault((), ""), origin.name if origin else machine.name
+    return [
+        Finding(file, at.line or None, at.column or None, path_text(path) or None, text, severity)
+        for path, text, severity in found
+        for at in [places.get(path, unknown)]
+    ]

@@ -1,15 +1,13 @@
 """The reports of `kurbel motion`, `forces`, `stress` and `bearings`: each cylinder, and the shaft that it loads."""
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-
-import numpy as np
+from functools import partial
+from itertools import chain
 
 from kurbel.errors import UsageError
-from kurbel.machine import Machine
 from kurbel.quantity import PHI, Quantity, by_id
-from kurbel.report.alike import equal_loads, grouped
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on, shown_key_values, subjects_of
+from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
 from kurbel.report.left_out import (
     bearing_left_out,
     bearings_left_out,
@@ -26,11 +24,12 @@ from kurbel.report.warnings import (
     guide_notes,
     of_machine,
     rod_ratio_notes,
-    shell_verdict,
+    shells,
 )
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import OF_CYCLES
+from kurbel.solver.stress import CrankshaftStrength
 from kurbel.solver.trace import TracePressure
 
 STRESSES = by_id(
@@ -47,42 +46,60 @@ STRESSES = by_id(
 # motion and forces of every cylinder
 
 
-def motion_report(case: Case, frame: Frame) -> Report:
-    """Return the motion of every cylinder's mechanism; raises UsageError without a cylinder."""
-    notes = _mechanism_notes(case.machine, "motion")
-    cylinders = [
-        replace(one, left_out=motion_left_out(case.machine, cylinder))
-        for one, cylinder in zip(subjects_of(case, "motion"), case.machine.cylinders)
+def mechanism_notes(case: Case) -> Iterable[str]:
+    """Return what a reader should know about the mechanisms, each sentence once."""
+    return dict.fromkeys(note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes)
+
+
+def _with_motion(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            one.drive.name,
+            one.motion,
+            one.at,
+            one.lists,
+            source=one,
+            left_out=motion_left_out(case.machine, one.drive.cylinder),
+        )
+        for one in case.cylinders
     ]
-    return report_on(frame, case.machine, "Motion of the crank train", cylinders, notes=notes)
 
 
-@np.errstate(all="ignore")
-def forces_report(case: Case, frame: Frame, each_cycle: bool = False) -> Report:
-    """Return the forces of every cylinder; each_cycle: its measured cycles, one to a line, instead of the table.
+MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, lambda case: 360.0)
+
+
+def _with_forces(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            one.drive.name,
+            one,
+            one.at,
+            one.lists,
+            source=one,
+            left_out=forces_left_out(case.machine, one),
+            tables=partial(_piston_table, one),
+            pistons=[Subject(piston.name, piston, lists=piston.lists) for piston in one.pistons],
+        )
+        for one in case.cylinders
+    ]
+
+
+def forces_report(case: Case, frame: Frame) -> Report:
+    """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    notes: list[str] = _mechanism_notes(case.machine, "forces")
-    cylinders = subjects_of(case, "forces")
-    if each_cycle:
-        tables = [_cycle_table(forces, frame.system) for forces in case.cylinders]
-        if not any(tables):
-            raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
-        cylinders = [replace(one, at=None, tables=of) for one, of in zip(cylinders, tables)]
-    else:
+    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose else {}
+    cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
+    if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
-        tables = [_piston_table(forces, frame.system) for forces in case.cylinders]
-        cylinders = [replace(one, tables=of) for one, of in zip(cylinders, tables)]
-    if frame.prose:
-        warnings = by_cylinder(case)
-        cylinders = [
-            replace(one, left_out=forces_left_out(case.machine, forces), warnings=warnings[one.name])
-            for one, forces in zip(cylinders, case.cylinders)
-        ]
-        notes = [] if each_cycle else [*notes, *_forces_notes(case)]
-    return report_on(frame, case.machine, "Forces in the crank train", cylinders, notes=notes if frame.prose else ())
+        return report_on(frame, case.machine, FORCES.title, cylinders, FORCES.notes(case))
+    if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
+        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+    each = zip(cylinders, case.cylinders)
+    cylinders = [replace(one, tables=partial(_cycle_table, forces)) for one, forces in each]
+    return report_on(frame, case.machine, FORCES.title, cylinders)
 
 
 def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
@@ -93,13 +110,6 @@ def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
     each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
     rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
     return [place_table("pistons", "Each piston", ("piston",), declared, rows, system, headed=True)]
-
-
-def _mechanism_notes(machine: Machine, command: str) -> list[str]:
-    """Return what a reader should know about the mechanisms, each sentence once; raises UsageError without any."""
-    if not machine.cylinders:
-        raise UsageError(f"{machine.name} has no cylinder; kurbel {command} needs one")
-    return list(dict.fromkeys(note for cylinder in machine.cylinders for note in cylinder.mechanism.notes))
 
 
 def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
@@ -113,6 +123,7 @@ def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
 
 
 def _forces_notes(case: Case) -> Iterator[str]:
+    yield from mechanism_notes(case)
     yield from guide_notes(case)
     yield from rod_ratio_notes(case)
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
@@ -140,36 +151,27 @@ def _forces_notes(case: Case) -> Iterator[str]:
         )
 
 
+FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=forces_report)
+
+
 # pins and bearings
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
-def bearings_report(case: Case, frame: Frame) -> Report:
-    """Return the loads on pins and main bearings over the angle of crank 1, each as a part.
-
-    Raises UsageError if nothing loads them.
-    """
+def _loaded(case: Case) -> list[Subject]:
+    for forces in case.cylinders:
+        forces.refuse_locking()
     parts = [
-        replace(one, left_out=bearing_left_out(*part.size, part.omega))
-        for one, part in zip(subjects_of(case, "bearings"), case.bearings.parts)
+        Subject(
+            one.name,
+            one,
+            one.at,
+            left_out=bearing_left_out(*one.size, one.omega),
+            of=one.followed[0].drive.name if one.of_rod else "",
+        )
+        for one in case.bearings.parts
     ]
-    whole = Subject("whole machine")
-    if frame.prose:
-        warnings = (*of_machine(case), *as_far_as_solved(bearing_warnings(case), "bearings"))
-        whole = Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings)
-    report = report_on(frame, case.machine, "Bearing loads", parts, whole, _bearing_notes(case))
-    return report._replace(group="bearings")
-
-
-def equal_parts(case: Case, command: str) -> list[list[Subject]]:
-    """Return the cylinders, or the pins and bearings, those together whose key values of a command are equal."""
-
-    def figures(one: Subject) -> Hashable:
-        kind = (one.name, one.of) if command == "bearings" else ("", "")
-        return equal_loads(*kind, shown_key_values(one.key_values(command), "si"))
-
-    subjects = subjects_of(case, command)
-    return grouped(subjects, figures) if len(subjects) > 1 else [subjects]
+    warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
+    return [*parts, Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)]
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:
@@ -194,17 +196,27 @@ def _bearing_notes(case: Case) -> Iterator[str]:
         yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
 
 
+BEARINGS = Functions("Bearing loads", _loaded, _bearing_notes)
+
+
 # stresses in the crankshaft
 
 
-@np.errstate(all="ignore")  # what overflows is refused by name
-def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report:
-    """Return the stresses of the crankshaft place by place, and its bearing forces over the crank angle.
+def _stressed(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            "crankshaft",
+            case.stress,
+            case.stress.at,
+            left_out=chain(left_out(case.machine, case.machine.cylinders[0]), strength_left_out(case.machine)),
+            warnings=of_machine(case),
+            tables=partial(_stress_tables, case.stress),
+            whole=True,
+        )
+    ]
 
-    places_only: without the crank angle. Raises UsageError if no crankshaft can be examined.
-    """
-    machine, strength = case.machine, case.stress
-    tables = []
+
+def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceTable]:
     for id, title, places in (
         ("dead_centre", "Dead centre, full piston force without inertia", strength.at_dead_centre),
         ("largest_torque", "Position of the largest torque", strength.at_largest_torque),
@@ -216,27 +228,26 @@ def stress_report(case: Case, frame: Frame, places_only: bool = False) -> Report
             values = (one.degrees, *stresses, one.combined, one.von_mises)
             numbers = (None if value is None else float(value) for value in values)
             rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), numbers))))
-        declared = {"phi": PHI, **STRESSES}
-        tables.append(place_table(id, title, ("part", "place"), declared, rows, frame.system))
+        yield place_table(id, title, ("part", "place"), {"phi": PHI, **STRESSES}, rows, system)
 
-    metal = machine.crankshaft.bearing_metal if machine.crankshaft else None
-    cool, verdict = shell_verdict(strength.pressure_velocity("pin"), metal)
-    notes = [
+
+def _stress_notes(case: Case) -> Iterator[str]:
+    yield (
         "A and B are the forces of the shaft on its bearings, given in the frame that turns with the throw: "
-        "D toward the shaft, T in the sense of rotation.",
+        "D toward the shaft, T in the sense of rotation."
+    )
+    yield (
         "The dead centre is loaded as in starting (R p. 608); columns, largest stresses and pressures are those of the "
-        "running machine.",
-    ]
-    if strength.C_rod:
-        notes.append(
+        "running machine."
+    )
+    if case.stress.C_rod:
+        yield (
             "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and "
             "bearings carry D less C_rod."
         )
+    cool, verdict = shells(case)
     if cool and verdict:
-        notes.append(verdict)
-    (whole,) = subjects_of(case, "stress")
-    whole = replace(whole, tables=tables, at=None if places_only else whole.at)
-    if frame.prose:
-        lacking = (*left_out(machine, machine.cylinders[0]), *strength_left_out(machine))
-        whole = replace(whole, left_out=lacking, warnings=of_machine(case))
-    return report_on(frame, machine, "Strength of the crankshaft", (), whole, notes)
+        yield verdict
+
+
+STRESS = Functions("Strength of the crankshaft", _stressed, _stress_notes)

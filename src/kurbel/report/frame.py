@@ -1,15 +1,15 @@
 """From results and their declared quantities to the tables of a report: shared by all commands on a machine."""
 
-import math
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import NoSolutionError, Nowhere, UsageError
@@ -18,11 +18,10 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called, in_sentences
+from kurbel.report.alike import equal_loads, grouped
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
-from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
 from kurbel.solver.figures import Results
-from kurbel.solver.flywheel import DeadCentre
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""
@@ -45,19 +44,22 @@ class Subject:
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; lists: the quantities that it can have; source: has `angles_where`,
-    which `--where` searches, None without rows; of: the cylinder that a pin belongs to. left_out, warnings, tables:
-    further parts of a report, empty if only key values are needed.
+    which `--where` searches, None without rows; of: the cylinder that a pin belongs to; pistons: those of a cylinder
+    whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
+    warnings; tables: a function of the system of units that returns tables of places.
     """
 
     name: str
     results: Results | None = None
-    at: Callable[[Any], Any] | None = None
+    at: Callable[[Array], Any] | None = None
     lists: Lists = field(default_factory=every_quantity)
-    left_out: Sequence[LeftOut] = ()
-    warnings: Sequence[str] = ()
-    tables: Sequence[PlaceTable] = ()
+    left_out: Iterable[LeftOut] = ()
+    warnings: Iterable[str] = ()
+    tables: Callable[[str], Iterable[PlaceTable]] = lambda system: ()
     source: Any = None
     of: str = ""
+    pistons: "Sequence[Subject]" = ()
+    whole: bool = False
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -80,53 +82,18 @@ class Subject:
                 yield quantity, value
 
 
-def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool = False) -> list[Subject]:
-    """Return what a command has results of: each cylinder or bearing, and the whole machine last.
-
-    compare: the balance also by the approximate acceleration, next to the exact one; pistons: also each piston of a
-    rod that has several. Raises UsageError if the machine has no such results, NoSolutionError if it jams, stalls, or
-    vibrates without limit.
-    """
-    if command in ("motion", "forces"):
-        each = [one for forces in case.cylinders for one in forces.pistons] if pistons and command == "forces" else []
-        return [
-            *(
-                Subject(one.drive.name, one.motion if command == "motion" else one, one.at, one.lists, source=one)
-                for one in case.cylinders
-            ),
-            *(Subject(one.name, one, lists=one.lists) for one in each),
-        ]
-    if command == "flywheel":
-        turning = case.flywheel
-        cylinders = [Subject(one.drive.name, DeadCentre(one, turning.effort.cycle)) for one in case.cylinders]
-        return [*cylinders, Subject("whole machine", turning, turning.at, source=turning)]
-    if command == "stress":
-        return [Subject("crankshaft", case.stress, case.stress.at)]
-    if command == "bearings":
-        for forces in case.cylinders:
-            forces.refuse_locking()
-        return [
-            Subject(one.name, one, one.at, of=one.followed[0].drive.name if one.of_rod else "")
-            for one in case.bearings.parts
-        ]
-    if command == "balance":
-        balance = MachineBalance(case.effort, compare=True) if compare else case.balance
-        return [Subject("whole machine", balance, balance.at)]
-    if command == "delivery":
-        whole = [case.delivery.pump] if case.delivery.pump else []
-        pumps = [Subject(one.name, one, one.at, source=one) for one in (*case.delivery.pistons, *whole)]
-        return [*(Subject(one.name, one) for one in case.delivery.stages), *pumps]
-    if command == "harmonics":
-        return [Subject("whole machine", case.harmonics())]
-    if case.torsion.vibration is not None and case.torsion.vibration.endless.any():
-        raise NoSolutionError(ENDLESS)
-    return [Subject("shaft line", case.torsion)]
+def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]]:
+    """Return cylinders, or pins and bearings, those together whose key values of a command are equal."""
+    having = [one for one in subjects if one.results]
+    if len(having) < 2:
+        return [having]
+    kinds = {one: (one.name, one.of) if command == "bearings" else ("", "") for one in having}
+    return grouped(having, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
 
 
-ENDLESS = (
-    "an order of the torque meets a natural vibration that is hardly damped: give 'damping'; or segments of the shaft "
-    "are too unequal to compute with: check the units of their stiffnesses"
-)
+def cycle_of(case: Case) -> float:
+    """Return the working cycle of a machine in degrees."""
+    return 360.0 * case.machine.revolutions
 
 
 # the request and its report
@@ -139,7 +106,8 @@ class Frame:
     angles: the crank angles (n,) of the rows in degrees, or a function that returns those of a subject; columns: ids
     to show in addition to φ, None for the usual ones; system: see `unit_systems`; over: the column in which the rows
     have even steps instead of φ, shown as well; compare: with the approximations of the book next to the exact columns;
-    prose: with key values, notes, warnings, and what is left out, none of which a CSV table has.
+    prose: with key values, notes, warnings, and what is left out, none of which a CSV table has; table: with columns
+    over the crank angle, False where other tables are requested instead.
     """
 
     command: str
@@ -149,62 +117,94 @@ class Frame:
     over: str = ""
     compare: bool = False
     prose: bool = True
+    table: bool = True
 
 
 @np.errstate(all="ignore")
 def report_on(
-    frame: Frame,
-    machine: Machine,
-    title: str,
-    subjects: Iterable[Subject],
-    whole: Subject | None = None,
-    notes: Iterable[str] = (),
+    frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject], notes: Iterable[str] = ()
 ) -> Report:
-    """Return the report on these subjects, and on the whole machine.
+    """Return the report on those of these subjects that have results; the last may be the whole machine.
 
-    Raises UsageError for a number that overflows or a column that no subject has, NoSolutionError if no row is found.
+    Raises UsageError without any, for a number that overflows or a column that no subject has, NoSolutionError if no
+    row is found.
     """
-    every = (*subjects, *((whole,) if whole else ()))
-    found: list[tuple[Subject, tuple[Column, ...], str]] = []
-    for one in every:
-        try:
-            found.append((one, _columns(frame, one), ""))
-        except Nowhere as error:
-            found.append((one, (), str(error)))
-    printed = {column.id for _, columns, _ in found for column in columns}
-    nowhere = [why for _, _, why in found if why]
+    if not subjects:
+        raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
+    tables_of = {one: tuple(one.tables(frame.system)) for one in subjects}
+    subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
+    columns = [_columns(frame, one) for one in subjects]
+    printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
+    nowhere = [str(one) for one in columns if isinstance(one, Nowhere)]
     for name in frame.columns or ():
         if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, every)}")
+            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
-    with_values = frame.prose or not (printed or any(one.tables for one in every))
-    parts = []
-    for one, columns, why in found:
-        values = shown_key_values(one.key_values(frame.command), frame.system) if with_values else ()
-        sentences = tuple(one.left_out), tuple(one.warnings)
-        parts.append(Part(one.name, columns, tuple(values), *sentences, tuple(one.tables), why, one.of))
+    with_values = frame.prose or not (printed or any(tables_of.values()))
+    parts = [
+        Part(
+            one.name,
+            () if isinstance(found, Nowhere) else found,
+            tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
+            tuple(one.left_out) if frame.prose else (),
+            tuple(one.warnings) if frame.prose else (),
+            tables_of[one],
+            str(found) if isinstance(found, Nowhere) else "",
+            one.of,
+        )
+        for one, found in zip(subjects, columns)
+    ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
+    added = ([_UNCOMPARED] if uncompared else []) + [f"{why}." for why in nowhere]
     return Report(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
-        "cylinders",
-        whole=parts.pop() if whole else None,
+        "bearings" if frame.command == "bearings" else "cylinders",
+        whole=parts.pop() if subjects[-1:] and subjects[-1].whole else None,
         parts=tuple(parts),
-        notes=(*notes, *((_UNCOMPARED,) if uncompared else ()), *(f"{why}." for why in nowhere)),
+        notes=(*notes, *added) if frame.prose else (),
         provenance=provenance(machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
 
 
-def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
-    """Return the requested columns of a subject, or the usual ones; raises Nowhere if it has no row."""
-    if subject.at is None:
+class Functions(NamedTuple):
+    """What a command computes with; its functions raise as `report` does.
+
+    title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
+    below the tables; end: returns the crank angle at which the table ends; own: a report of its own, which takes the
+    case, the frame, and options of the command by their names.
+    """
+
+    title: str
+    subjects: Callable[[Case], list[Subject]]
+    notes: Callable[[Case], Iterable[str]] = lambda case: ()
+    end: Callable[[Case], float] = cycle_of
+    own: Callable[..., Report] | None = None
+
+    @np.errstate(all="ignore")  # what overflows is refused by name
+    def report(self, case: Case, frame: Frame, **options: object) -> Report:
+        """Return the report on a machine; options: those of this command alone.
+
+        Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
+        """
+        if self.own:
+            return self.own(case, frame, **options)
+        return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
+
+
+def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
+    """Return the requested columns of a subject, or the usual ones; or why it has no row."""
+    if subject.at is None or not frame.table:
         return ()
-    angles = frame.angles(subject) if callable(frame.angles) else frame.angles
+    try:
+        angles = frame.angles(subject) if callable(frame.angles) else frame.angles
+    except Nowhere as error:
+        return error
     known = subject.lists.columns(frame.command)
     added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
     if frame.columns:
@@ -218,24 +218,17 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...]:
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     """Return the message for a column that does not exist, listing those that do."""
     known, key_values = every_quantity().columns(command), every_quantity().key_values(command)
-    there: dict[str, Quantity] = {}
-    for subject in subjects:
-        if subject.at is not None:
-            state = subject.at(np.zeros(1))
-            there |= {id: known[id] for id in subject.lists.columns(command) if state[id] is not None}
-    symbols = [one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there.values()]
-    has = f"has {', '.join(symbols)}" if there else ""
+    states = [(one.lists.columns(command), one.at(np.zeros(1))) for one in subjects if one.at]
+    there = [one for id, one in known.items() if any(id in own and state[id] is not None for own, state in states)]
+    listed = ", ".join(one.id if one.id == one.symbol else f"{one.id} ({one.symbol})" for one in there)
     if name in known:
-        return f"'{name}' is left out for this machine" + (f", which {has}" if has else "")
+        return f"'{name}' is left out for this machine" + (f", which has {listed}" if listed else "")
     if found := called(name, key_values.values()):
         symbol = key_values[found[0]].symbol
         return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
-    near = in_sentences(name, there.values())
-    for some in (there, known):
-        near = near or did_you_mean(name, tuple(word for one in some.values() for word in (one.id, one.symbol)))
-    others = ", ".join(id for id in known if id not in there)
-    listed = [f"this machine {has}" if has else "", f"other machines also {others}" if others else ""]
-    return f"'{shown(name)}' is no column of kurbel {command}{near} ({'; '.join(filter(None, listed))})"
+    words = tuple(word for one in (*there, *known.values()) for word in (one.id, one.symbol))
+    near = in_sentences(name, there) or did_you_mean(name, words)
+    return f"'{shown(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
 
 
 def provenance(machine: Machine) -> Provenance:
@@ -260,13 +253,13 @@ def too_large(quantity: Quantity) -> UsageError:
 
 
 def shown_columns(
-    at: Callable[[Any], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
+    at: Callable[[Array], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
 ) -> tuple[Column, ...]:
     """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
 
     Raises UsageError if one is not finite.
     """
-    found: dict[Quantity, array[float]] = {}
+    found: dict[Quantity, list[Array]] = {}
     sizes: dict[Quantity, float] = {}
     for start in range(0, len(angles), _AT_ONCE):
         degrees = np.append(angles[start : start + _AT_ONCE], _EVERYWHERE)
@@ -275,32 +268,33 @@ def shown_columns(
             values = degrees if quantity.id == "phi" else state[quantity.id]
             if values is not None:
                 rows, everywhere = np.split(np.asarray(values, dtype=float), [-len(_EVERYWHERE)])
-                found.setdefault(quantity, array("d")).frombytes(rows.tobytes())
+                found.setdefault(quantity, []).append(rows)
                 sizes[quantity] = 0.0 if quantity.id == "phi" else float(np.abs(everywhere).max())
-    return tuple(shown_column(quantity, values, system, sizes[quantity]) for quantity, values in found.items())
+    return tuple(shown_column(one, np.concatenate(found.pop(one)), system, sizes[one]) for one in [*found])
 
 
 def shown_column(
-    quantity: Quantity, values: Sequence[float | None], system: str, size: float = 0.0, largest: float = 0.0
+    quantity: Quantity, values: Sequence[float | None] | Array, system: str, size: float = 0.0, largest: float = 0.0
 ) -> Column:
     """Return the column of a quantity; values: (n,) in SI, None for no value; size: the largest value of its curve.
 
     largest: of all columns that are to have the same unit, in SI. Raises UsageError if a value is not finite.
     """
-    known = values if isinstance(values, array) else array("d", [v for v in values if v is not None])
-    given = np.frombuffer(known)
-    if not (np.isfinite(given).all() and math.isfinite(size)):
+    numbers, kind = np.array(values, dtype=float), quantity.kind
+    lacking = [] if isinstance(values, np.ndarray) else [k for k, value in enumerate(values) if value is None]
+    numbers[lacking] = 0.0
+    if not (np.isfinite(numbers).all() and np.isfinite(size)):
         raise too_large(quantity)
-    own = float(max(given.max(initial=0.0), -given.min(initial=0.0)))
+    own = max(numbers.max(initial=0.0), -numbers.min(initial=0.0))
     size = size if own <= _ROUNDING * size else 0.0
-    unit = shown_unit(quantity.kind, system, max(size or own, largest))
-    given[:] = convert(given, quantity.kind, unit)  # in place: a long table is held once
-    given += 0.0
-    numbers = iter(known)
-    texts = values if known is values else tuple(None if v is None else next(numbers) for v in values)
+    unit = shown_unit(kind, system, max(size or own, largest))
+    given: array[float] | list[float | None] = array("d", (convert(numbers, kind, unit) + 0.0).tobytes())
+    if lacking:
+        given = [None if k in lacking else value for k, value in enumerate(given)]
     symbols = quantity.symbol, quantity.ascii_symbol
-    size = convert(size, quantity.kind, unit)
-    return Column(quantity.id, *symbols, quantity.marked(unit), texts, quantity.text, size=size)
+    return Column(
+        quantity.id, *symbols, quantity.marked(unit), given, quantity.text, size=float(convert(size, kind, unit))
+    )
 
 
 Row = tuple[tuple[str, ...], Mapping[str, float | None]]
@@ -323,22 +317,20 @@ def place_table(
     to which every value is rounded by itself; values of one kind then have one unit. headed: the names of the rows are
     texts for people; otherwise spaces in them become underscores.
     """
+    found = {id: [values.get(id) for _, values in rows] for id in declared if any(id in values for _, values in rows)}
     largest: dict[str, float] = {}
-    for of_row in (values for _, values in rows if alone):
-        for name, value in of_row.items():
-            kind = declared[name].kind
-            largest[kind] = max(largest.get(kind, 0.0), abs(value or 0.0))
+    for id_, each in found.items() if alone else ():
+        kind = declared[id_].kind
+        largest[kind] = max(largest.get(kind, 0.0), *(abs(value or 0.0) for value in each))
 
     columns = []
-    for quantity in declared.values():
-        if any(quantity.id in values for _, values in rows):
-            each = [values.get(quantity.id) for _, values in rows]
-            column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
-            decimals = 3 if quantity.id == "distance" else None
-            if quantity.id in ("order", "mode"):
-                needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
-                decimals = max(needed, default=0)
-            columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else alone))
+    for id_, each in found.items():
+        kind, decimals = declared[id_].kind, 3 if id_ == "distance" else None
+        if id_ in ("order", "mode"):
+            needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
+            decimals = max(needed, default=0)
+        column = shown_column(declared[id_], each, system, largest=largest.get(kind, 0.0))
+        columns.append(column._replace(decimals=decimals, alone=0 if kind == "angle" else alone))
     names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
     return PlaceTable(id, title, heads, names, tuple(columns), headed)
 
@@ -354,7 +346,7 @@ def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list
     for (quantity, value), unit in zip(given, units):
         raw, at = value if isinstance(value, Extreme) else (value, None)
         each = raw if isinstance(raw, tuple) else (raw,)
-        if not all(map(math.isfinite, each)):
+        if not np.isfinite(each).all():
             raise too_large(quantity)
         numbers = tuple(float(convert(one, quantity.kind, unit)) + 0.0 for one in each)
         number = numbers if isinstance(raw, tuple) else raw if isinstance(raw, int) else numbers[0]  # a count

@@ -9,7 +9,7 @@ from kurbel.declared.keys import Key, without
 from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.near_words import did_you_mean, near
+from kurbel.near_words import near
 
 
 class ListedKey(NamedTuple):
@@ -68,24 +68,24 @@ def described(path: str) -> list[tuple[str, str]]:
 
     Raises UsageError if there are none.
     """
-    places = every_place()
-    above = dict.fromkeys(name[:end] for name in places for end, sign in enumerate(f"{name}.") if sign == ".")
     if not path.strip(". "):
         raise UsageError("no key is named; 'kurbel keys' without one lists them all")
-    steps = _steps(path)
-    if len(steps) > 1 and steps[0] == "cylinders":
-        inner = steps[2:] if steps[1] == "each" else steps[1:]
-        steps = inner if inner and ".".join(inner) in above else steps
-    found = places.get(".".join(steps)) or places.get(".".join(steps[1:]) if steps[0] == "tandem" else "")
-    if found:
-        return [line for one in found for line in one.full]
-    if below := [(name, ones[0].line) for name, ones in places.items() if name.startswith(".".join([*steps, ""]))]:
-        return below
-    ends = [name for name in above if name.rpartition(".")[2] == steps[-1]]
-    hint = f"; it is at {', '.join(ends)}" if ends else did_you_mean(path, tuple(places))
-    if not hint and (word := near(steps[-1], tuple(name.rpartition(".")[2] for name in places))):
-        hint = f"; did you mean {' or '.join(name for name in places if name.rpartition('.')[2] == word)}?"
-    raise UsageError(f"no key '{shown(path)}'{hint} ('kurbel keys' lists them)")
+    places, steps = every_place(), _steps(path)
+    # keys of a cylinder and of a piston are listed at the top
+    inner = steps[1 + (steps[1:2] == ["each"]) :] if steps[0] in ("cylinders", "tandem") else steps
+    for name in (".".join(steps), ".".join(inner)):
+        if found := places.get(name):
+            return [line for one in found for line in one.full]
+        if below := [(each, ones[0].line) for each, ones in places.items() if each.startswith(f"{name}.")]:
+            return below
+    above = dict.fromkeys(name[:end] for name in places for end, sign in enumerate(f"{name}.") if sign == ".")
+    last = {name: name.rpartition(".")[2] for name in above}
+    meant = steps[-1] if steps[-1] in last.values() else near(steps[-1], tuple(last.values()))
+    there = [name for name in above if last[name] == meant]
+    hint = (
+        f"; it is at {', '.join(there)}" if meant == steps[-1] else f"; did you mean {' or '.join(map(repr, there))}?"
+    )
+    raise UsageError(f"no key '{shown(path)}'{hint if there else ''} ('kurbel keys' lists them)")
 
 
 def meaning(path: str, places: dict[str, list[ListedKey]]) -> str:

@@ -1,5 +1,7 @@
 """What the results of a machine leave out, and why: for every topic its stages, each with the reason or ""."""
 
+from collections.abc import Iterator
+
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.turning import Swing
@@ -11,9 +13,9 @@ _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort consists of."""
 
 
-def missing(reasons: dict[str, str]) -> list[LeftOut]:
-    """Return what of these stages is left out: those with a reason."""
-    return [LeftOut(what, why) for what, why in reasons.items() if why]
+def missing(reasons: dict[str, str]) -> Iterator[LeftOut]:
+    """Yield what of these stages is left out: those with a reason."""
+    return (LeftOut(what, why) for what, why in reasons.items() if why)
 
 
 def _speeds(machine: Machine) -> tuple[str, str]:
@@ -77,28 +79,27 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     }
 
 
-def left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
-    """Return everything that motion and forces of this cylinder leave out."""
-    return missing(stages(machine, cylinder))
+def left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
+    """Yield everything that motion and forces of this cylinder leave out."""
+    yield from missing(stages(machine, cylinder))
 
 
-def motion_left_out(machine: Machine, cylinder: Cylinder) -> list[LeftOut]:
-    """Return what the motion of this cylinder leaves out."""
-    return missing(_motion_stages(machine, cylinder))
+def motion_left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
+    """Yield what the motion of this cylinder leaves out."""
+    yield from missing(_motion_stages(machine, cylinder))
 
 
-def forces_left_out(machine: Machine, forces: CylinderForces) -> list[LeftOut]:
-    """Return everything that the computed forces of a cylinder leave out."""
+def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOut]:
+    """Yield everything that the computed forces of a cylinder leave out."""
     cylinder, (_, in_noise) = forces.drive.cylinder, forces.changes_of_force
-    no_crosshead = not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None
-    no_share = forces.friction_work is not None and not forces.work_driving
-    computed = {
-        "friction loss as a share": "no piston drives" if no_share else "",
-        "load on the piston rod": "no mass of the crosshead given" if no_crosshead else "",
-        f"{in_noise} changes of the sign of P": "are within the noise of the trace and no force reversal",
-    }
-    found = [*left_out(machine, cylinder), *missing(computed)]
-    return found if in_noise else found[:-1]
+    yield from left_out(machine, cylinder)
+    if forces.friction_work is not None and not forces.work_driving:
+        yield LeftOut("friction loss as a share", "no piston drives")
+    if not forces.no_compressor and cylinder.masses and cylinder.masses.crosshead is None:
+        yield LeftOut("load on the piston rod", "no mass of the crosshead given")
+    if in_noise:
+        why = "are within the noise of the trace and no force reversal"
+        yield LeftOut(f"{in_noise} changes of the sign of P", why)
 
 
 # the whole machine
@@ -124,30 +125,30 @@ def turning_stages(machine: Machine) -> dict[str, str]:
     }
 
 
-def flywheel_left_out(machine: Machine) -> list[LeftOut]:
-    """Return what turning effort, flywheel and speed line of a machine leave out."""
+def flywheel_left_out(machine: Machine) -> Iterator[LeftOut]:
+    """Yield what turning effort, flywheel and speed line of a machine leave out."""
     of_each = [
         [one for one in left_out(machine, cylinder) if one.what.startswith(_IN_EFFORT)]
         for cylinder in machine.cylinders
     ]
     if of_each and all(of_one == of_each[0] for of_one in of_each):
-        found = of_each[0]
+        yield from of_each[0]
     else:
-        each = zip(machine.cylinders, of_each)
-        found = [LeftOut(f"{one.what} of {cylinder.name}", one.why) for cylinder, of_one in each for one in of_one]
+        for cylinder, of_one in zip(machine.cylinders, of_each):
+            yield from (LeftOut(f"{one.what} of {cylinder.name}", one.why) for one in of_one)
     if machine.flywheel and machine.flywheel.rim and machine.flywheel.rim.sized_by:
-        found = [*found, LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")]
-    return [*found, *missing(turning_stages(machine))]
+        yield LeftOut("arms and hub of the flywheel", "J is that of the rim, whose sizes are given")
+    yield from missing(turning_stages(machine))
 
 
-def strength_left_out(machine: Machine) -> list[LeftOut]:
-    """Return what the strength of a machine's crankshaft leaves out."""
+def strength_left_out(machine: Machine) -> Iterator[LeftOut]:
+    """Yield what the strength of a machine's crankshaft leaves out."""
     shaft = machine.crankshaft
     if shaft is None:
-        return []
+        return
     upright = "" if all(cylinder.inclination is not None for cylinder in machine.cylinders) else "no inclination given"
     journals = "" if shaft.journal_diameter else "no journal_diameter given"
-    return missing(
+    yield from missing(
         {
             "flywheel weight": upright if shaft.flywheel_mass else "no flywheel_mass given",
             "journals": journals,
@@ -159,22 +160,19 @@ def strength_left_out(machine: Machine) -> list[LeftOut]:
     )
 
 
-def bearing_left_out(diameter: float | None, length: float | None, omega: Number | None) -> list[LeftOut]:
-    """Return what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
-    lacks = " and ".join(name for name, size in (("diameter", diameter), ("length", length)) if not size)
-    return missing(
-        {
-            "pressure, p v": f"no {lacks} given" if lacks else "",
-            "rubbing speed": "no speed given" if omega is None else "",
-        }
-    )
+def bearing_left_out(diameter: float | None, length: float | None, omega: Number | None) -> Iterator[LeftOut]:
+    """Yield what the load on a pin or bearing leaves out; omega: angular speed of the crank, None if not given."""
+    if lacks := [name for name, size in (("diameter", diameter), ("length", length)) if not size]:
+        yield LeftOut("pressure, p v", f"no {' and '.join(lacks)} given")
+    if omega is None:
+        yield LeftOut("rubbing speed", "no speed given")
 
 
-def bearings_left_out(case: Case) -> list[LeftOut]:
-    """Return what the loads on all bearings leave out."""
+def bearings_left_out(case: Case) -> Iterator[LeftOut]:
+    """Yield what the loads on all bearings leave out."""
     machine, shaft = case.machine, case.machine.crankshaft
     heavy = shaft and shaft.flywheel_mass and machine.cylinders[0].inclination is None
-    return missing(
+    yield from missing(
         {
             "main bearings": case.bearings.obstacle or "",
             "flywheel weight": "no inclination given" if heavy else "",
@@ -183,24 +181,21 @@ def bearings_left_out(case: Case) -> list[LeftOut]:
     )
 
 
-def balance_left_out(case: Case, compare: bool = False) -> list[LeftOut]:
-    """Return what the balance leaves out; compare: with the figures of first order requested."""
-    balance = case.balance
+def balance_left_out(case: Case, compare: bool = False) -> Iterator[LeftOut]:
+    """Yield what the balance leaves out; compare: with the figures of first order requested."""
+    balance, machine = case.balance, case.machine
     moving = {throw.name for throw in balance.throws}
-    still = [cylinder.name for cylinder in balance.machine.cylinders if cylinder.name not in moving]
-    placeless = [throw.name for throw in balance.throws if throw.place is None]
-    if any(one.place is None for one in balance.counterweights):
-        placeless.append("counterweights of the machine")
-    if any(one.axial_position is None for one in balance.machine.balance_shafts):
-        placeless.append("balance_shafts")
-    no_speed = "no speed given; the counterweights do not depend on it"
-    no_book = "the book has no such formula for an offset stroke line"
-    no_place = f"no axial_position given of {', '.join(placeless)}"
-    return missing(
-        {
-            **{f"inertia of {name}": "no masses given" for name in still},
-            "unbalanced forces and moments": no_speed if balance.omega is None else "",
-            "unbalanced moments": no_place if balance.free.moment is None else "",
-            "figures of first order": no_book if compare and balance.book is None else "",
-        }
-    )
+    for cylinder in machine.cylinders:
+        if cylinder.name not in moving:
+            yield LeftOut(f"inertia of {cylinder.name}", "no masses given")
+    if balance.omega is None:
+        yield LeftOut("unbalanced forces and moments", "no speed given; the counterweights do not depend on it")
+    if balance.free.moment is None:
+        placeless = [throw.name for throw in balance.throws if throw.place is None]
+        if any(one.place is None for one in balance.counterweights):
+            placeless.append("counterweights of the machine")
+        if any(one.axial_position is None for one in machine.balance_shafts):
+            placeless.append("balance_shafts")
+        yield LeftOut("unbalanced moments", f"no axial_position given of {', '.join(placeless)}")
+    if compare and balance.book is None:
+        yield LeftOut("figures of first order", "the book has no such formula for an offset stroke line")

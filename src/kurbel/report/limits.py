@@ -1,7 +1,7 @@
 """How key values compare with the limits and the expectations of a machine file."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -14,7 +14,8 @@ from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import NOISE_POWER, Quantity, by_id
 from kurbel.report.alike import grouped, together
-from kurbel.report.frame import Subject, subjects_of, too_large
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Subject, too_large
 from kurbel.solver.case import Case
 
 _ROUNDING = 1e-9
@@ -46,6 +47,19 @@ class Unjudged(NamedTuple):
     error: KurbelError
 
 
+def compared(case: Case, cases: Sequence[Case] = ()) -> tuple[list[Entry], list[Unjudged]]:
+    """Return how the limits and expectations of a machine compare, in its load cases, too, and which cannot be."""
+    entries, unjudged = list[Entry](), list[Unjudged]()
+    for one in (case, *cases):
+        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
+        for found in judged(one):
+            if isinstance(found, Unjudged):
+                unjudged.append(found)
+            else:
+                entries.append(found._replace(what=found.what + of_case))
+    return entries, unjudged
+
+
 @np.errstate(all="ignore")
 def judged(case: Case) -> Iterator[Entry | Unjudged]:
     """Yield how each limit and then each expectation compares, or why it cannot be compared.
@@ -58,21 +72,19 @@ def judged(case: Case) -> Iterator[Entry | Unjudged]:
         quantity, path = declared[scoped(name)[1]], (key, getattr(bound, "name", "") or name)
         try:
             found = _values(case, name)
+            if not found:
+                text = f"{quantity.text[:1].lower()}{quantity.text[1:]}"
+                raise UsageError(f"{without(path[1], quantity.id)}: {text}")
         except KurbelError as error:
             yield Unjudged(path, type(error)(f"{path_text(path)}: {error}"))
             continue
-        if not found:
-            text = f"{without(path[1], quantity.id)}: {quantity.text[:1].lower()}{quantity.text[1:]}"
-            yield Unjudged(path, UsageError(f"{path_text(path)}: {text}"))
-            continue
         verdicts = [
-            compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
+            _compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
             for equal in grouped(found, lambda one: f"{one[1]:.9g}")
         ]
         yield from verdicts
-        if not isinstance(bound, Expected) and all(
-            isinstance(one, Entry) and one.severity == "info" for one in verdicts
-        ):
+        kept = all(isinstance(one, Entry) and one.severity == "info" for one in verdicts)
+        if kept and not isinstance(bound, Expected):
             yield from _beyond_by_sign(case, name, bound, path, declared)
 
 
@@ -82,29 +94,26 @@ def without(name: str, id: str) -> str:
     return f"{scope} has no {id}"
 
 
-def compared(path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float) -> Entry | Unjudged:
+def _compared(path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float) -> Entry | Unjudged:
     """Compare a value in SI with its bound or expectation; a value that is not finite cannot be compared."""
     if not math.isfinite(value):
         return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
-    kind, unit = quantity.kind, getattr(bound, "unit", "")
-    size = f"< 1e{NOISE_POWER}" if quantity.is_noise(value) else _shown(value, kind, unit)
+    kind, unit, noise = quantity.kind, getattr(bound, "unit", ""), quantity.is_noise(value)
+    size = f"< 1e{NOISE_POWER}" if noise else _shown(value, kind, unit)
     if isinstance(bound, Expected):
         low, high = bound.low - value, value - bound.high
         ok = max(low, high) <= _ROUNDING * max(abs(bound.low), abs(bound.high))
-        off = f"FAIL, {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
-        wanted = bound.text or f"{_shown(bound.low, kind, '')} to {_shown(bound.high, kind, '')}"
-        text = f"{size}, expected {wanted}  {'PASS' if ok else off}"
-        limit = wanted
+        limit = bound.text or f"{_shown(bound.low, kind, '')} to {_shown(bound.high, kind, '')}"
+        off = f", {_shown(max(low, high), kind, unit)} too {'small' if low > high else 'large'}"
+        text = f"{size}, expected {limit}  {'PASS' if ok else 'FAIL' + off}"
     else:
-        ok = not breaks(quantity, bound, value)
-        size = f"|{size}|" if quantity.id.endswith("_residual") and not quantity.is_noise(value) else size
-        sign = ("≥" if ok else "<") if quantity.bounded_below else ("≤" if ok else ">")
-        text = f"{size} {sign} {_shown(bound, kind, unit)}  {'PASS' if ok else 'FAIL'}"
-        limit = f"{'≥' if quantity.bounded_below else '≤'} {_shown(bound, kind, unit)}"
+        ok, (sign, broken) = not breaks(quantity, bound, value), "≥<" if quantity.bounded_below else "≤>"
+        limit = f"{sign} {_shown(bound, kind, unit)}"
+        size = f"|{size}|" if quantity.id.endswith("_residual") and not noise else size
+        text = f"{size} {limit}  PASS" if ok else f"{size} {broken}{limit[1:]}  FAIL"
     number = 100 * value if unit == "%" else float(convert(value, kind, unit))
-    verdict = "info" if ok else "error"
-    shown = f"{text}  ({where})"
-    return Entry(str(path[-1]), shown, verdict, path, number, unit or SI[kind], limit, where, quantity)
+    severity, text = "info" if ok else "error", f"{text}  ({where})"
+    return Entry(str(path[-1]), text, severity, path, number, unit or SI[kind], limit, where, quantity)
 
 
 def breaks(quantity: Quantity, bound: float, value: float) -> bool:
@@ -126,9 +135,9 @@ def _beyond_by_sign(
 ) -> Iterator[Entry]:
     """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it."""
     base, _, end = name.rpartition("_")
-    other = f"{base}_{'min' if end == 'max' else 'max'}" if end in ("max", "min") else ""
-    quantity, upward = declared.get(scoped(other)[1]), 1 if end == "max" else -1
-    if quantity is None or bound * upward <= 0 or any(other == limited for limited, _ in case.machine.limits):
+    other, upward = (f"{base}_min", 1) if end == "max" else (f"{base}_max", -1)
+    quantity = declared.get(scoped(other)[1]) if end in ("max", "min") else None
+    if quantity is None or bound * upward <= 0 or other in dict(case.machine.limits):
         return
     peak = f"{base}_peak"
     advice = f"'{peak}' bounds the magnitude" if scoped(peak)[1] in declared else f"bound '{other}' too"

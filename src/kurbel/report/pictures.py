@@ -15,9 +15,9 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
 from kurbel.report.alike import grouped, together
+from kurbel.report.commands import subjects_of
 from kurbel.report.constructions import construction, polar_force
-from kurbel.report.crank import equal_parts
-from kurbel.report.frame import subjects_of
+from kurbel.report.frame import equal_parts
 from kurbel.report.machine_pictures import (
     campbell,
     crank_efforts,
@@ -340,11 +340,12 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
     elif command not in _OF_PARTS:
-        yield Source(subjects_of(case, command)[-1].results, options.angles), ""
+        having = [one.results for one in subjects_of(case, command) if one.results]
+        yield Source(having[-1], options.angles), ""
     else:
         for one in wanted if command == "forces" else ():
             one.refuse_locking()
-        for equal in equal_parts(case, command):
+        for equal in equal_parts(subjects_of(case, command), command):
             named = [one for one in equal if command == "bearings" or options.cylinder in (None, one.name)]
             if named:
                 several = command == "bearings" or len(case.cylinders) > 1

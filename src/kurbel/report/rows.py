@@ -104,12 +104,12 @@ def _value(subject: Subject, command: str, column: Quantity, factor: float | Non
         return factor * up / down
     known = {id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind}
     ids = called(of, known.values())
+    value = number_of(subject.answer(known[ids[0]])) if ids else None
     if not ids:
         single = ", ".join(id for id, one in known.items() if not one.listed)
         raise UsageError(
             f"--where: '{of}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
         )
-    value = number_of(subject.answer(known[ids[0]]))
     if not isinstance(value, float):
         raise UsageError(f"--where: this machine has no {of}")
-    return value if factor is None else factor * value
+    return value * (1.0 if factor is None else factor)

@@ -18,8 +18,10 @@ from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import number_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
-from kurbel.report.check import checked
-from kurbel.report.frame import Row, Subject, place_table, subjects_of
+from kurbel.report.cases import name_of
+from kurbel.report.commands import subjects_of
+from kurbel.report.frame import Row, Subject, place_table
+from kurbel.report.limits import compared
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
 from kurbel.solver.case import Case
 
@@ -125,22 +127,19 @@ def kind_of(case: Case) -> str:
 def subtitle_of(machine: Machine) -> str:
     """Return number of cylinders, cycle, speed, stroke, rod and bores in a line."""
     cylinders, texts = machine.cylinders, list[str]()
-    if any(one.mechanism.slides and not one.mechanism.quick_return for one in cylinders):  # else no piston moves
+    mechanisms = [one.mechanism for one in cylinders]
+    if any(one.slides and not one.quick_return for one in mechanisms):  # else no piston moves
         texts.append(f"{len(cylinders)} cylinder{'s' * (len(cylinders) > 1)}")
-    if firings(machine):
-        texts.append(machine.cycle)
-    if machine.speed is not None:
-        texts.append(show(machine.speed, "speed", 4))
+    texts += [machine.cycle] if firings(machine) else []
+    texts += [] if machine.speed is None else [show(machine.speed, "speed", 4)]
     sizes = {
-        "stroke": [one.mechanism.stroke for one in cylinders if one.mechanism.slides and not one.mechanism.turns],
-        "rod": [one.mechanism.rod for one in cylinders if isinstance(one.mechanism, SliderCrank)],
+        "stroke": [one.stroke for one in mechanisms if one.slides and not one.turns],
+        "rod": [one.rod for one in mechanisms if isinstance(one, SliderCrank)],
         "bore": [piston.bore for one in cylinders for piston in one.pistons],
     }
     for name, lengths in sizes.items():
-        shown = list(dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one)))
-        if shown:
-            unit = shown[-1].rpartition(" ")[2]
-            texts.append(f"{name} {', '.join(one.removesuffix(f' {unit}') for one in shown)} {unit}")
+        shown = dict.fromkeys(show(float(one), "length", 4) for one in lengths if math.isfinite(one))
+        texts += [f"{name} {', '.join(shown)}"] if shown else []
     return ", ".join(texts)
 
 
@@ -163,44 +162,41 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     """
     kind = kind_of(case)
     wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
-    commands = {id: word for word, labels in _LABELS.items() for id in labels}
-    subjects = {word: if_any(partial(subjects_of, case, word)) for word in _LABELS}
-    found: dict[str, Found] = {}
-    if not ids and kind != "effort" and _against(subjects["flywheel"]):
+    known: dict[str, Found] = {}
+    for command, labels in _LABELS.items():
+        subjects = if_any(partial(subjects_of, case, command))
+        for id in labels:
+            if id in wanted and (one := _largest(id, command, subjects)):
+                known[id] = one
+    # against the rotation, as that of a pump or a compressor
+    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].number) > abs(known["M_max"].number)
+    if against and not ids and kind != "effort":
         wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
-    if "M_max" not in wanted:  # the largest torque of a machine that is driven
+    if "M_max" not in wanted:
         titles["M_min"] = _LABELS["flywheel"]["M_max"]
-    for id in dict.fromkeys(wanted):
-        one = _largest(id, commands[id], subjects[commands[id]])
-        numbers = {0.0, *(abs(other.number) for other in found.values())}  # none twice
-        if one and (ids or (abs(one.number) not in numbers and len(found) < _MOST_FACTS)):
-            found[id] = one._replace(title=titles.get(id, one.title))
+    found: dict[str, Found] = {}
+    for id in dict.fromkeys(one for one in wanted if one in known):
+        size, taken = abs(known[id].number), [0.0, *(abs(one.number) for one in found.values())]
+        if ids or (size not in taken and len(found) < _MOST_FACTS):
+            found[id] = known[id]._replace(title=titles.get(id, known[id].title))
     return found
 
 
-def _against(subjects: Sequence[Subject]) -> bool:
-    """Return whether the largest torque is against the rotation, as that of a pump or a compressor."""
-    most, least = (_largest(id, "flywheel", subjects) for id in ("M_max", "M_min"))
-    return bool(most and least and abs(least.number) > abs(most.number))
-
-
 def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None:
-    each: list[tuple[float, str, Quantity, object]] = []
+    each: list[Found] = []
     for one in subjects:
         quantity = one.lists.key_values(command).get(id)
         with suppress(KurbelError):
             value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
-                each.append((number, one.name, quantity, value))
+                each.append(Found(_LABELS[command][id], number, quantity, one.name, getattr(value, "degrees", None)))
     if not each:
         return None
-    sign = -1 if id in _SMALLEST else 1
-    whole = [one for one in each if one[1] == "whole machine"]
-    number, _, quantity, value = max(whole or each, key=lambda one: sign * abs(one[0]))
-    equal = [name for size, name, *_ in each if f"{size:.6g}" == f"{number:.6g}"]
-    where = together(equal) if len(equal) < len(each) else ""
-    return Found(_LABELS[command][id], number, quantity, where, getattr(value, "degrees", None))
+    whole = [one for one in each if one.where == "whole machine"]
+    found = (min if id in _SMALLEST else max)(whole or each, key=lambda one: abs(one.number))
+    equal = [one.where for one in each if f"{one.number:.6g}" == f"{found.number:.6g}"]
+    return found._replace(where=together(equal) if len(equal) < len(each) else "")
 
 
 def tiles(facts: Iterable[Found], system: str) -> Facts:
@@ -229,8 +225,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
     if cases:
         rows: list[Row] = []
         for one in cases:
-            name = one.machine.origin.case if one.machine.origin else one.machine.name
-            rows.append(((name,), {id: found.number for id, found in facts_of(one, facts).items()}))
+            rows.append(((name_of(one),), {id: found.number for id, found in facts_of(one, facts).items()}))
         declared = {id: one.quantity for id, one in facts.items()}
         yield place_table("cases", "Load cases", ("case",), declared, rows, system, headed=True)
     yield from (Notice(text, "warning") for text in warnings)
@@ -240,8 +235,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
 
 def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    found = checked(case, cases)
-    judged = [one for part in found.sections if part.title in ("Limits", "Expected") for one in part.entries]
+    judged, unjudged = compared(case, cases)
     rows, marks = list[tuple[Shown, ...]](), list[str]()
     for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
         # in several load cases all that fail, or the one that is nearest to its bound
@@ -256,7 +250,7 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(error), "bad") for error in found.errors)
+    yield from (Notice(str(one.error), "bad") for one in unjudged)
     yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
 
 

@@ -2,7 +2,7 @@
 
 import math
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple, Union
 
 from kurbel.declared.reading import shown
@@ -157,10 +157,13 @@ class Report(NamedTuple):
         title = f"{self.title}: {name}" if len(self.all_parts) > 1 else self.title
         return self._replace(title=title, parts=found, whole=None)
 
+    def changed(self, change: Callable[[Part], Part]) -> "Report":
+        """Return the report with another part in place of each."""
+        return self._replace(parts=tuple(map(change, self.parts)), whole=self.whole and change(self.whole))
+
     def key_values_alone(self) -> "Report":
         """Return the report without its tables."""
-        parts = [part._replace(columns=(), place_tables=()) for part in self.all_parts]
-        return self._replace(whole=parts.pop() if self.whole else None, parts=tuple(parts))
+        return self.changed(lambda part: part._replace(columns=(), place_tables=()))
 
 
 def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:

@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Diesel, Otto, Steam
-from kurbel.machine.indicator import Card
+from kurbel.machine.indicator import Card, Line
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -32,20 +33,27 @@ class Note(NamedTuple):
 
 def machine_notes(case: Case) -> tuple[Note, ...]:
     """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
-    machine, cylinders = case.machine, case.machine.cylinders
-    found = [Note(one.name, text) for one in cylinders for text in _card_warnings(one)]
-    found += [Note(None, f"effort: {text}") for text in getattr(machine.effort, "notes", ())]
-    found += [Note(None, text) for text in _speed_warnings(machine)]
-    found += [Note(one.name, text) for one in cylinders for text in _size_warnings(one)]
-    found += [Note(None, text) for text in pin_warnings(machine)]
-    if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in cylinders):
+    machine, found = case.machine, list[Note]()
+
+    def add(texts: Iterable[str], cylinder: str | None = None) -> None:
+        found.extend(Note(cylinder, text) for text in texts)
+
+    for cylinder in machine.cylinders:
+        add(_card_warnings(cylinder), cylinder.name)
+    add(f"effort: {text}" for text in getattr(machine.effort, "notes", ()))
+    add(_speed_warnings(machine))
+    for cylinder in machine.cylinders:
+        add(_size_warnings(cylinder), cylinder.name)
+    add(pin_warnings(machine))
+    if machine.effort or any(one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders):
         with np.errstate(all="ignore"):
-            found += [Note(one.drive.name, text) for one in case.cylinders for text in trace_warnings(one)]
-            found += [Note(None, text) for text in brake_warnings(case)]
-            for one in case.cylinders:
-                found += [Note(one.drive.name, text) for text in as_far_as_solved(cylinder_warnings(one), "forces")]
-            found += [Note(None, text) for text in as_far_as_solved(turning_warnings(case), "flywheel")]
-            found += [Note(None, text) for text in as_far_as_solved(_strength_warnings(case), "stress")]
+            for forces in case.cylinders:
+                add(_trace_warnings(forces), forces.drive.name)
+            add(_brake_warnings(case))
+            for forces in case.cylinders:
+                add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
+            add(as_far_as_solved(_turning_warnings(case), "flywheel"))
+            add(as_far_as_solved(_strength_warnings(case), "stress"))
     return tuple(dict.fromkeys(found))
 
 
@@ -67,14 +75,12 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
     return found
 
 
-def of_machine(case: Case) -> tuple[str, ...]:
-    """Return all warnings on a machine, each after the names of its cylinders if there are several."""
-    found = []
+def of_machine(case: Case) -> Iterator[str]:
+    """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
     for notes in grouped(machine_notes(case), lambda note: note.text):
         names = [note.cylinder for note in notes if note.cylinder is not None]
         several = names and len(case.machine.cylinders) > 1
-        found.append(f"{together(names)}: {notes[0].text}" if several else notes[0].text)
-    return tuple(found)
+        yield f"{together(names)}: {notes[0].text}" if several else notes[0].text
 
 
 # what was given: sizes and speeds
@@ -133,15 +139,20 @@ def pin_warnings(machine: Machine) -> Iterator[str]:
 _EXPONENTS = 0.9, 1.7  # wet steam that dries as it expands; a monatomic gas without heat
 _PLAIN = 0.02
 """Asymmetry of a card below which neither end has the high pressure; with half a stroke of admission it is ¼."""
+_STROKE = np.linspace(0.0, 1.0, 101)
+"""Fractions of the stroke from the smallest volume on, at which a card is read."""
 
 
 def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     """Yield notes on corrections, and warnings on cards from the wrong dead centre and exponents of no gas."""
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
-            for text in getattr(chamber, "notes", ()):
-                yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
-    for piston in cylinder.pistons:
+            place = f"{piston.name}, {end.replace('_', ' ')}"
+            yield from (f"{place}: {text}" for text in getattr(chamber, "notes", ()))
+            least, most = _EXPONENTS
+            for value in {getattr(chamber, key, None) or least for key in ("exponent", "expansion_exponent")}:
+                if not least <= value <= most:
+                    yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [_asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)]
         # a high pressure on the same side, at the same crank angle: drawn from the same dead centre?
         if len(asymmetries) == 2 and min(asymmetries) < -_PLAIN and max(asymmetries) > _PLAIN:
@@ -150,26 +161,19 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
                 f"{piston.name}, {end}: both ends have their high pressure at the same crank angle; a card counts from "
                 f"its own dead centre, that of the {end} from the {centre} one: is it drawn from the other?"
             )
-        least, most = _EXPONENTS
-        for end, chamber in piston.chambers.items():
-            keys = "exponent", "expansion_exponent"
-            given = {one for key in keys if (one := getattr(chamber, key, None)) is not None}
-            for value in sorted(one for one in given if not least <= one <= most):
-                text = f"an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
-                yield f"{piston.name}, {end.replace('_', ' ')}: {text}"
 
 
 def _asymmetry(card: Card) -> float:
     """Return the mean of p (1 − 2z) over both strokes by the range of p: positive if p is high at small volumes."""
-    pressures = [p for line in card.lines for p in line.pressures]
-    middle, span = (max(pressures) + min(pressures)) / 2, max(pressures) - min(pressures)
-    total = 0.0
-    for line in card.lines:
-        points = zip(line.fractions, (p - middle for p in line.pressures))
-        for (z, p), (next_z, next_p) in pairwise(points):  # Simpson's rule, exact on straight lines
-            ends = p * (1 - 2 * z) + next_p * (1 - 2 * next_z)
-            total += abs(next_z - z) / 6 * (ends + 2 * (p + next_p) * (1 - z - next_z))
-    return total / (span * len(card.lines)) if span else 0.0
+    pressures = np.array([_pressures(line) for line in card.lines])
+    return float(np.mean(pressures * (1 - 2 * _STROKE)) / (np.ptp(pressures) or 1.0))
+
+
+def _pressures(line: Line) -> Array:
+    """Return the pressures of a line of a card, whichever way it is drawn, at `_STROKE` (n,)."""
+    order = np.argsort(line.fractions, kind="stable")
+    pressures: Array = np.interp(_STROKE, np.take(line.fractions, order), np.take(line.pressures, order))
+    return pressures
 
 
 # measured traces and the brake, which only the person who measured can judge
@@ -182,7 +186,7 @@ _GOOD = 0.85
 """Mechanical efficiency assumed for the number of cylinders that the brake power needs."""
 
 
-def trace_warnings(forces: CylinderForces) -> Iterator[str]:
+def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield the one warning on each trace of a cylinder, if any."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
@@ -192,7 +196,7 @@ def trace_warnings(forces: CylinderForces) -> Iterator[str]:
                     yield f"{gas.piston.name}, {end}: {text}"
 
 
-def brake_warnings(case: Case) -> Iterator[str]:
+def _brake_warnings(case: Case) -> Iterator[str]:
     """Yield a contradiction of brake and indicator."""
     brake, indicated = case.machine.brake_power, Brake(case.machine, case.cylinders).indicated
     if not brake or indicated is None:
@@ -226,15 +230,14 @@ _LEAST_REVERSAL = 15.0, 0.03
 def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield what looks wrong in the forces of a cylinder; raises NoSolutionError if its friction locks it."""
     forces.refuse_locking()  # first, with an angle that does not depend on the step
-    residual, traced = abs(forces.energy_residual or 0.0), any(gas.traced for gas in forces.drive.gas)
-    if traced and residual > _COARSE:  # it shows the spacing of the samples
+    residual, traced = forces.energy_residual or 0.0, any(gas.traced for gas in forces.drive.gas)
+    if traced and abs(residual) > _COARSE:  # it shows the spacing of the samples
         yield (
             "the samples are too far apart: the indicated work, by the trapezoid rule, and that of T, by "
-            f"straight lines between them, differ by {residual:.1%} of the energy exchanged"
+            f"straight lines between them, differ by {abs(residual):.1%} of the energy exchanged"
         )
-    if not traced and residual > _CLOSED:
-        signed = forces.energy_residual
-        yield f"the energy balance of the cycle does not close (residual {signed:.1e}); trust no figure beyond that"
+    if not traced and abs(residual) > _CLOSED:
+        yield f"the energy balance of the cycle does not close (residual {residual:.1e}); trust no figure beyond that"
     for offer in forces.drive.mechanism.KEY_OFFERS:
         quantity, bound = offer.quantity, offer.bound
         found = offer.of(forces) if bound else None
@@ -244,57 +247,49 @@ def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     peak = forces.p_max.value if forces.p_max else 0.0
     # pumps and compressors have more, and traces are judged on their own
     if peak > _LARGEST_PEAK and not traced and (forces.mean_pressure or 0.0) > 0:
-        yield (
-            f"a pressure of {show(peak, 'pressure')} is more than engines have, at most "
-            f"{show(_LARGEST_PEAK, 'pressure')}; is its unit right?"
-        )
+        most = show(_LARGEST_PEAK, "pressure")
+        yield f"a pressure of {show(peak, 'pressure')} is more than engines have, at most {most}; is its unit right?"
     loads = None if forces.no_compressor else forces.rod_loads
     angle, ratio = (loads.reversal_longest, loads.reversal_ratio) if loads else (None, None)
-    if angle is not None and ratio is not None:
-        if not angle:
-            yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
-        elif angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]:
-            yield (
-                f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
-                "requires 15 deg and 3 %"
-            )
-    on_guide = _on_guide(forces)
-    if on_guide and forces.lifted:
-        machine = forces.drive.machine
-        other = _OTHER_SENSE[machine.rotation or "over"]
-        turned = _on_guide(
-            CylinderForces(replace(machine, rotation=other), forces.drive.cylinder), "would rest", "would lift"
+    if angle == 0:
+        yield "the rod load never reverses: no oil reaches the loaded side of the crosshead pin"
+    elif angle is not None and ratio is not None and (angle < _LEAST_REVERSAL[0] or ratio < _LEAST_REVERSAL[1]):
+        yield (
+            f"the rod load reverses over {angle:.3g} deg, to {100 * ratio:.3g} % of the larger load; API 618 "
+            "requires 15 deg and 3 %"
         )
-        yield f"Turning {machine.rotation}, the crosshead {on_guide}; turning {other} it {turned} (R p. 602)"
+    machine = forces.drive.machine
+    if machine.rotation and forces.lifted:
+        other = "under" if machine.rotation == "over" else "over"
+        turning_back = CylinderForces(replace(machine, rotation=other), forces.drive.cylinder)
+        turned = f"turning {other} it would {_on_guide(turning_back, 'rest', 'lift')}"
+        yield f"Turning {machine.rotation}, the crosshead {_on_guide(forces, 'rests', 'lifts')}; {turned} (R p. 602)"
 
 
 # the guide of a horizontal machine of known sense of rotation, R p. 602
 
-_OTHER_SENSE = {"over": "under", "under": "over"}
 _MOST_SPANS = 4
 
 
 def guide_notes(case: Case) -> Iterator[str]:
     """Yield of which cylinders the crosshead rests on the lower guide."""
-    resting = [forces for forces in case.cylinders if _on_guide(forces) and not forces.lifted]
+    sense, resting = case.machine.rotation, list[str]()
+    for forces in case.cylinders if sense else ():
+        drive = forces.drive
+        guided = drive.down and drive.mechanism.guided and drive.mechanism.has_rod
+        if guided and forces.extremes_of("N") is not None and not forces.lifted:
+            resting.append(drive.name)
     if resting:
-        name = f"{together([one.drive.name for one in resting])}: " if len(case.cylinders) > 1 else ""
-        sense = resting[0].drive.machine.rotation
-        yield f"{name}Turning {sense}, the crosshead {_on_guide(resting[0])} (R p. 602)."
+        name = f"{together(resting)}: " if len(case.cylinders) > 1 else ""
+        yield f"{name}Turning {sense}, the crosshead rests on the lower guide all round (R p. 602)."
 
 
-def _on_guide(forces: CylinderForces, rests: str = "rests", lifts: str = "lifts") -> str:
-    """Return where the crosshead rests; '' without a guide below, a sense of rotation, or a guide force."""
-    drive = forces.drive
-    guided = drive.machine.rotation is not None and drive.down and drive.mechanism.guided and drive.mechanism.has_rod
-    if not guided or forces.extremes_of("N") is None:
-        return ""
-    lifted = forces.lifted
-    if not lifted:
-        return f"{rests} on the lower guide all round"
-    if lifted[0][1] - lifted[0][0] >= drive.cycle:
-        return f"{rests} on the upper guide all round"
-    spans = ", ".join(f"from {start:.4g} to {end % drive.cycle:.4g} deg" for start, end in lifted)
+def _on_guide(forces: CylinderForces, rests: str, lifts: str) -> str:
+    """Return on which guide the crosshead rests, or where it lifts off the lower one."""
+    lifted, cycle = forces.lifted, forces.drive.cycle
+    if not lifted or lifted[0][1] - lifted[0][0] >= cycle:
+        return f"{rests} on the {'upper' if lifted else 'lower'} guide all round"
+    spans = ", ".join(f"from {start:.4g} to {end % cycle:.4g} deg" for start, end in lifted)
     return f"{lifts} off the lower guide {spans if len(lifted) <= _MOST_SPANS else f'{len(lifted)} times a cycle'}"
 
 
@@ -306,13 +301,10 @@ _STILL = 1.2
 def rod_ratio_notes(case: Case) -> Iterator[str]:
     """Yield L/R of machines beyond the 4 to 5 of the books for their kind (R Zusammenstellung 112, Blau)."""
     least, most = _USUAL_RATIO
-    for forces in case.cylinders:
+    for forces in case.cylinders if not case.machine.locomotive else ():  # Redtenbacher has 6 for locomotives
         mechanism = forces.drive.mechanism
-        # Redtenbacher has 6 for locomotives
-        if case.machine.locomotive or not mechanism.has_rod or not 0 < mechanism.lam < math.inf:
-            continue
-        ratio = 1 / mechanism.lam
-        if not least - 1e-9 <= ratio <= most + 1e-9 and (kind := _kind_of(forces)):
+        ratio = 1 / mechanism.lam if mechanism.has_rod and mechanism.lam > 0 else math.inf
+        if not least - 1e-9 <= ratio <= most + 1e-9 and ratio < math.inf and (kind := _kind_of(forces)):
             yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
 
 
@@ -338,10 +330,9 @@ def _drawn_by_steam(card: object, lift: float) -> bool:
     """
     if not isinstance(card, Card) or len(card.lines) != 2 or card.flat:
         return False
-    outward, back = card.lines
-    held, released = np.interp([0.05, 1.0], outward.fractions, outward.pressures) + lift
-    halfway = np.interp(0.5, back.fractions[::-1], back.pressures[::-1]) + lift
-    exhaust, most = back.pressures[0] + lift, max(outward.pressures) + lift
+    outward, back = (_pressures(line) + lift for line in card.lines)
+    most, exhaust = max(card.lines[0].pressures) + lift, card.lines[1].pressures[0] + lift
+    held, released, halfway = outward[5], outward[-1], back[50]
     return bool(max(0.85 * most, released, _STILL * exhaust) < held and halfway < _STILL * exhaust)
 
 
@@ -355,7 +346,7 @@ _LINEAR = 0.1
 """δ up to which the cranks are close enough to uniform rotation."""
 
 
-def turning_warnings(case: Case) -> Iterator[str]:
+def _turning_warnings(case: Case) -> Iterator[str]:
     """Yield what looks wrong in the turning effort and the speed of the whole machine."""
     machine = case.machine
     if machine.efficiency == 1 and not any((machine.flywheel, machine.load, machine.coupling)):
@@ -399,17 +390,21 @@ def turning_warnings(case: Case) -> Iterator[str]:
         )
 
 
-_SHELLS = (
-    (25, "permissible for bronze shells (25)"),
-    (30, "too much for bronze shells (25), permissible for white metal (30)"),
-    (35, "permissible for the best white metal only (30 to 35)"),
-    (math.inf, "more than permissible for white metal (30 to 35)"),
-)
-"""p_m v of the crank pin in kgf m/(cm² s), and the assessment of G up to this value."""
-
-
-_METALS = {"gunmetal": ("gun metal", 25.0, 25.0), "white-metal": ("white metal", 30.0, 35.0)}
-"""Metal of the shells -> its name, p_m v in kgf m/(cm² s) permissible usually, and for the best quality (G)."""
+_SHELLS = {
+    "": (
+        (25.0, "permissible for bronze shells (25)"),
+        (30.0, "too much for bronze shells (25), permissible for white metal (30)"),
+        (35.0, "permissible for the best white metal only (30 to 35)"),
+        (math.inf, "more than permissible for white metal (30 to 35)"),
+    ),
+    "gunmetal": ((25.0, "permissible for gun metal (25)"), (math.inf, "more than gun metal (25) permits")),
+    "white-metal": (
+        (30.0, "permissible for white metal (30 to 35)"),
+        (35.0, "permissible only for the best white metal (30 to 35)"),
+        (math.inf, "more than white metal (30 to 35) permits"),
+    ),
+}
+"""Metal of the shells, "" if unknown -> p_m v of the crank pin in kgf m/(cm² s), and the assessment up to it (G)."""
 
 
 def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> tuple[bool, str]:
@@ -419,23 +414,21 @@ def shell_verdict(pressure_velocity: float | None, metal: str | None = None) -> 
     """
     if pressure_velocity is None:
         return True, ""
-    shown = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2")
-    if metal is not None:
-        name, usual, best = _METALS[metal]
-        bounds = f"{name} ({usual:g}{f' to {best:g}' if best > usual else ''})"
-        word = (
-            "permissible for" if shown <= usual else "permissible only for the best" if shown <= best else "more than"
-        )
-        permits = " permits" if shown > best else ""
-        return shown <= usual, f"Crank pin: k_v = p_m v = {shown:.3g} kgf m/(cm² s); {word} {bounds}{permits}."
-    bound, verdict = next((shell for shell in _SHELLS if shown <= shell[0]), _SHELLS[-1])
-    return bound == _SHELLS[0][0], f"Crank pin: p_m v = {shown:.3g} kgf m/(cm² s); {verdict}."
+    shown, shells = convert(pressure_velocity, "pressure_velocity", "kgf m/s/cm2"), _SHELLS[metal or ""]
+    bound, verdict = next(shell for shell in shells if shown <= shell[0])
+    symbol = "k_v = p_m v" if metal else "p_m v"
+    return bound == shells[0][0], f"Crank pin: {symbol} = {shown:.3g} kgf m/(cm² s); {verdict}."
+
+
+def shells(case: Case) -> tuple[bool, str]:
+    """Return the verdict on the shells of a machine whose crankshaft is examined."""
+    shaft = case.machine.crankshaft
+    return shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
 
 
 def _strength_warnings(case: Case) -> Iterator[str]:
     if not case.machine.strength_obstacle:
-        shaft = case.machine.crankshaft
-        cool, verdict = shell_verdict(case.stress.pressure_velocity("pin"), shaft.bearing_metal if shaft else None)
+        cool, verdict = shells(case)
         if not cool:
             yield verdict
 

@@ -99,12 +99,14 @@ def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mappin
     """Return the rows of a class of columns, and of what mechanisms add to it, in printed order."""
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
-    rows = [Row(PHI, lambda one: one.phi)]
+    rows = list[Row]()
     for owner in [one for one in reversed(state.__mro__) if issubclass(one, AtAngles)]:
         for item in vars(owner).values():
             for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
                 rows += printed_by([row], *owner.commands) if row.quantity.commands == ITS_OWN else [row]
     rows += [Row(one.quantity, one.of, one.unless) for one in offers]
+    over_phi = dict.fromkeys(word for row in rows for word in row.quantity.commands)
+    rows = [Row(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows]
     return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
 
 
