@@ -303,27 +303,29 @@ class Listing(Form):
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
-        above: dict[str, tuple[int, Tree]] = {}
-        completed: list[Any] = []
+        above: dict[str, int] = {}
+        completed: list[Any] = list(items)
         for index, item in enumerate(items):
-            whole = item
-            like = item.get("like", REFUSED) if isinstance(item, dict) else REFUSED
-            if isinstance(item, dict) and isinstance(like, str) and like in above:
-                place, other = above[like]
-                here: Path = (*path, index)
-                reading.alike[here] = (*path, place)
+            if not isinstance(item, dict):
+                continue
+            here: Path = (*path, index)
+            if "like" in item:
+                like = str(item["like"])
+                if like not in above:
+                    hint = did_you_mean(like, tuple(above)) or f"; above are {', '.join(map(shown, above))}" * bool(
+                        above
+                    )
+                    none_such = f"no {self.called} above this one is called '{shown(like)}'{hint}"
+                    completed[index] = reading.fault((*here, "like"), none_such)
+                    continue
+                other = completed[above[like]]
+                reading.alike[here] = (*path, above[like])
                 own = {key: value for key, value in item.items() if key != "like"}
                 pairs = [{name, key.instead} for name, key in self.item.names(other | own).items() if key.instead]
                 replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
-                whole = {key: value for key, value in other.items() if key not in replaced} | own
-            elif like is not REFUSED:
-                hint = did_you_mean(str(like), tuple(above)) or f"; above are {', '.join(map(shown, above))}"
-                none_such = f"no {self.called} above this one is called '{shown(str(like))}'{hint if above else ''}"
-                whole = reading.fault((*path, index, "like"), none_such)
-            if isinstance(whole, dict):
-                name = whole.get("name")
-                above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", (index, whole))
-            completed.append(whole)
+                completed[index] = {key: value for key, value in other.items() if key not in replaced} | own
+            name = completed[index].get("name")
+            above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", index)
         return completed
 
 
@@ -341,17 +343,18 @@ class OneOf(Form):
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
-        words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
-        keys = [key for form in self.forms if isinstance(form, RecordForm) for key in form.keys]
-        for name in value if isinstance(value, dict) else ():
-            if name in words and name not in keys:
+        if isinstance(value, dict):
+            words = {word for form in self.forms if isinstance(form, Choice) for word in form.words}
+            words -= {key for form in self.forms if isinstance(form, RecordForm) for key in form.keys}
+            if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
         shape = type(value) if isinstance(value, (dict, list)) else str
         alike = [form for form in self.forms if form.shape is shape]
-        if alike:  # a word or a number: by what the text looks like
-            suiting = (form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value))))
-            return next(suiting, alike[0]).read(reading, value, path)
+        # a word or a number: by what the text looks like
+        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value)))]
+        for form in suiting or alike:
+            return form.read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
 
