@@ -288,7 +288,7 @@ UNIT = alternative(unit_name("torque"), "Unit of the torques")
 POINTS = alternative(
     Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
 )
-MEAN = alternative(_MeanTorque(), "Mean torque, bare in the unit of the harmonics", "M_m")
+MEAN = alternative(_MeanTorque(), "Mean torque with its unit, or bare in that of the harmonics", "M_m")
 HARMONICS = alternative(
     Points("order", "cos", "sin", least=1),
     "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",

@@ -128,11 +128,11 @@ class RecordForm(Form):
         unless = self.listed.unless if self.listed else ""
         faults = []
         for fault in error.faults:
-            name, item, *inner = (*fault.path, "", "")[: max(len(fault.path), 2)]
+            name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
                 head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
-                fault = fault._replace(path=(*head, *inner))
+                fault = fault._replace(path=(*head, *fault.path[2:]))
             faults.append(fault)
         return RuleError(*faults)
 
@@ -202,8 +202,8 @@ def too_extreme(record: Any, values: Tree) -> Any:
 
     values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
     """
-    endless = [vars(type(record)).get(name) for name in vars(record)]
-    infinite: Any = any(one == math.inf for one in (*values.values(), *endless) if is_number(one))
+    defaults = [vars(type(record)).get(name) for name in vars(record)]
+    infinite = any(one == math.inf for one in (*values.values(), *defaults) if is_number(one))
     broken: Any = False
     for value in vars(record).values():
         if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
