@@ -22,34 +22,42 @@ from numpy.polynomial import chebyshev
 
 from kurbel import loads
 from kurbel.accuracy.extremes import all_cases
-from kurbel.accuracy.textbook import DIGITS, TextbookMachine, integrals, merged
-from kurbel.machine import Machine
+from kurbel.accuracy.methods import integrals, merged
+from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMachine
+from kurbel.machine import Cylinder, Machine
 from kurbel.solver.case import Case
 
 mp, mpf = mpmath.mp, mpmath.mpf
-MPF, SQRT = np.frompyfunc(mp.mpf, 1, 1), np.frompyfunc(mp.sqrt, 1, 1)
+MPF, SQRT, RADIANS = (np.frompyfunc(one, 1, 1) for one in (mp.mpf, mp.sqrt, mp.radians))
 Array = np.ndarray
 Function = Callable[[Array, Array], Array]
 
 
+def turning_inertia(cylinder: Cylinder) -> Any:
+    """Return what turns with the crank pin of a connecting rod, in kg m²."""
+    rod = cylinder.masses.connecting_rod if cylinder.masses else None
+    return mpf(rod.mass) * (1 - mpf(rod.share)) * mpf(cylinder.mechanism.crank) ** 2 if rod else mpf(0)
+
+
 def speed_line(machine: Machine) -> dict[float, Any]:
     """Return ω in rad/s by the angle in degrees, at 30°, 60°, … of the cycle."""
-    whole, load, wheel, omega = TextbookMachine(machine), machine.load, machine.flywheel, 2 * mp.pi * mpf(machine.speed)
+    whole, load, wheel = TextbookMachine(machine, machine.cylinders), machine.load, machine.flywheel
+    omega, rigid = 2 * mp.pi * mpf(machine.speed), mpf(wheel.inertia) + sum(map(turning_inertia, machine.cylinders))
 
-    def drive(phi: Any, at: Any) -> Any:
+    def drive(degrees: Any, within: Any) -> Any:
         """M without inertia in N m."""
-        total = whole.torque(phi, at)
+        total = mpf(0)
         for one, place in whole.cylinders:
-            motion = one.motion.at(phi - place)
-            total += one.mass * one.omega**2 * motion.slope * motion.curvature
+            motion = one.motion.at(degrees - place)
+            total += one.at(degrees - place, within - place).M + one.mass * omega**2 * motion.slope * motion.curvature
         return total
 
-    def inertia(phi: Any, _: Any) -> Any:
-        return mpf(wheel.inertia) + sum(
-            one.mass * one.motion.at(phi - place).slope ** 2 + one.turning_inertia for one, place in whole.cylinders
-        )
+    def inertia(degrees: Any, _: Any) -> Any:
+        slopes = [(one.mass, one.motion.at(degrees - place).slope) for one, place in whole.cylinders]
+        return rigid + sum(mass * slope**2 for mass, slope in slopes)
 
-    mean = mp.fsum(integrals(drive, whole.edges)) / (whole.edges[-1] - whole.edges[0])
+    work = integrals(np.frompyfunc(drive, 2, 1), whole.edges, STEPS).sum()
+    mean = work / (whole.edges[-1] - whole.edges[0])
 
     def torque(speed: Any, mean: Any, omega: Any) -> tuple[Any, Any]:
         if load.slip is not None:
@@ -57,7 +65,7 @@ def speed_line(machine: Machine) -> dict[float, Any]:
             return mean + steepness * (speed - omega), steepness + 0 * speed
         return mean * (speed / omega) ** load.power, mean * load.power / omega * (speed / omega) ** (load.power - 1)
 
-    both = [np.frompyfunc(one, 2, 1) for one in (drive, inertia)]
+    both = [np.frompyfunc(lambda *at, one=one: one(*map(mp.degrees, at)), 2, 1) for one in (drive, inertia)]
     precise = Motor(*both, lambda speed: torque(speed, mean, omega), omega)
     rough = Motor(
         *(lambda phi, at, one=one: np.asarray(one(MPF(phi), at), dtype=float) for one in both),
@@ -65,7 +73,7 @@ def speed_line(machine: Machine) -> dict[float, Any]:
         float(omega),
     )
     degrees = range(30, 360 * machine.revolutions + 1, 30)
-    edges = np.array(merged([*whole.edges, *(mp.radians(mpf(one)) for one in degrees)]))
+    edges = merged(RADIANS(np.append(whole.edges, [mpf(one) for one in degrees])))
     kept, found = np.asarray(edges[1:], dtype=float), np.full(len(edges) - 1, math.inf)
     while len(edges) < 1000:
         floats, before = np.asarray(edges, dtype=float), found

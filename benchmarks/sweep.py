@@ -22,6 +22,7 @@ import numpy as np
 
 from kurbel.designs.answers import Answer, answered_alone, answers_of, requested_answers
 from kurbel.designs.binding import Batch, Binder
+from kurbel.designs.plan import read_axis
 from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.machine_file import source
@@ -100,9 +101,9 @@ def main() -> None:
         batches = at_speeds(name, DESIGNS)
         beside_alone(f"{', '.join(columns)}: {name}", batches, list(requested_answers(batches[0].one(0), columns)))
     report("binding to the file", seconds(lambda: designs(WATERWORKS, DESIGNS)), DESIGNS)
-    vary = ("rod_ratio=uniform(3, 6)", "speed=uniform(40, 60 rpm)")
+    axes = (read_axis("rod_ratio=uniform(3, 6)"), read_axis("speed=uniform(40, 60 rpm)"))
     begin = time.process_time()
-    sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), vary=vary, sample=rows))
+    sweep = Sweep(Spec(source.read(CONFIGS / f"{WATERWORKS}.yaml"), axes, sample=rows))
     titles = Titles(tuple((one.id, one.unit) for one in sweep.heads), sweep.texts)
     size = sum(map(len, map(lines_of(titles, Look("csv"))[1], rows_of(sweep, range(rows)))))
     report(f"{rows} rows with {len(sweep.heads)} columns as csv", time.process_time() - begin, rows)

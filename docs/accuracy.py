@@ -7,8 +7,13 @@ The numbers in the explanation are read from the run; times belong to the machin
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "benchmarks"))
+
+from model_and_data import data_errors, first_machine, model_errors
 
 from kurbel.machine_file import loads
 from kurbel.render import Look
@@ -20,20 +25,16 @@ from kurbel.report.tables import Report
 
 FOLDER = Path(__file__).parent
 PICTURE = "accuracy.svg"
-
-
 EQUIDISTANT = ("trapezium rule", "largest ordinate")
 
 
-def errors(
-    report: Report, table_id: str, wanted: Callable[[tuple[str, ...]], bool] = lambda names: True
-) -> list[float]:
-    """Return the errors of the rows of all scenes whose names are wanted."""
+def errors(report: Report, wanted: Callable[[tuple[str, ...]], bool]) -> list[float]:
+    """Return the numerical errors of the rows of all scenes whose names are wanted."""
     return [
         error
         for part in report.parts
         for table in part.place_tables
-        if table.id == table_id
+        if table.id == "numerical_error"
         for names, error in zip(table.names, next(c for c in table.columns if c.id == "error").values)
         if error and wanted(names)
     ]
@@ -71,11 +72,14 @@ of the solver, its motion alone {motion}, positions alone {positions}; the first
 def explanation(report: Report) -> str:
     """Return which error an engineer should worry about."""
     engine = report._replace(parts=report.parts[:1])
-    data = errors(engine, "data_error")
-    model = errors(engine, "model_error", lambda names: names[1] == "first-order formulas")
-    rough = errors(engine, "model_error", lambda names: names[1] == "infinite rod")
-    hand = errors(engine, "numerical_error", lambda names: names[1] in EQUIDISTANT and names[2] == "36")
-    own = errors(engine, "numerical_error", lambda names: names[1] == "kurbel")
+    machine = first_machine()
+    data = [one.error for one in data_errors(machine)]
+    model, rough = (
+        [one.error for one in model_errors(machine) if one.cause == cause]
+        for cause in ("first-order formulas", "infinite rod")
+    )
+    hand = errors(engine, lambda names: names[1] in EQUIDISTANT and names[2] == "36")
+    own = errors(engine, lambda names: names[1] == "kurbel")
     return f"""Which error matters? For the first built-in machine, a steam engine with L/R = 5:
 
 | error | from | to |
@@ -104,7 +108,7 @@ any. The best methods use kurbel's idea: cut the cycle at the corners of the car
 root searches or a fit of Chebyshev polynomials. The number of points that they need is not known beforehand; kurbel
 determines it for each machine. References are textbook formulas in 40 digits of mpmath, with Gauss rules whose pieces
 are halved until 25 digits agree. `benchmarks/speed_lines.py` and `benchmarks/flywheel.py` do the same for the speed of
-the shaft. `python docs/accuracy.py` writes this page."""
+the shaft, `benchmarks/model_and_data.py` the errors of data and model. `python docs/accuracy.py` writes this page."""
 
 
 def main() -> None:

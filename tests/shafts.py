@@ -10,7 +10,7 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.shaft import FreeBody, Vector
+from kurbel.solver.shaft import FreeBody
 from kurbel.solver.stress import CrankshaftStrength, Place, places
 from machines import constant_pressure
 
@@ -34,7 +34,7 @@ def shaft(**changed: Any) -> Crankshaft:
 
 def body(D: float, T: float, weight: tuple[float, float] = (0.0, 0.0), **changed: Any) -> FreeBody:
     """The crankshaft above on a crank of 0.3 m, under these forces on its pin and at its flywheel in N."""
-    pin, turned = (Vector(np.array([x]), np.array([y])) for x, y in ((D, T), weight))
+    pin, turned = (np.array([complex(*one)]) for one in ((D, T), weight))
     return FreeBody(shaft(**changed), 0.3, pin, turned)
 
 

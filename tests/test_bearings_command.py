@@ -9,15 +9,6 @@ from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")
-THREE = """
-speed: 600 rpm
-cylinders:
-  count: 3
-  firing_order: 1-2-3
-  each: {crank: 300 mm, rod_ratio: 5, masses: {reciprocating: 20 kg}}
-"""
-TWO = THREE.replace("count: 3", "count: 2").replace("1-2-3", "1-2")
-SHAFT = ENGINE[ENGINE.index("crankshaft:") : ENGINE.index("limits:")]
 
 
 def test_json_has_one_part_for_each_pin_and_bearing() -> None:
@@ -37,35 +28,3 @@ def test_json_has_one_part_for_each_pin_and_bearing() -> None:
     asked = {"load_max", "load_mean", "load_min", "unloaded_arc", "pressure_max", "pressure_velocity"}
     assert asked <= values.keys()
     assert values["load_max"]["value"] >= max(parts["bearing A"]["columns"][1]["values"])
-
-
-@pytest.mark.parametrize(("asked", "name"), [("2", "b"), ("b", "b"), ("1", "a")])
-def test_the_pins_of_one_cylinder_by_its_name_or_its_number(asked: str, name: str) -> None:
-    """`--cylinder 2` was taken for the cylinder's name, of which bearings were said to have no results."""
-    one = "name: a, crank: 0.1 m, rod: 0.4 m, masses: {reciprocating: 9 kg}"
-    two = f"speed: 100 rpm\ncylinders: [{{{one}}}, {{like: a, name: b, crank_position: 90 deg}}]"
-    found = json.loads(run("bearings", "-", "--cylinder", asked, "-f", "json", text=two).stdout)
-    assert [part["name"] for part in found["bearings"]] == [f"crank pin of {name}", f"crosshead pin of {name}"]
-
-
-def test_throws_that_do_not_fit_their_bearings_are_told() -> None:
-    spaced = TWO.replace("count: 2", "count: 2\n  spacing: 300 mm")
-    text = " ".join(run("bearings", "-", "--key-values", text=spaced + SHAFT).stdout.split())
-    assert (
-        "throws 300 mm apart along the shaft do not fit bearings between them, by which they are a + b = 800 mm" in text
-    )
-    checked = " ".join(run("check", "-", text=spaced + SHAFT).stdout.split())
-    assert "bearings throws 300 mm apart along the shaft do not fit bearings between them" in checked
-
-
-def test_without_a_crankshaft_there_are_pins_only() -> None:
-    text = run("bearings", "-", "--key-values", text=ENGINE[: ENGINE.index("crankshaft:")]).stdout
-    assert "Key values: crosshead pin" in text
-    assert "bearing A" not in text
-    assert "main bearings  no 'crankshaft' given" in text
-
-
-def test_three_throws_cannot_be_overhung() -> None:
-    shaft = SHAFT.replace("b: 400 mm", "b: 1200 mm\n  overhung: true")
-    text = " ".join(run("bearings", "-", "--key-values", text=THREE + shaft).stdout.split())
-    assert "main bearings 3 throws cannot all be overhung; a shaft has two ends" in text

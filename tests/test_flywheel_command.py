@@ -6,12 +6,8 @@ from functools import cache
 from typing import Any
 
 import pytest
-from click.testing import Result
 
 from command import answer, printed, run
-from kurbel.machine_file import loads
-from kurbel.report.check import checked
-from kurbel.solver.case import Case
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -50,28 +46,6 @@ def test_the_wanted_fluctuation_gives_the_flywheel() -> None:
     assert found["delta"] == pytest.approx(0.01, rel=0.01)
     both = values(ENGINE + "flywheel: {fluctuation: 0.01, inertia: 9000 kg m2}\n")
     assert (both["J"], both["J_needed"]) == (9000, found["J"])
-
-
-def left_out(text: str) -> dict[str, str]:
-    return {one["what"]: one["why"] for one in results(text)["machine_left_out"]}
-
-
-def test_what_is_left_out_is_said() -> None:
-    assert left_out(ENGINE)["speed line, δ"] == "no flywheel given"
-    assert left_out(ENGINE)["weight"] == "no inclination given"
-    slow = ENGINE.replace("speed: 50 rpm\n", "") + "flywheel: {fluctuation: 0.01}\n"
-    assert left_out(slow)["J"] == left_out(slow)["speed line, δ"] == left_out(slow)["inertia"] == "no speed given"
-    resting = ENGINE.replace("50 rpm", "0 rpm") + "flywheel: {inertia: 1 kg m2}\n"
-    assert left_out(resting)["speed line, δ"] == "not defined at rest"
-    assert left_out(PUNCH)["T, W"] == "no crank: the effort is given as a torque"
-    assert "T" not in [column["id"] for column in results(PUNCH)["machine_columns"]]
-
-
-def test_a_stall_is_exit_3_and_names_angle_and_flywheel() -> None:
-    result = run("flywheel", "-", text=ENGINE + "flywheel: {inertia: 100 kg m2}\nload: {power_law: 2}\n")
-    assert (result.exit_code, result.stdout) == (3, "")
-    assert "stops near φ = " in result.stderr
-    assert "GD2 = " in result.stderr
 
 
 LIGHT = """\
@@ -118,22 +92,6 @@ def test_a_resonance_is_told() -> None:
     order = values(undamped)["natural_order"]
     tuned = undamped.replace("1e6", f"{1e6 * (4 / order) ** 2!r}")
     assert run("flywheel", "-", text=tuned).exit_code == 3
-
-
-def test_a_limit_on_the_flywheel_needed_is_kept_though_it_is_not_printed() -> None:
-    text = ENGINE + "flywheel: {fluctuation: 0.01}\n"
-    assert "J_needed" not in values(text)
-    assert not checked(Case(loads(text + "limits: {J_needed: 1000 t m2}\n"))).broken
-    (error,) = checked(Case(loads(ENGINE + "limits: {delta: 0.1}\n"))).errors
-    assert "this machine has no delta: coefficient" in str(error)
-
-
-@pytest.mark.parametrize(("load", "says"), [(150, "50 N m less resistance"), (50, "50 N m more resistance")])
-def test_a_resistance_of_another_mean(load: int, says: str) -> None:
-    effort = "effort: {unit: N m, points: [[0, 0], [180, 200], [360, 0]]}"
-    load_ = f"load: {{unit: N m, points: [[0, {load}], [360, {load}]]}}"
-    text = f"{{speed: 60 rpm, flywheel: {{inertia: 10 kg m2}}, {effort}, {load_}}}"
-    assert says in run("flywheel", "-", "--key-values", text=text).stdout
 
 
 def test_the_warning_of_a_missed_wish_names_the_flywheel_that_meets_it() -> None:
@@ -184,30 +142,3 @@ def test_a_speed_against_the_kinetic_energy() -> None:
     slowest = float(asked["machine_columns"][3]["values"][0])
     wanted = math.sqrt(slowest**2 + 2 * 80 * (1 - math.cos(math.radians(50))) / J)
     assert angles_of(f"omega = {wanted!r} rad/s") == pytest.approx([50, 310], rel=1e-11)
-
-
-STAGES = """
-speed: 600 rpm
-cylinders:
-  - {name: LP, stroke: 200 mm, rod: 450 mm, bore: 400 mm,
-     indicator: {head_end: {constant: {expansion: 0 bar, compression: 3 bar}}}}
-  - {name: HP, like: LP, indicator: {head_end: {constant: {expansion: 3 bar, compression: 9 bar}}}}
-"""
-
-
-def of_stages(*words: str) -> Result:
-    return run("forces", "-", *words, text=STAGES)
-
-
-def test_one_cylinder_may_have_what_another_has_not() -> None:
-    both = of_stages("--where", "p_head = 5 bar", "--columns", "p_head")
-    assert both.exit_code == 0
-    assert "LP: p_head is nowhere 5 bar: it goes from 0 mbar to 3 bar." in both.stdout
-    rows = of_stages("--where", "p_head = 5 bar", "--columns", "p_head", "-f", "csv").stdout.splitlines()
-    assert {row.split(",")[0] for row in rows[1:]} == {"HP"}
-    assert of_stages("--where", "p_head = 5 bar", "--columns", "p_head", "--cylinder", "2").exit_code == 0
-    for cylinder, condition in (("LP", "p_head = 5 bar"), ("HP", "p_head = 1 bar")):
-        alone = of_stages("--where", condition, "--columns", "p_head", "--cylinder", cylinder)
-        assert (alone.exit_code, f"{cylinder}: p_head is nowhere" in alone.stderr) == (3, True)
-    neither = of_stages("--where", "p_head = 50 bar")
-    assert (neither.exit_code, "LP: p_head is nowhere 50 bar" in neither.stderr) == (3, True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from command import answer, run
+from command import answer
 from good_machines import DEMO
 from representative import CONFIGS
 
@@ -44,37 +44,3 @@ def test_technical_units_show_the_figures_of_the_book() -> None:
     assert key_value(part, "A_head")["unit"] == "cm^2"
     assert key_value(part, "P_inertia_min")["value"] == pytest.approx(-1115 * 826 / 830, rel=2e-3)
     assert key_value(part, "stroke")["value"] == pytest.approx(800, rel=1e-15)
-
-
-def test_a_machine_without_forces_says_what_is_left_out() -> None:
-    part = cylinder(answer("forces", "-", text="{crank: 1 m, rod: infinite}"))
-    assert [column["id"] for column in part["columns"]] == ["phi", "psi", "x"]
-    reasons = {entry["what"]: entry["why"] for entry in part["left_out"]}
-    assert reasons["velocity, acceleration"] == "no speed given"
-    assert reasons["forces in the crank train"] == "no force acts"
-
-
-LOCKING = (
-    "speed: 60 rpm\ncrank: 95 mm\nrod: 100 mm\nbore: 50 mm\nfriction: {crosshead: 0.5}\n"
-    "indicator: {head_end: {constant: {expansion: 0 bar, compression: 5 bar}}}\n"
-)
-
-
-def test_check_tells_that_the_crosshead_locks_itself() -> None:
-    result = run("check", "-", text=LOCKING + "limits: {c_max: 1 m/s, stroke: 190 mm}\n")
-    assert result.exit_code == 0
-    assert "the crosshead locks itself near φ = " in result.stdout
-    assert "kurbel forces ends with status 3" in result.stdout
-    assert result.stdout.count("PASS") == 2
-
-
-@pytest.mark.parametrize("command", ["motion", "forces"])
-def test_a_shaper_has_no_piston(command: str) -> None:
-    """Its largest force was called that of a piston; what drives a pump by the same lever still has one."""
-    shaper = str(CONFIGS["shaper"])
-    told = run(command, shaper).stdout
-    assert "piston" not in told
-    assert "Mean ram speed" in told
-    assert ("Largest force along the stroke line" in told) == (command == "forces")
-    bore = ("--set", "bore=200 mm", "--set", "indicator={head_end: 3 bar}")
-    assert "Mean piston speed" in run(command, shaper, *bore).stdout

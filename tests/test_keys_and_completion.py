@@ -3,7 +3,6 @@
 import pytest
 from click.testing import CliRunner
 
-from command import printed
 from kurbel.cli import kurbel
 from representative import CONFIGS
 
@@ -17,32 +16,6 @@ def completed(words: str) -> list[str]:
     }
     output = CliRunner().invoke(kurbel, [], env=environment, prog_name="kurbel").stdout
     return [line.partition(",")[2] for line in output.splitlines() if line]
-
-
-def test_one_key_in_full() -> None:
-    assert printed("keys", "masses.connecting_rod.share").splitlines() == [
-        "meaning  Reciprocating share of the mass",
-        "form     a number",
-        "absent   1/2",
-        "or give  center_of_gravity",
-        "example  share: 0.1",
-    ]
-    assert "must be given" in printed("keys", "crankshaft.a")
-    rim = printed("keys", "flywheel.rim.mean_diameter")
-    assert "absent   mean_diameter or outer_diameter must be given\nor give  outer_diameter" in rim
-
-
-@pytest.mark.parametrize(
-    "path", ["cylinders.0.bore", "cylinders[0].bore", "cylinders.each.bore", "tandem.0.bore", "bore"]
-)
-def test_a_path_may_be_that_of_a_message(path: str) -> None:
-    assert "Diameter of the cylinder" in printed("keys", path)
-
-
-@pytest.mark.parametrize("path", ["indicator.head_end.constant", "cylinders.0.indicator.head_end.constant"])
-def test_a_key_with_keys_below_it_alone_lists_these(path: str) -> None:
-    names = [line.split()[0] for line in printed("keys", path).splitlines()]
-    assert names == ["indicator.head_end.constant.expansion", "indicator.head_end.constant.compression"]
 
 
 @pytest.mark.parametrize(

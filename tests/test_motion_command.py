@@ -41,15 +41,6 @@ def test_columns_and_key_values_fit_the_mechanism_and_no_others(name: str) -> No
     assert all(math.isfinite(value) for values in columns.values() for value in values)
 
 
-def test_what_the_mechanism_says_of_itself_is_a_note() -> None:
-    parsed = motion(FITTING["parallel-crank"]["machine"])
-    (note,) = parsed["notes"]
-    assert "second pair of cranks at 90 deg" in note
-    result = run("motion", "-", text=FITTING["parallel-crank"]["machine"])
-    assert note in result.stdout
-    assert note in run("check", "-", text=FITTING["parallel-crank"]["machine"]).stdout
-
-
 def test_several_cylinders_each_with_its_own_part() -> None:
     text = (
         "speed: 60 rpm\ncylinders:\n"

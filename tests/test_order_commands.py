@@ -4,12 +4,11 @@ from typing import Any
 
 import pytest
 
-from command import answer, run
+from command import answer
 from representative import CONFIGS
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 BLOWER, SHIP = (str(CONFIGS[name]) for name in ("coupled-blower", "marine-diesel"))
-TWO = "shaft: [{inertia: 2 kg m2}, {stiffness: 50 N m/rad}, {inertia: 2 kg m2}]\n"
 
 
 def table(found: dict[str, Any], id: str) -> dict[str, list[Any]]:
@@ -67,25 +66,3 @@ def test_over_the_speed_the_critical_one_is_the_worst() -> None:
     worst = max(range(31), key=speeds["M_vibratory"].__getitem__)
     assert speeds["speed"][worst] == pytest.approx(critical["speed"][0], abs=1.5 / 60)
     assert len(speeds["speed"]) == 31
-
-
-def test_what_lies_beside_the_working_speed_is_told() -> None:
-    result = run("torsion", SHIP)
-    assert "mode 1: critical speed of order 3 (-1.78 %) within 10 % of the working speed 110 rpm" in result.stdout
-    assert any(line.split()[:4] == ["near", "3", "1", "108"] for line in result.stdout.splitlines())
-
-
-def test_without_damping_it_says_so() -> None:
-    result = run("torsion", BLOWER, "--set", "coupling.damping=0 N m s/rad")
-    assert "no damping given; at resonance nothing but damping bounds a vibration" in " ".join(result.stdout.split())
-    assert "M_w,a" not in result.stdout
-
-
-def test_a_shaft_line_alone() -> None:
-    checked = run("check", "-", text=TWO)
-    assert "none, a shaft line alone" in checked.stdout
-    assert "natural frequencies, critical speeds" in checked.stdout
-    assert "turning effort" not in checked.stdout
-    assert table(answer("torsion", "-", text=TWO), "modes")["frequency"][1] == pytest.approx(1.1253953951963827)
-    for command in ("motion", "forces", "flywheel", "stress", "harmonics"):
-        assert run(command, "-", text=TWO).exit_code == 2

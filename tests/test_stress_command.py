@@ -18,10 +18,6 @@ PLACES = [
 ]
 
 
-def without(*keys: str) -> str:
-    return "".join(line for line in ENGINE.splitlines(True) if line.strip().split(":")[0] not in keys)
-
-
 def test_csv_over_the_crank_angle_and_by_place() -> None:
     rows = list(csv.DictReader(io.StringIO(run("stress", "-", "-f", "csv", "--angles", "0,35", text=ENGINE).stdout)))
     assert [row["phi_deg"] for row in rows] == ["0", "35"]
@@ -31,13 +27,3 @@ def test_csv_over_the_crank_angle_and_by_place() -> None:
     assert [(row["part"], row["place"]) for row in rows] == PLACES * 3
     assert rows[0]["compression_Pa"] == ""
     assert float(rows[3]["torsion_Pa"]) > 0
-
-
-def test_what_is_not_given_is_left_out_by_name() -> None:
-    text = run(
-        "stress", "-", "--step", "90", text=without("inclination", "journal_diameter", "allowable_bending", "speed")
-    ).stdout
-    left_out = text.partition("Left out")[2]
-    for what in ("flywheel weight", "journals", "safety", "p_m v", "α₀ of the webs"):
-        assert what in left_out
-    assert "journal A" not in text.partition("Left out")[0]

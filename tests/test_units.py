@@ -3,11 +3,10 @@
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 
 from command import run
 from kurbel.declared.unit_systems import SI, SYSTEMS, shown_unit
-from kurbel.declared.units import listed_units, parse_quantity
+from kurbel.declared.units import parse_quantity
 from kurbel.errors import UnitError
 from representative import CONFIGS, case_of, law_of_each
 
@@ -66,13 +65,3 @@ def test_messages_are_told_in_the_units_asked_for(
         assert result.exit_code == 3
         number, told = result.stderr.strip().rpartition(" to ")[2].split()
         assert (float(number), told) == (pytest.approx(expected, rel=1e-5), unit)
-
-
-def test_the_units_of_one_kind() -> None:
-    def told(*kind: str) -> Result:
-        return run("units", *kind)
-
-    of_pressure = f"pressure  {', '.join(listed_units('pressure'))}\n"
-    assert told("pressure").stdout == of_pressure
-    assert of_pressure.split("  ")[1] in told().stdout
-    assert told("angular velocity").stdout == told("angular_velocity").stdout == "angular velocity  rad/s\n"

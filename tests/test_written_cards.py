@@ -68,28 +68,6 @@ def test_a_planimeter_gives_the_mean_pressure(planimeter: str) -> None:
     assert "rectangular card" in check(text)
 
 
-HEAD = "{unit: at, expansion: [[0, 5], [0.3, 5], [1, 1]], compression: [[1, 0.2], [0.2, 0.2], [0, 5]]}"
-TURNED = "{unit: at, expansion: [[1, 5], [0.7, 5], [0, 1]], compression: [[0, 0.2], [0.8, 0.2], [1, 5]]}"
-
-
-@pytest.mark.parametrize(
-    ("head", "crank", "told"),
-    [
-        (HEAD, TURNED, "crank end"),
-        (TURNED, HEAD, "head end"),
-        (HEAD, HEAD, ""),
-        (HEAD, "mirrored", ""),
-        (HEAD, "2 at", ""),
-        ("{constant: {expansion: -0.4 at, compression: 5 at}}", HEAD, ""),
-    ],
-)
-def test_a_card_drawn_from_the_other_dead_centre_is_told(head: str, crank: str, told: str) -> None:
-    stdout = " ".join(check(f"indicator: {{head_end: {head}, crank_end: {crank}}}\n").split())
-    found = "both ends have their high pressure at the same crank angle" in stdout
-    assert found == bool(told)
-    assert not told or f"piston, {told}: both ends" in stdout
-
-
 # no clearance, ratios
 
 

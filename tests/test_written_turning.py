@@ -41,14 +41,6 @@ def test_a_constant_friction_takes_its_force_times_the_way(crosshead: str) -> No
     assert abs(forces.energy_residual or 0) < 1e-13
 
 
-def test_brake_torque() -> None:
-    """At 60 rpm 10 kN m are 62.8 kW; 4 bar on the piston indicate 50.9 kW."""
-    machine = loads(ENGINE + GAS + "brake_torque: 10 kN m\n")
-    assert machine.brake_power == pytest.approx(2 * math.pi * 1e4, rel=1e-15)
-    told = run("check", "-", text=ENGINE + GAS + "brake_torque: 10 kN m\n").stdout
-    assert "is below the brake power" in " ".join(told.split())
-
-
 # flywheel
 
 DIAGRAM = "effort: {unit: N m, points: [[0, 0], [90, 4000], [180, 0], [270, 4000], [360, 0]]}\nspeed: 120 rpm\n"

@@ -76,7 +76,7 @@ def within_cycle(degrees: Array, cycle: float) -> Array:
     """Return angles (n,) in degrees modulo the cycle, from 0 to less than its end."""
     if degrees.size and degrees.min() >= 0 and degrees.max() <= cycle:  # numpy.mod is slow
         return np.where(degrees == cycle, 0.0, degrees)
-    return np.asarray(np.mod(degrees, cycle))
+    return np.mod(degrees, cycle)
 
 
 def _sin_cos(right_angle: Array, offset: Array) -> tuple[Array, Array]:

@@ -295,7 +295,7 @@ class Computed(Generic[V]):
         known = vars(one)
         if self.name not in known:
             known[self.name] = self.function(one)
-        return known[self.name]  # type: ignore[no-any-return]
+        return known[self.name]
 
     @overload
     def __get__(self, one: None, owner: type) -> Computed[V]: ...

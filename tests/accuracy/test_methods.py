@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from kurbel.accuracy import trials
-from kurbel.accuracy.textbook import TextbookMachine
 from kurbel.accuracy.trials import Trial, better, errors, examined, savings
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
-from turning_machines import moving_inertia
 
 SMOOTH = """
 {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, masses: {piston: 500 kg},
@@ -85,13 +83,13 @@ def test_better_needs_both_error_and_time() -> None:
     [
         (
             "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm}",
-            "x, c, b",
+            "c",
             "the four-bar",
         ),
         (SMOOTH.replace("slip: 0.2}", "slip: 0.2}, efficiency: 0.9"), "ΔE", "an efficiency"),
         (
             SMOOTH.replace("flywheel:", "friction: {crank_pin: 0.1, crank_pin_diameter: 100 mm}, flywheel:"),
-            "work, T, friction work",
+            "A_i",
             "pins that rub",
         ),
         (
@@ -99,7 +97,7 @@ def test_better_needs_both_error_and_time() -> None:
                 "flywheel:",
                 "friction: {rings: {count: 3, height: 8 mm, pressure: gas, coefficient: 0.1}}, flywheel:",
             ),
-            "work, T, friction work",
+            "T_max, T_min",
             "rings that the gas presses",
         ),
         (
@@ -114,7 +112,7 @@ def test_better_needs_both_error_and_time() -> None:
 def test_what_has_no_reference_is_named(text: str, what: str, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
     _, lacking = examined(loads(text), np.arange(3.0), True)
-    assert any(one == what and why in reason for one, reason in lacking)
+    assert any(what in quantities and why in reason for reason, quantities in lacking.items())
 
 
 def test_every_thing_left_out_saves_functions() -> None:
@@ -133,13 +131,3 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert found[0].ratio == 1.0
     bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
     assert bare == ["everything", "no speed either: positions alone"]
-
-
-def test_the_textbook_has_the_inertia_of_the_solver() -> None:
-    """m x′² and what of the rod turns with the pin: 60 % of 200 kg on a crank of 0.4 m."""
-    rod = "connecting_rod: {mass: 200 kg, share: 0.4}"
-    machine = loads(SMOOTH.replace("{piston: 500 kg}", f"{{piston: 500 kg, {rod}}}"))
-    ((one, _),) = TextbookMachine(machine).cylinders
-    slopes = [one.motion.at(mpmath.radians(degrees)).slope for degrees in (0, 60, 200)]
-    found = [float(one.mass * slope**2 + one.turning_inertia) for slope in slopes]
-    assert found == pytest.approx(moving_inertia(Case(machine).flywheel, np.array([0.0, 60.0, 200.0])), rel=1e-13)

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from command import run
-from kurbel.designs.sweep import Design, Sweep
+from kurbel.designs.study import Design
+from kurbel.designs.sweep import Sweep
 from kurbel.errors import KurbelError
 from representative import CONFIGS
 
@@ -85,13 +86,13 @@ def files(folder: Path) -> dict[str, str]:
 def lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweeps that get no further than 20 rows."""
 
-    def chunk(self: Sweep, together: range, wanted: range) -> Sequence[Design]:
-        if wanted.start >= 20:
+    def block(self: Sweep, rows: range) -> Sequence[Design]:
+        if rows.start >= 20:
             raise KurbelError("a worker process was killed (SIGKILL)")
-        return whole(self, together, wanted)
+        return whole(self, rows)
 
-    whole = Sweep.chunk
-    monkeypatch.setattr(Sweep, "chunk", chunk)
+    whole = Sweep.block
+    monkeypatch.setattr(Sweep, "block", block)
 
 
 MANY = ("--vary", "rod_ratio=3:6:0.1", "--columns", "c_max")

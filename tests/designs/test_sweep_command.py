@@ -231,7 +231,7 @@ def test_parquet_holds_rows_of_which_the_first_all_fail(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
-        ({"rod_ratio": [1, 2], "speed": [3]}, "rod_ratio has 2, speed has 1"),
+        ({"rod_ratio": [1, 2], "speed": [3, 4, 5]}, "rod_ratio has 2, speed has 3"),
         ({"rod_ratio": []}, "one or more of them; rod_ratio has 0"),
         ({"rod": [1.0]}, "no value for this key"),
         ({}, "there is none"),

@@ -12,8 +12,7 @@ import pytest
 import kurbel
 from command import run
 from kurbel.designs.answers import Answer
-from kurbel.designs.uncertainty import Uncertain, data_uncertainty, read_inputs, uncertainties
-from kurbel.machine_file import source
+from kurbel.designs.uncertainty import Uncertain, given_uncertainty, uncertainties
 from kurbel.quantities import every_quantity
 from representative import CONFIGS
 
@@ -23,7 +22,9 @@ WATERWORKS = CONFIGS["waterworks"]
 def of(spreads: dict[str, str], *ids: str, command: str = "forces") -> dict[str, Uncertain]:
     known = every_quantity().key_values(command)
     asked = [Answer(known[id], command, "cylinder 1" if command == "forces" else "whole machine") for id in ids]
-    found = uncertainties(read_inputs(source.read(WATERWORKS), spreads)[0], asked)
+    inputs = given_uncertainty(kurbel.load(WATERWORKS), [*spreads.items()])
+    assert inputs
+    found = uncertainties(inputs, asked)
     return {one.answer.quantity.id: one for one in found}
 
 
@@ -38,16 +39,6 @@ def test_first_order_is_that_of_closed_formulas() -> None:
     assert found["b_max"].shares == pytest.approx(((by_speed / size) ** 2, (by_ratio / size) ** 2), rel=1e-7)
     assert found["A_head"].spread <= 1e-15
     assert all(one.sample == 0 for one in found.values())
-
-
-def test_the_errors_of_the_data_are_those_of_the_file_too() -> None:
-    """`kurbel accuracy FILE`: without masses all that the gas does goes with bore², c_max with n, b_max with n²."""
-    machine = kurbel.loads("""
-        {speed: 50 rpm, crank: 400 mm, rod: 2000 mm, bore: 450 mm, indicator: {head_end: 9 bar, crank_end: 2 bar},
-         uncertainty: {bore: 0.9 mm, speed: 1 %}}
-        """)
-    found = data_uncertainty(machine)
-    assert found == pytest.approx({"c_max": 0.01, "b_max": 0.02, "T_max": 0.004, "ΔE": 0.004}, rel=1e-6)
 
 
 def test_a_point_of_a_card_may_be_off() -> None:

@@ -140,9 +140,9 @@ def test_a_key_needs_the_one_beside_it(record: RecordForm, name: str, key: Key) 
     [
         ([0, 180], [1, 2], "rise over one whole cycle"),
         ([0, 200, 180, 360], [1, 2, 3, 1], "rise over one whole cycle"),
-        ([0, 180, 360], [1, np.nan, 1], "finite samples"),
-        ([0, 180, 360], [1, 2], "as many pressures as angles"),
-        ([0], [1], "two or more"),
+        ([0, 180, 360], [1, np.nan, 1], "finite pressures"),
+        ([0, 180, 360], [1, 2], "as many finite pressures as angles"),
+        ([0], [1], "rise over one whole cycle"),
     ],
 )
 def test_a_trace_is_one_cycle_at_birth(angles: list[float], pressures: list[float], message: str) -> None:

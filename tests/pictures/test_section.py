@@ -36,11 +36,11 @@ def placed(body: Body, point: complex, moment: int = 0) -> complex:
 
 
 def rods(panel: Panel) -> list[tuple[Body, complex]]:
-    """The connecting rods, each with the place of its crank pin in its own frame: a round eye at its far end."""
+    """The connecting rods, from the crank pin, each with the place of the other pin: a round eye at its far end."""
     found = []
     for body in panel.bodies:
         eyes = [shape.points[0] for shape in body.shapes if shape.look == "rod" and shape.radius]
-        found += [(body, eye) for eye in eyes if eye.real < 0]
+        found += [(body, eye) for eye in eyes if eye.real > 0]
     return found
 
 
@@ -61,29 +61,29 @@ ANGLES = (0.0, 37.0, 90.0, 180.0, 251.5)
 def test_the_rod_runs_from_the_crank_pin_to_the_crosshead(
     name: str, R: float, L: float, e: float, upright: bool, degrees: float
 ) -> None:
-    ((rod, big_end),) = rods(panel_of(case_of(name), degrees))
+    ((rod, small_end),) = rods(panel_of(case_of(name), degrees))
     turn = 1j if upright else 1.0
     pin = R * np.exp(1j * math.radians(degrees))
     crosshead = pin.real + math.sqrt(L**2 - (pin.imag - e) ** 2) + 1j * e
-    assert placed(rod, 0j) == pytest.approx(turn * crosshead, abs=1e-12)
-    assert placed(rod, big_end) == pytest.approx(turn * pin, abs=1e-12)
+    assert placed(rod, small_end) == pytest.approx(turn * crosshead, abs=1e-12)
+    assert placed(rod, 0j) == pytest.approx(turn * pin, abs=1e-12)
 
 
 def test_every_cylinder_is_at_its_own_crank_angle() -> None:
     """Three rods on one pin; stroke lines 120° apart, the first one upright."""
     drawn = rods(panel_of(case_of("radial-three"), 40.0))
-    pins = [placed(rod, eye) for rod, eye in drawn]
+    pins = [placed(rod, 0j) for rod, _ in drawn]
     assert len(drawn) == 3
     assert np.allclose(pins, 0.06 * np.exp(1j * math.radians(90 + 40)), atol=1e-12)
-    lines = sorted(np.degrees(np.angle([placed(rod, 0j) for rod, _ in drawn])) % 360)
+    lines = sorted(np.degrees(np.angle([placed(rod, eye) for rod, eye in drawn])) % 360)
     assert np.allclose(lines, [90, 210, 330], atol=1e-9)
 
 
 @pytest.mark.parametrize(("rotation", "sense"), [("over", 1), ("under", -1)])
 def test_the_sense_of_rotation(rotation: str, sense: int) -> None:
     text = f"{{rotation: {rotation}, inclination: 0 deg, crank: 400 mm, rod: 2 m, masses: {{piston: 9 kg}}}}"
-    ((rod, eye),) = rods(panel_of(Case(loads(text)), 30.0))
-    assert placed(rod, eye) == pytest.approx(0.4 * np.exp(sense * 1j * math.radians(30)), abs=1e-12)
+    ((rod, _),) = rods(panel_of(Case(loads(text)), 30.0))
+    assert placed(rod, 0j) == pytest.approx(0.4 * np.exp(sense * 1j * math.radians(30)), abs=1e-12)
 
 
 def test_a_throw_from_the_side_is_as_high_as_its_cosine() -> None:
@@ -98,12 +98,18 @@ def test_four_bars_are_as_long_as_the_file_says() -> None:
     for degrees in ANGLES:
         panel = panel_of(case_of("crank-rocker"), degrees)
         bars = [one for one in panel.bodies if one.shapes[0].look == "rod"]
-        lengths = {max(shape.points[-1].real for shape in bar.shapes): bar for bar in bars}
+        lengths = {max(shape.points[0].real for shape in bar.shapes if shape.radius): bar for bar in bars}
         assert sorted(lengths) == pytest.approx([0.08, 0.15])
         coupler, rocker = lengths[max(lengths)], lengths[min(lengths)]
         assert placed(coupler, 0j) == pytest.approx(0.04 * np.exp(1j * math.radians(degrees)), abs=1e-12)
         assert placed(coupler, 0.15 + 0j) == pytest.approx(placed(rocker, 0j), abs=1e-12)
         assert placed(rocker, 0.08 + 0j) == pytest.approx(0.15, abs=1e-12)
+
+
+def test_mechanisms_without_pistons_may_be_several() -> None:
+    text = "{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm}"
+    panel = panel_of(Case(loads(f"{{cylinders: [{text}, {text}]}}")), 60.0)
+    assert [one.text for one in panel.captions] == ["1"]
 
 
 # the chambers

@@ -9,7 +9,6 @@ from kurbel.errors import NoSolutionError
 from kurbel.machine.indicator import Constant, Indicator
 from kurbel.machine.parts import Friction, Piston, Rings
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.solver import friction as rules
 from machines import constant_pressure, one_cylinder
 
 FULL_ADMISSION = Constant.from_keys(expansion=6e5, compression=0.0)
@@ -31,13 +30,6 @@ def test_loss_over_the_way_is_half_as_much_again() -> None:
     forces = one_cylinder(SliderCrank(0.3, 1.8), pistons=(LOCOMOTIVE,), friction=Friction(0.1))
     assert expected == pytest.approx(0.01304, abs=5e-6)
     assert forces.loss_crosshead == pytest.approx(expected, rel=1e-13)
-
-
-def test_three_forms_of_his_mean() -> None:
-    """D 5 exactly, D 5 with cos β = 1 and sin β = β, D 6: 0.8242 %, 0.8280 %, 0.8333 %."""
-    assert rules.redtenbacher_logarithm(1 / 6, 0.1) == pytest.approx(0.008242, abs=5e-7)
-    assert rules.mean_friction_over_rod_angle(1 / 6, 0.1) == pytest.approx(0.008280, abs=5e-7)
-    assert rules.redtenbacher_loss(1 / 6, 0.1) == pytest.approx(0.008333, abs=5e-7)
 
 
 def test_guide_force_while_driving_and_while_driven() -> None:

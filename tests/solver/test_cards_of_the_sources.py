@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import kurbel
-from command import run
 
 STEAM = """
 stroke: 500 mm
@@ -59,57 +58,6 @@ def test_diagram_factor_takes_its_share_of_the_work(kind: str) -> None:
     assert abs(real.energy_residual) < 1e-12
     found = kurbel.sweep(texts[1], {"indicator.head_end.diagram_factor": [0.7, 0.8, 0.9, 1.0]}, ["mean_pressure"])
     assert found["mean_pressure"] == pytest.approx(np.array([0.7, 0.8, 0.9, 1]) * plain.mean_pressure, rel=1e-12)
-
-
-def test_diagram_factor_says_what_it_leaves_out() -> None:
-    told = run("forces", "-", text=steam(beside=", diagram_factor: 0.8")).output
-    assert "keeps its peak" in told
-
-
-def beside(ratio: object, card: str, more: str = "crank_end_rod: 80 mm") -> str:
-    """Return a machine of 400 mm stroke with this card at the head end."""
-    return f"stroke: 400 mm\nrod_ratio: {ratio}\nspeed: 50 rpm\nbore: 450 mm\n{more}\nindicator: {{head_end: {card}}}\n"
-
-
-DRAWN = """{unit: at, expansion: [[0, 9.5], [0.35, 9.5], [0.5, 6.7], [0.7, 4.7], [0.95, 3.3], [1, 2.2]],
-  compression: [[1, 1.2], [0.25, 1.2], [0.1, 2.4], [0.02, 6.5], [0, 9.5]]}"""
-"""The card of R p. 606."""
-TWO_STROKE = """{unit: bar, expansion: [[0, 35], [0.08, 35], [0.5, 7], [0.85, 1], [1, 0.1]],
-  compression: [[1, 0.1], [0.78, 0.1], [0.5, 0.9], [0.2, 4], [0.05, 18], [0, 35]]}"""
-
-
-@pytest.mark.parametrize(
-    ("text", "kind"),
-    [
-        (beside(6, DRAWN), "steam engines"),
-        (beside(3.5, DRAWN), "steam engines"),
-        (beside(4.5, DRAWN), ""),
-        (
-            beside(6, DRAWN, "axial_position: 1 m\nmasses: {piston: 90 kg}\nlocomotive: {wheel_distance: 1.5 m}"),
-            "",
-        ),  # Redtenbacher: r/l = 1/6
-        (beside(6, "{constant: {expansion: 0 bar, compression: 4 bar}}"), "pumps"),
-        (
-            beside(
-                3,
-                "{otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 6}}",
-                "crank_end_rod: 80 mm\ncycle: four-stroke",
-            ),
-            "gas",
-        ),
-        (
-            beside(3, "{otto: {intake: 0 bar, peak: 30 bar, compression_ratio: 6}}", "cycle: four-stroke"),
-            "",
-        ),  # a trunk piston
-        (beside(6, TWO_STROKE), ""),
-        (beside(6, "{compressor: {suction: 0 bar, delivery: 4 bar, clearance: 5 %}}"), ""),
-    ],
-)
-def test_rod_ratio_is_noted_for_the_kinds_of_the_books(text: str, kind: str) -> None:
-    """Blau has L = 4 … 5 R for steam and gas engines, R the ratios 4, 4.5 and 5; their machines have crossheads."""
-    ran = run("forces", "-", text=text)
-    assert ran.exit_code == 0, ran.stderr
-    assert (f"usual in {kind}" in ran.output) if kind else "usual in" not in ran.output
 
 
 def test_shaper_by_its_stroke() -> None:

@@ -49,14 +49,12 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
-        book = TextbookMachine(machine)
-        edges = sorted(
-            {*np.degrees(np.asarray(book.edges, dtype=float)), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)}
-        )
+        book = TextbookMachine(machine, machine.cylinders)
+        edges = sorted({*np.asarray(book.edges, dtype=float), *np.arange(0.0, 360.0 * machine.revolutions, 15.0)})
 
         def torque(degrees: float) -> Any:
-            angle = mp.radians(mpmath.mpf(degrees))
-            return book.torque(angle, angle)
+            angle = np.array([mpmath.mpf(degrees)])
+            return book.function("ΔE")(angle, angle)[0]
 
         return gauss(torque, edges, orders)
 

@@ -79,24 +79,6 @@ def test_closed_work_against_50_digits(card: IdealCard, lift: float) -> None:
         assert abs(found / expected - 1) <= 1e-14
 
 
-def test_efficiency_of_the_mixed_cycle() -> None:
-    """Seiliger: η = 1 − ε^(1−κ) (α ρ^κ − 1)/(α − 1 + κ α (ρ − 1)) with the pressure ratio α at constant volume."""
-    kappa, ratio, intake, cut, rise = 1.4, 14.0, 1 * BAR, 1.8, 1.5
-    c, compressed = 1 / (ratio - 1), 1 * BAR * ratio**kappa
-    heat = c * compressed / (kappa - 1) * (rise - 1 + kappa * rise * (cut - 1))
-    work = process_in(Diesel(intake, cut_off=c * (cut - 1), clearance=c, peak=rise * compressed)).area
-    below = rise - 1 + kappa * rise * (cut - 1)
-    assert work / heat == pytest.approx(1 - ratio ** (1 - kappa) * (rise * cut**kappa - 1) / below, rel=1e-13)
-
-
-def test_work_of_the_compressor() -> None:
-    """W = n/(n−1) p₁ V₁ [(p₂/p₁)^((n−1)/n) − 1] with the volume V₁ that is drawn in, whatever the clearance."""
-    n, low, high, c = 1.3, 1 * BAR, 7 * BAR, 0.06
-    drawn = 1 + c - c * (high / low) ** (1 / n)
-    expected = n / (n - 1) * low * drawn * ((high / low) ** ((n - 1) / n) - 1)
-    assert -process_in(Compressor(low, high, clearance=c, exponent=n)).area == pytest.approx(expected, rel=1e-13)
-
-
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: type(card).__name__)
 def test_the_forces_do_the_work_of_the_card(card: IdealCard) -> None:
     """∮ T R dφ by quadrature is the closed work, double-acting and with tiny clearance too."""

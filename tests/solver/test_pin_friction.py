@@ -1,6 +1,7 @@
 """Friction in the pins of the rod and in the journals: closed forms, the free rod, and the balance of energy."""
 
 import math
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -120,3 +121,16 @@ def test_journals_bear_the_flywheel_too() -> None:
     heavy, light = solved(ENGINE + RUBS), solved(without + RUBS)
     assert heavy.friction_works.get("journals") > 1.2 * light.friction_works.get("journals")
     assert heavy.friction_works.get("crank_pin") == pytest.approx(light.friction_works.get("crank_pin"), rel=1e-13)
+
+
+def test_each_throw_takes_its_own_friction_of_journals() -> None:
+    """The mean torque is what both cylinders leave, though only the journals of the last throw carry the flywheel."""
+    head, shaft = f"{ENGINE}\n{RUBS}".split("crankshaft:")[0], ENGINE.split("crankshaft:")[1].split("expect:")[0]
+    cycle, own = "cycle: four-stroke\nspeed: 200 rpm\n", head.split("speed: 200 rpm\n")[1] + RUBS
+    first = "cylinders:\n- axial_position: 0 mm\n  name: one\n" + textwrap.indent(own, "  ")
+    second = "- {like: one, name: two, crank_position: 360 deg, axial_position: 800 mm}\n"
+    case = Case(loads(f"{cycle}{first}{second}crankshaft:{shaft}"))
+    works = [one.friction_works["journals"] for one in case.cylinders]
+    assert works[1] > 1.2 * works[0]
+    left = math.fsum(one.work_left for one in case.cylinders)
+    assert case.flywheel.M_mean * 4 * math.pi == pytest.approx(left, rel=1e-13)

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
-from command import run
 from kurbel.machine_file import loads
 from kurbel.report.warnings import cylinder_warnings
 from kurbel.solver.case import Case
@@ -80,16 +79,6 @@ def test_pieces_of_the_reversed_load_add_up_and_the_longest_is_told() -> None:
     assert found.reversal_angle == pytest.approx(40, abs=1e-9)
     assert found.reversal_longest == pytest.approx(30, abs=1e-9)
     assert found.reversal_ratio == pytest.approx(1 / 3, rel=1e-12)
-
-
-def test_limits_bound_it_from_below() -> None:
-    limits = "limits: {reversal_angle: 15 deg, reversal_ratio: 0.03}\n"
-    broken, kept = (run("check", "-", text=text + limits) for text in (RLO5, RLO1))
-    assert broken.exit_code == 1
-    assert "5.88474652 deg < 15 deg  FAIL" in broken.stdout
-    assert "0.0256515391 < 0.03  FAIL" in broken.stdout
-    assert kept.exit_code == 0
-    assert kept.stdout.count("PASS") == 2
 
 
 ALWAYS_PRESSED = """

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from kurbel.machine_file import loads
-from kurbel.report.crank import forces_report
-from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 
 ENGINE = """
@@ -27,12 +25,6 @@ def case(rotation: str = "", out: str = "3 bar", back: str = "0 bar", **changed:
     return Case(loads(f"{text}\nrotation: {rotation}" if rotation else text))
 
 
-def note(solved: Case) -> str:
-    report = forces_report(solved, Frame("forces", (0.0,), None, "si"))
-    (found,) = (one for one in (*report.notes, *report.parts[0].warnings) if "guide" in one)
-    return found
-
-
 @pytest.mark.parametrize("inclination", [0.0, 30.0, 90.0])
 def test_under_is_the_mirror_image(inclination: float) -> None:
     """The weight leaves the side on which an engine presses: N less twice its share; P, T and M stay."""
@@ -44,20 +36,6 @@ def test_under_is_the_mirror_image(inclination: float) -> None:
     assert pytest.approx(np.full(72, 2 * share), abs=1e-9) == over.N - under.N
     for column in ("P", "T", "M", "S"):
         assert getattr(under, column) == pytest.approx(getattr(over, column), rel=1e-13, abs=1e-9), column
-
-
-def test_engines_turn_over_and_driven_machines_under() -> None:
-    """R p. 602: so that the lower guide, on which the crosshead rests by its weight, takes the pressure."""
-    slow = {"speed": "1 rpm"}
-    assert note(case("over", **slow)) == ("Turning over, the crosshead rests on the lower guide all round (R p. 602).")
-    assert case("over", **slow).cylinders[0].lifted == ()
-    lifts = note(case("under", **slow))
-    assert "turning over it would rest on the lower guide all round (R p. 602)" in lifts
-    assert lifts.startswith("Turning under, the crosshead lifts off the lower guide from ")
-    # a pump pushes on the way in: against the motion
-    pump = {"out": "0 bar", "back": "3 bar", "speed": "1 rpm"}
-    assert "rests on the lower guide all round" in note(case("under", **pump))
-    assert "turning under it would rest on the lower guide all round" in note(case("over", **pump))
 
 
 def test_where_it_lifts() -> None:

@@ -10,11 +10,13 @@ import csv
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from random import Random
+from textwrap import shorten
 from typing import NamedTuple
 
-from kurbel.accuracy import textbook
-from kurbel.accuracy.textbook import DIGITS, Number, TextbookMotion, mp
+import numpy as np
+
+from kurbel.accuracy.methods import Number, extremes, mp, mpf
+from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMotion, reference
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 
@@ -30,94 +32,82 @@ class Probe(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What the program returned; ulp: None where no value was expected, or none was returned."""
+    """What the program returned; ulp, allowed: None where no value was expected, or none was returned."""
 
-    case: Probe
+    case: str
+    asked: str
     expected: str
     observed: str
+    verdict: str
     ulp: float | None
-    passed: bool
+    allowed: float | None
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is what was expected."""
+        return self.verdict == "passed"
+
+
+def table(name: str) -> list[list[str]]:
+    """Return the lines of a table of this package, without its head."""
+    with open(Path(__file__).parent / name, encoding="utf-8", newline="") as file:
+        return list(csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE))[1:]
 
 
 def all_cases() -> list[Probe]:
     """Return the cases of the table."""
-    with open(Path(__file__).parent / "extremes.tsv", encoding="utf-8", newline="") as file:
-        lines = csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE)
-        return [Probe(*line) for line in lines][1:]
-
-
-def text_of(case: Probe) -> str:
-    """Return the text of the machine file of a case."""
-    return noisy_trace() if case.machine == "noisy trace" else case.machine.replace("\\n", "\n")
-
-
-def noisy_trace() -> str:
-    """Return a machine with 1e5 samples 10 bar + 5 bar sin φ, and noise that is the same on both strokes.
-
-    What is even in φ does no work; with an infinite rod ∮ sin φ dx = π R.
-    """
-    random, count = Random(1932), 100_000
-    noise = [random.gauss(0.0, 5e3) for _ in range(count // 2 + 1)]
-    points = [
-        f"[{360 * k / count!r}, {1e6 + 5e5 * math.sin(2 * math.pi * k / count) + noise[min(k, count - k)]!r}]"
-        for k in range(count)
-    ]
-    trace = f"{{trace: {{unit: Pa, points: [{', '.join(points)}]}}}}"
-    return f"{{speed: 60 rpm, crank: 400 mm, rod: infinite, bore: 450 mm, indicator: {{head_end: {trace}}}}}"
+    return [Probe(*line) for line in table("extremes.tsv")]
 
 
 def verdicts(
-    cases: list[Probe], compute: Callable[[str, str], float | None], loads: Callable[[str], Machine]
+    cases: list[Probe], compute: Callable[[Machine, str], float | None], loads: Callable[[str], Machine]
 ) -> Iterator[Verdict]:
     """Yield the verdict on each case. Any exception except KurbelError is a fault of the program.
 
-    compute: runs the program: (text of the machine, requested quantity) -> its value, or None if it is left out.
+    compute: runs the program: (machine, requested quantity) -> its value, or None if it is left out.
     """
     for case in cases:
-        text, expected, missed, answer = text_of(case), case.expected, None, None
+        expected, missed = case.expected, None
         try:
-            answer = compute(text, case.asked)
+            machine = loads(case.machine.replace("\\n", "\n"))
+            answer = compute(machine, case.asked)
         except KurbelError as error:
             message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
-            words = expected.removeprefix(status)
-            passed = expected.startswith(status) and words in message
-            end = max(message.find(words) + len(words), 72)  # the part with the expected words is shown
-            observed = status + (message if end >= len(message) else message[end - 72 : end] + " …")
-            expected = expected if words else status + "any message"
+            passed = expected.startswith(status) and expected.removeprefix(status) in message
+            observed = shorten(status + message, 100, placeholder=" …")
         except Exception as error:
             observed, passed = f"fault: {type(error).__name__}: {error}", False
         else:
             observed = "left out" if answer is None else repr(answer)
             passed = observed == expected
             if case.ulp:
-                expected, missed = _missed(case, text, answer, loads)
+                expected, missed = _missed(case, machine, answer)
                 passed = missed is not None and missed <= float(case.ulp)
-        yield Verdict(case, expected, observed, missed, passed)
+        allowed = None if missed is None else float(case.ulp)
+        verdict = "passed" if passed else "FAILED"
+        yield Verdict(case.case, case.asked, expected, observed, verdict, missed, allowed)
 
 
-def _missed(case: Probe, text: str, answer: float | None, loads: Callable[[str], Machine]) -> tuple[str, float | None]:
+def _missed(case: Probe, machine: Machine, answer: float | None) -> tuple[str, float | None]:
     """Return the expected value, and the error of an answer in units of the last place."""
     with mp.workdps(2 * DIGITS if case.asked.startswith("motion") else DIGITS):
-        truth = reference(loads(text), case.asked) if case.expected == "reference" else mp.mpf(case.expected)
-        expected = mp.nstr(truth, 20) if truth else "0"
-        if answer is None:
-            return expected, None
-        missed = abs(answer - truth) / math.ulp(float(truth)) if math.isfinite(answer) else math.inf
-        return expected, float(missed)
+        truth = exact(machine, case.asked) if case.expected == "reference" else mpf(case.expected)
+        missed = None if answer is None else abs(answer - truth) / math.ulp(float(truth))
+        return mp.nstr(truth, 20), None if missed is None or mp.isnan(missed) else float(missed)
 
 
-def reference(machine: Machine, asked: str) -> Number:
+def exact(machine: Machine, asked: str) -> Number:
     """Return a requested quantity by the textbook, in SI, with the precision set in mpmath."""
     command, _, quantity = asked.partition(" ")
     name, _, at = quantity.partition("@")
     if command != "motion":
-        symbol = {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min")
-        found, _ = textbook.reference(machine, symbol)
-        return found[("T_max", "T_min").index(name)] if name[0] == "T" else found
-    mechanism, omega = machine.cylinders[0].mechanism, 2 * mp.pi * mp.mpf(machine.speed or 0.0)
+        found, _ = reference(machine, {"work": "A_i", "friction_work": "A_f", "dE": "ΔE"}.get(name, "T_max, T_min"))
+        return found[("T_max", "T_min").index(name)] if isinstance(found, tuple) else found
+    motion, omega = TextbookMotion(machine.cylinders[0].mechanism), 2 * mp.pi * mpf(machine.speed or 0.0)
     if name == "stroke":
-        return TextbookMotion(mechanism).stroke
+        return motion.stroke
     if name == "c_max":
-        return textbook.peak_slope(mechanism) * omega
+        slopes = np.frompyfunc(lambda phi, _: motion.at(phi).slope, 2, 1)
+        return extremes(slopes, motion.ends[:2], STEPS)[0] * omega
     order = "xcb".index(name)
-    return TextbookMotion(mechanism).at(mp.radians(mp.mpf(float(at))))[order] * omega**order
+    return motion.at(mpf(float(at)))[order] * omega**order

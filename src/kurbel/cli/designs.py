@@ -5,8 +5,9 @@ from typing import Any
 import click
 
 from kurbel.cli.options import (
-    complete_key_values,
+    complete_ids,
     complete_override,
+    format_option,
     key_value_option,
     machine_file,
     number_options,
@@ -15,8 +16,6 @@ from kurbel.cli.options import (
     units_option,
     words,
 )
-
-_FORMATS = ("table", "csv", "json", "markdown", "parquet")
 
 _what_varies = stacked(
     click.option(
@@ -52,10 +51,15 @@ _what_is_printed = stacked(
         metavar="ID,ID",
         help="Only rows that no other betters; -ID: more is better.",
     ),
-    click.option("--summary", is_flag=True, help="Quantiles, and rank correlation with every input, instead of rows."),
+    click.option(
+        "--summary",
+        "summarised",
+        is_flag=True,
+        help="Quantiles, and rank correlation with every input, instead of rows.",
+    ),
 )
 _where_it_goes = stacked(
-    click.option("--format", "-f", "format", type=click.Choice(_FORMATS), help="By the suffix of --output, or table."),
+    format_option("table", "csv", "json", "markdown", "parquet"),
     output_option,
     number_options,
     click.option(
@@ -91,14 +95,14 @@ def sweep(**options: Any) -> None:
     Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
     gives 'limits', each row shows whether it keeps them, and the first one that it breaks.
     """
-    from kurbel.cli.sweeping import SweepOptions, run
+    from kurbel.cli.sweeping import run
 
-    run(SweepOptions(**options))
+    run(**options)
 
 
 @click.command()
 @machine_file
-@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_key_values)
+@click.argument("equations", metavar="['KEY_VALUE = value']...", nargs=-1, shell_complete=complete_ids)
 @click.option(
     "--vary",
     multiple=True,
@@ -107,20 +111,14 @@ def sweep(**options: Any) -> None:
     shell_complete=complete_override,
     help="The key whose value is sought, and its range: rod_ratio=3:6, 'stroke=700:900 mm'; two with two equations.",
 )
-@key_value_option("--least", metavar="ID", help="Minimise this key value within the limits of FILE.")
-@key_value_option("--greatest", metavar="ID", help="Maximise this key value within the limits of FILE.")
+@key_value_option("--least", default="", metavar="ID", help="Minimise this key value within the limits of FILE.")
+@key_value_option("--greatest", default="", metavar="ID", help="Maximise this key value within the limits of FILE.")
 @key_value_option("--where", "conditions", multiple=True, metavar="CONDITION", help="Only where 'c_max < 5 m/s'.")
 @click.option("--plot", is_flag=True, help="Draw the key value over the key, in the terminal or with -o to a file.")
 @click.option("--write", is_flag=True, help="Print FILE with the values found in it, and nothing else.")
 @click.option("--take", type=click.IntRange(1), metavar="N", help="With --write, the solution of this number.")
 @units_option
-@click.option(
-    "--format",
-    "-f",
-    "format",
-    type=click.Choice(["table", "csv", "json", "markdown"]),
-    help="By the suffix of --output, or table.",
-)
+@format_option("table", "csv", "json", "markdown")
 @output_option
 @number_options
 def find(**options: Any) -> None:
@@ -130,6 +128,6 @@ def find(**options: Any) -> None:
     none. Places where the key value jumps over the wanted one, and parts of the range in which designs fail, are
     reported. With --write, FILE is printed with what was found; comments stay.
     """
-    from kurbel.cli.finding import FindOptions, run
+    from kurbel.cli.finding import run
 
-    run(FindOptions(**options))
+    run(**options)

@@ -1,7 +1,6 @@
 """What `kurbel find` does with its options: searches, and prints, draws or writes what is found."""
 
 import json
-from typing import NamedTuple
 
 import click
 
@@ -23,64 +22,54 @@ _DIGITS = 7
 """Significant digits of a table: values are found to be written into a file."""
 
 
-class FindOptions(NamedTuple):
-    """The options of the command, by their names."""
-
-    file: str
-    case_name: str
-    overrides: tuple[str, ...]
-    equations: tuple[str, ...]
-    vary: tuple[str, ...]
-    least: str | None
-    greatest: str | None
-    conditions: tuple[str, ...]
-    plot: bool
-    write: bool
-    take: int | None
-    units: str | None
-    format: str | None
-    file_name: str | None
-    decimal: str
-    digits: int | None
-
-
-def run(options: FindOptions) -> None:
-    """Search for what is wanted, and print, draw or write it. Raises UsageError, NoSolutionError."""
-    if options.write and (options.case_name or options.format):
-        raise click.UsageError(f"--write prints FILE; leave {'--case' if options.case_name else '--format'} out.")
-    if options.take and not options.write:
-        raise click.UsageError("--take chooses the solution for --write; give --write too.")
-    if options.plot and (options.write or options.format):
-        raise click.UsageError(f"--plot draws; leave {'--write' if options.write else '--format'} out.")
-    if options.plot and len(options.vary) > 1:
-        raise click.UsageError("--plot draws a key value over one key, and two are varied.")
-    if options.plot and options.file_name:
-        check_file(options.file_name)
-    written = "table" if options.write or options.plot else format_of(options.format, options.file_name, _SUFFIXES)
-    if options.decimal == "comma" and written == "json":
-        raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-    refuse_overwriting(options.file_name, (options.file,))
-    origin = source.read(options.file)._replace(case=options.case_name).set_over(options.overrides)
-    least, greatest = options.least or "", options.greatest or ""
+def run(
+    file: str,
+    case_name: str,
+    overrides: tuple[str, ...],
+    equations: tuple[str, ...],
+    vary: tuple[str, ...],
+    least: str,
+    greatest: str,
+    conditions: tuple[str, ...],
+    plot: bool,
+    write: bool,
+    take: int | None,
+    units: str | None,
+    format: str | None,
+    file_name: str | None,
+    comma: bool,
+    digits: int | None,
+) -> None:
+    """Search, and print, draw or write what is found: the options of the command. Raises KurbelError."""
+    for wrong, message in (
+        (write and case_name, "--write prints FILE; leave --case out."),
+        (write and format, "--write prints FILE; leave --format out."),
+        (take and not write, "--take chooses the solution for --write; give --write too."),
+        (plot and write, "--plot draws; leave --write out."),
+        (plot and format, "--plot draws; leave --format out."),
+        (plot and len(vary) > 1, "--plot draws a key value over one key, and two are varied."),
+    ):
+        if wrong:
+            raise click.UsageError(message)
+    if plot and file_name:
+        check_file(file_name)
+    written = "table" if write or plot else format_of(format, file_name, _SUFFIXES, comma)
+    refuse_overwriting(file_name, (file,))
+    origin = source.read(file)._replace(case=case_name).set_over(overrides)
     with Progress("find") as progress:
-        found = found_in(origin, options.vary, options.equations, least, greatest, options.conditions, progress)
-    if options.write:
-        write_out([_with_values(origin, found, _taken(found, options.take))], options.file_name, "utf-8")
+        found = found_in(origin, vary, equations, least, greatest, conditions, progress)
+    if write:
+        write_out([_with_values(origin, found, _taken(found, take))], file_name, "utf-8")
         return
-    system = options.units or ("si" if written in ("csv", "json") else "metric")
-    if options.plot:
-        draw([picture(found, system)], Look(comma=options.decimal == "comma", digits=options.digits), options.file_name)
+    system = units or ("si" if written in ("csv", "json") else "metric")
+    if plot:
+        draw([picture(found, system)], Look(comma=comma, digits=digits), file_name)
     elif written == "json":
-        write_out(
-            [json.dumps(as_json(found), ensure_ascii=False, allow_nan=False, indent=1) + "\n"],
-            options.file_name,
-            "utf-8",
-        )
+        text = json.dumps(as_json(found), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+        write_out([text], file_name, "utf-8")
     else:
-        look = Look(
-            written, comma=options.decimal == "comma", digits=options.digits or (None if written == "csv" else _DIGITS)
-        )
-        write_rows(iter(as_rows(found, system)), Titles(heads(found, system)), look, options.file_name, to_stderr)
+        look = Look(written, comma=comma, digits=digits or (None if written == "csv" else _DIGITS))
+        write_rows(as_rows(found, system), Titles(heads(found, system)), look, file_name, to_stderr)
     for one in remarks(found):
         to_stderr(one)
 
@@ -90,10 +79,7 @@ def _taken(found: Solutions, take: int | None) -> Solution:
     count = len(found.found)
     if count > 1 and not take:
         each = "; ".join(
-            ", ".join(
-                f"{key.key} = {key.in_unit(value):.9g} {key.unit}".rstrip()
-                for key, value in zip(found.varied, one.values)
-            )
+            ", ".join(f"{key.key} = {key.written(value, 9)}" for key, value in zip(found.varied, one.values))
             for one in found.found
         )
         raise click.UsageError(f"--write: {count} solutions; choose one by --take N: {each}")

@@ -1,5 +1,6 @@
 """The group of commands, and the one place where errors become messages and exit statuses."""
 
+import math
 import os
 import sys
 import warnings
@@ -56,9 +57,6 @@ class _Kurbel(click.Group):
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)
-        if name == "help":
-            of = f"{args[1]} " if args[1:] and args[1] in COMMANDS else ""
-            raise click.UsageError(f"no command 'help'; write 'kurbel {of}--help'", ctx)
         meant = did_you_mean(name, tuple(COMMANDS))
         way_out = "; 'kurbel forces FILE' computes a machine, 'kurbel --help' and 'kurbel COMMAND --help' explain"
         raise click.UsageError(f"no command '{name}'{meant or way_out}", ctx)
@@ -84,8 +82,8 @@ class _Kurbel(click.Group):
         except KurbelError as error:
             status, message = error.exit_status, message_of(error)
         except (OverflowError, FloatingPointError, RuntimeWarning) as error:
-            beyond = f"numeric overflow ({error})"
-            status, message = WRONG, f"Error: {beyond}; check magnitudes and units in the file"
+            status = WRONG
+            message = f"Error: numeric overflow ({error}); check magnitudes and units in the file"
         except OSError as error:
             silence(sys.stdout)
             named = f"{error.filename}: " if error.filename else ""
@@ -133,13 +131,13 @@ class Progress:
 
     def __init__(self, command: str) -> None:
         self._command, self._begun, self._wide = command, monotonic(), 0
-        self._shown = sys.stderr.isatty() and not os.environ.get("CI")
-        self._next = self._begun + _PATIENCE
+        shown = sys.stderr.isatty() and not os.environ.get("CI")
+        self._next = self._begun + _PATIENCE if shown else math.inf
 
     def __call__(self, doing: str, share: float = 0.0) -> None:
         """Show what is being done; share: completed share of all, 0 if unknown."""
         now = monotonic()
-        if not self._shown or now < self._next:
+        if now < self._next:
             return
         self._next = now + _PATIENCE / 10
         left = (now - self._begun) * (1 / share - 1) if share else 0.0

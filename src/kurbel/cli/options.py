@@ -3,17 +3,20 @@
 import os
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import Lists, ambiguity, called, joined
+from kurbel.quantity import ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.render.formats import write_report
 from kurbel.report.tables import Report
+
+if TYPE_CHECKING:
+    from kurbel.machine import Machine
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
@@ -29,16 +32,52 @@ def _read(parse: Callable[..., float], *given: str) -> float:
         raise click.BadParameter(str(error)) from None
 
 
-def number(text: str | float) -> float:
+def number(text: str) -> float:
     """Return a finite number with a decimal point, also 10/3 or 75 %."""
-    return _read(parse_ratio, text) if isinstance(text, str) else text  # the default is a number
+    return _read(parse_ratio, text)
 
 
 def numbers(text: str) -> tuple[float, ...]:
     """Return numbers separated by commas, in the order given; or from, to, by steps: `0.5:12:0.5`."""
-    found = tuple(map(number, text.replace(":", ",").split(",")))
-    # 3 · 0.1 is written 0.3
-    return tuple(float(f"{one:.15g}") for one in _stepped(found, text, "0.5:12:0.5")) if ":" in text else found
+    return _each(text, number, "0.5:12:0.5")
+
+
+def speeds(text: str) -> tuple[float, ...]:
+    """Return speeds in revolutions per second, in the order given.
+
+    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
+    """
+    unit = written_unit(text.replace(":", ",").rpartition(",")[2])
+
+    def speed(one: str) -> float:
+        found = _read(parse_quantity, one if written_unit(one) else f"{one} {unit}".strip(), "speed")
+        if not found > 0:
+            raise click.BadParameter(f"'{text}': it must be more than 0")
+        return found
+
+    return _each(text, speed, "300:1500:10 rpm")
+
+
+def frequency(text: str) -> float:
+    """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
+    first, *others = speeds(text)
+    if others:
+        raise click.BadParameter(f"'{text}' is more than one frequency")
+    return first
+
+
+def _each(text: str, read: Callable[[str], float], sample: str) -> tuple[float, ...]:
+    """Return what is read between commas, or the numbers from, to, by steps."""
+    found = tuple(map(read, text.replace(":", ",").split(",")))
+    if ":" not in text:
+        return found
+    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
+        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
+    low, high, step = found
+    if (high - low) / step > _MOST_STEPS:
+        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
+    count = int((high - low) / step + 1e-9) + 1
+    return tuple(float(f"{low + step * index:.15g}") for index in range(count))  # 3 · 0.1 is written 0.3
 
 
 def words(text: str) -> tuple[str, ...]:
@@ -51,8 +90,10 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
+    from kurbel.quantities import every_quantity
+
     named = words(text)
-    known = [column for column in _quantities().all_columns if column.commands]
+    known = [column for column in every_quantity().all_columns if column.commands]
     ids = []
     for name in joined(named, known):
         found = called(name, known)
@@ -60,40 +101,6 @@ def columns(text: str) -> tuple[str, ...]:
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
-
-
-def speeds(text: str) -> tuple[float, ...]:
-    """Return speeds in revolutions per second, in the order given.
-
-    They have one unit or each its own: `300, 350 rpm`; or they go from, to, by steps: `300:1500:10 rpm`.
-    """
-    each = text.replace(":", ",").split(",")
-    unit = written_unit(each[-1])
-    texts = (one if written_unit(one) else f"{one} {unit}".strip() for one in each)
-    found = tuple(_read(parse_quantity, one, "speed") for one in texts)
-    if ":" in text:
-        found = _stepped(found, text, "300:1500:10 rpm")
-    if not all(speed > 0 for speed in found):
-        raise click.BadParameter(f"'{text}': a speed is more than 0")
-    return found
-
-
-def frequency(text: str) -> float:
-    """Return a frequency in Hz, written as `30 Hz`, `1800 1/min` or `188 rad/s`."""
-    found = _read(parse_quantity, text, "speed")
-    if not found > 0:
-        raise click.BadParameter(f"'{text}': a frequency is more than 0")
-    return found
-
-
-def _stepped(found: tuple[float, ...], text: str, sample: str) -> tuple[float, ...]:
-    if len(found) != 3 or "," in text or not found[2] > 0 or found[1] < found[0]:
-        raise click.BadParameter(f"'{text}': write from, to and step as '{sample}'")
-    low, high, step = found
-    count = (high - low) / step
-    if count > _MOST_STEPS:
-        raise click.BadParameter(f"'{text}': more than {_MOST_STEPS} steps; take larger ones")
-    return tuple(low + step * index for index in range(int(count + 1e-9) + 1))
 
 
 def spread(text: str) -> tuple[str, str]:
@@ -109,12 +116,6 @@ def spread(text: str) -> tuple[str, str]:
 # --- what a shell completes, looked up when TAB is pressed
 
 
-def _quantities() -> Lists:
-    from kurbel.quantities import every_quantity
-
-    return every_quantity()
-
-
 def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable[..., list[str]]:
     """Return the completion of an option from words, which are looked up when TAB is pressed."""
 
@@ -127,29 +128,27 @@ def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable
     return complete
 
 
+def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
+    from kurbel.quantities import every_quantity
+
+    columns = every_quantity().columns(ctx.info_name or "")
+    before, comma, _ = begun.rpartition(",")
+    ids = dict.fromkeys(columns or (one.id for one in every_quantity().all_key_values))
+    return [before + comma + one for one in ids if one not in before.split(",")]
+
+
 def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
     from kurbel.report.keys import every_place
 
     return every_place()
 
 
-def _listed(ids: Callable[[str], Iterable[str]]) -> Callable[..., list[str]]:
-    """Return the completion of a list of ids of a command by those that are not in the list yet."""
-
-    def following(ctx: click.Context, begun: str) -> Iterable[str]:
-        before, comma, _ = begun.rpartition(",")
-        return [before + comma + one for one in ids(ctx.info_name or "") if one not in before.split(",")]
-
-    return completing(following)
-
-
-def _names(ctx: click.Context, of: str) -> list[str]:
-    """Return the names of cylinders, or else load cases, of the machine file on the line."""
+def _machine(ctx: click.Context) -> "Machine":
+    """Return the machine of the file on the line, which is not read to its end if it ends in an option."""
     from kurbel.machine_file import load
 
-    file = next(iter(ctx.args), "-")  # a line that ends in an option is not read to its end
-    machine = load(file) if file != "-" else None
-    return [one.name for one in (machine.cylinders if of == "cylinders" else machine.cases)] if machine else []
+    return load(next((word for word in ctx.args if word != "-"), ""))
 
 
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
@@ -158,11 +157,11 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
     return (*(one.id for one in PICTURES), "all")
 
 
-complete_columns = _listed(lambda command: _quantities().columns(command))
-complete_key_values = _listed(lambda _: dict.fromkeys(one.id for one in _quantities().all_key_values))
+complete_ids = completing(_ids)
 complete_key = completing(_keys)
 complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
-complete_cylinder = completing(lambda ctx, _: _names(ctx, "cylinders"))
+complete_cylinder = completing(lambda ctx, _: [one.name for one in _machine(ctx).cylinders])
+complete_case = completing(lambda ctx, _: [one.name for one in _machine(ctx).cases])
 complete_picture = completing(_pictures)
 
 
@@ -193,7 +192,13 @@ def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
 
 def key_value_option(*names: str, **how: Any) -> Callable[[Command], Command]:
     """Return an option that is completed by ids of key values."""
-    return click.option(*names, shell_complete=complete_key_values, **how)
+    return click.option(*names, shell_complete=complete_ids, **how)
+
+
+def format_option(*formats: str, said: str = "") -> Callable[[Command], Command]:
+    """Return the option of the output format; said: what its help begins with."""
+    text = f"{said}By the suffix of --output, or table, if not given."
+    return click.option("--format", "-f", "format", type=click.Choice(formats), help=text)
 
 
 case_option = click.option(
@@ -201,7 +206,7 @@ case_option = click.option(
     "case_name",
     default="",
     metavar="NAME",
-    shell_complete=completing(lambda ctx, _: _names(ctx, "cases")),
+    shell_complete=complete_case,
     help="This load case of FILE; --set sets values over those of the case.",
 )
 set_option = click.option(
@@ -221,7 +226,7 @@ angle_options = stacked(
     click.option(
         "--step",
         type=number,
-        default=10.0,
+        default="10",
         metavar="DEGREES",
         help="Step of the crank angle; 10 if not given.",
     ),
@@ -239,7 +244,7 @@ columns_option = click.option(
     type=columns,
     metavar="ID,ID,...",
     help="Only these columns, by id or symbol, in this order.",
-    shell_complete=complete_columns,
+    shell_complete=complete_ids,
 )
 cylinder_option = click.option(
     "--cylinder", metavar="NAME", help="Only this cylinder, by name or number.", shell_complete=complete_cylinder
@@ -270,8 +275,10 @@ output_option = click.option(
 number_options = stacked(
     click.option(
         "--decimal",
+        "comma",
         type=click.Choice(["point", "comma"]),
         default="point",
+        callback=lambda ctx, param, value: value == "comma",
         help="Decimal sign; a comma makes csv use ';'.",
     ),
     click.option(
@@ -282,13 +289,7 @@ _look_options = stacked(
     click.option(
         "--layout", type=click.Choice(LAYOUTS), default="book", help="book: angles across; rows: one line per angle."
     ),
-    click.option(
-        "--format",
-        "-f",
-        "format",
-        type=click.Choice(FORMATS),
-        help="By the suffix of --output, or table, if not given.",
-    ),
+    format_option(*FORMATS),
     output_option,
     number_options,
     width_option,
@@ -334,8 +335,13 @@ _OF_NO_FORMAT = ("", ".txt", ".yaml", ".yml")
 """Suffixes that a table may have, and those of machine files, which are refused where they are read."""
 
 
-def format_of(requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES) -> str:
-    """Return the requested format, or that of the suffix of the file; raises UsageError if they contradict."""
+def format_of(
+    requested: str | None, file_name: str | None, suffixes: Mapping[str, str] = _SUFFIXES, comma: bool = False
+) -> str:
+    """Return the requested format, or that of the suffix of the file.
+
+    Raises UsageError if they contradict each other, or the decimal comma.
+    """
     suffix = os.path.splitext(file_name or "")[1].lower()
     of_suffix = suffixes.get(suffix)
     if not (requested or of_suffix or suffix in _OF_NO_FORMAT):
@@ -345,7 +351,10 @@ def format_of(requested: str | None, file_name: str | None, suffixes: Mapping[st
         raise click.UsageError(
             f"--format {requested} contradicts the name {file_name}, which means {of_suffix}; change one of them."
         )
-    return requested or of_suffix or "table"
+    written = requested or of_suffix or "table"
+    if comma and written in ("json", "parquet"):
+        raise click.UsageError(f"--decimal comma: {written} has the decimal point only.")
+    return written
 
 
 def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -356,15 +365,13 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
         layout: str,
         format: str | None,
         file_name: str | None,
-        decimal: str,
+        comma: bool,
         digits: int | None,
         width: int | None,
         **others: Any,
     ) -> Any:
-        written = format_of(format, file_name)
-        if decimal == "comma" and written == "json":
-            raise click.UsageError("--decimal comma: JSON has the decimal point only.")
-        return command(output=Output(Look(written, layout, decimal == "comma", digits, width), file_name), **others)
+        look = Look(format_of(format, file_name, comma=comma), layout, comma, digits, width)
+        return command(output=Output(look, file_name), **others)
 
     return _look_options(with_output)
 

@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import click
 
@@ -101,7 +102,7 @@ def table(
 @click.option(
     "--direction",
     type=number,
-    default=0.0,
+    default="0",
     metavar="DEGREES",
     help="Direction of the force above the plane; along the plane if not given.",
 )
@@ -127,21 +128,15 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    files = shipped()
+    files = {each: Path(path).read_text("utf-8") for each, path in shipped().items()}
     if name is None:
-        first_lines = {each: _read(path).partition("\n")[0].lstrip("# ") for each, path in files.items()}
-        write_entries(list(first_lines.items()), file_name)
+        first_lines = [(each, text.partition("\n")[0].lstrip("# ")) for each, text in files.items()]
+        write_entries(first_lines, file_name)
         return
     bare = name.removesuffix(".yaml")
     if bare not in files:
-        known = ", ".join(files)
-        raise UsageError(f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {known})")
-    write_out((_read(files[bare]),), file_name, "utf-8")
-
-
-def _read(path: str) -> str:
-    with open(path, encoding="utf-8") as file:
-        return file.read()
+        raise UsageError(f"no example '{name}'{did_you_mean(bare, tuple(files))} (known: {', '.join(files)})")
+    write_out((files[bare],), file_name, "utf-8")
 
 
 @click.command()
@@ -166,14 +161,12 @@ def units(kind: str | None) -> None:
 
     Products and powers are written as people write them: N m or N*m, kg m2 or kg m^2.
     """
-    named = {kind.replace("_", " "): ", ".join(listed_units(kind)) for kind in kinds()}
-    if kind is None:
-        write_entries(list(named.items()))
-    elif found := named.get(kind.replace("_", " ")):
-        write_entries([(kind.replace("_", " "), found)])
-    else:
-        hint = did_you_mean(kind, tuple(named)) or f"; there are {', '.join(named)}"
+    named = {one.replace("_", " "): ", ".join(listed_units(one)) for one in kinds()}
+    chosen = named if kind is None else {name: units for name, units in named.items() if name == kind.replace("_", " ")}
+    if not chosen:
+        hint = did_you_mean(str(kind), tuple(named)) or f"; there are {', '.join(named)}"
         raise UsageError(f"no kind of quantity '{kind}'{hint}")
+    write_entries(list(chosen.items()))
 
 
 @click.command()

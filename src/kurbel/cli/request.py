@@ -21,7 +21,7 @@ from kurbel.report.rows import over_stroke, rows_where
 from kurbel.report.tables import Report, crank_angles
 from kurbel.solver.case import Case
 
-_OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "decimal", "digits", "width"}
+_OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "comma", "digits", "width"}
 """Options that ask for nothing of which a first selection has only a part."""
 
 

@@ -1,8 +1,8 @@
 """What `kurbel report` and `kurbel plot` do: a whole page, and pictures in the terminal or in a file."""
 
 import os
+import sys
 import time
-from collections.abc import Sequence
 
 import click
 
@@ -11,7 +11,7 @@ from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import given
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw
-from kurbel.render.output import write_out
+from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.page import write_entries
 from kurbel.render.poster import check_poster, draw_poster
 from kurbel.render.report_page import report_page
@@ -22,16 +22,25 @@ from kurbel.report.whole import side_by_side, whole_report
 
 
 def write_page(
-    files: Sequence[str],
+    files: tuple[str, ...],
     case_name: str,
-    overrides: Sequence[str],
+    overrides: tuple[str, ...],
     file_name: str | None,
     step: float,
     title: str | None,
-    system: str,
-    look: Look,
+    units: str | None,
+    comma: bool,
+    digits: int | None,
 ) -> None:
-    """Write the report on one machine, or on two side by side; step: of its tables in degrees; system: of units."""
+    """Write the report on one machine, or on two side by side: the options of the command."""
+    if len(files) > 2 or files.count("-") > 1:
+        raise click.UsageError("a report is of one machine, or of two side by side.")
+    if file_name is not None and file_name != "-" and not file_name.lower().endswith((".html", ".htm")):
+        raise click.UsageError(f"--output {file_name}: the name of a report ends in .html.")
+    if file_name is None and sys.stdout and sys.stdout.isatty():  # a page of HTML is nothing to read there
+        raise click.UsageError("a report is a page for the browser; give --output NAME.html, or - for this terminal.")
+    refuse_overwriting(file_name, files)
+    system = units or "metric"
     cases = [case_of(file, case_name, overrides, file_name) for file in files]
     keys = [given(case.machine.origin) if case.machine.origin else () for case in cases]
     with Progress("report") as progress:
@@ -44,21 +53,30 @@ def write_page(
     # SOURCE_DATE_EPOCH decides the date where a page must come out the same every time
     epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
     today = time.strftime("%Y-%m-%d", time.gmtime(float(epoch)) if epoch.isdecimal() else time.localtime())
-    write_out(report_page(document, look, today), file_name, "utf-8")
+    write_out(report_page(document, Look("html", comma=comma, digits=digits), today), file_name, "utf-8")
 
 
 def draw_pictures(
     file: str | None,
     case_name: str,
-    overrides: Sequence[str],
-    names: Sequence[str],
+    overrides: tuple[str, ...],
+    names: tuple[str, ...],
     listed: bool,
     file_name: str | None,
+    angles: tuple[float, ...] | None,
     size: str | None,
-    options: PictureOptions,
-    look: Look,
+    cylinder: str | None,
+    units: str | None,
+    comma: bool,
+    digits: int | None,
+    width: int | None,
 ) -> None:
-    """Draw these pictures of a machine; listed: list its pictures, or all without a file; size: that of a poster."""
+    """Draw these pictures of a machine, or list them; size: that of a poster: the options of the command."""
+    if listed and file_name is not None:
+        raise click.UsageError("--list draws nothing; leave --output out.")
+    if file is None and not listed:
+        raise click.MissingParameter(param_type="argument", param_hint="'FILE'")
+    file_name = None if file_name == "-" else file_name
     if size is not None:
         size = check_poster(size, file_name)
         if set(names) - {"mechanism"} or listed:
@@ -66,6 +84,7 @@ def draw_pictures(
         names = ("mechanism",)
     elif file_name is not None:
         check_file(file_name)
+    options, look = PictureOptions(units or "metric", cylinder, angles), Look(comma=comma, digits=digits, width=width)
     case = None if file is None else case_of(file, case_name, overrides, file_name)
     if case is None or listed:
         kinds = PICTURES if case is None else pictures_of(case, options)

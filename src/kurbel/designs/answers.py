@@ -1,11 +1,12 @@
 """Key values of many designs, of any command: machines of the same structure in batches, others one by one."""
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple, Union
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices
+from kurbel.declared.forms.figures import MACHINE
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Batch, Binder
@@ -25,13 +26,9 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST = 3
-"""Fewest machines of a batch; fewer are computed as quickly one by one."""
-AT_ONCE = 500
-"""Most machines of a batch: enough to share the overhead of one run; more would only need more memory."""
-
-_LARGE, _AT_ONCE_LARGE = ("stress", "bearings"), 200
-"""Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
+_FEWEST, _MOST = 3, 250
+"""Fewest machines of a batch, fewer are computed as quickly one by one; and most: of the many quantities of bearings
+1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
@@ -56,11 +53,8 @@ class Answer(NamedTuple):
         """The kind of the quantity, which decides the unit."""
         return "angle" if self.angle else self.quantity.kind
 
-    def part_of(self, found: Any) -> Any:
-        """Return the requested part of a value: a number, a tuple or None."""
-        if self.angle:
-            return found.degrees if isinstance(found, Extreme) else None
-        return number_of(found)
+
+# which key values are requested
 
 
 def requested_answers(
@@ -74,134 +68,111 @@ def requested_answers(
     Raises UsageError for a key value that does not exist, or that this machine does not have.
     """
     case = Case(machine)
-    once: dict[Answer, tuple[Answer, ...]] = {}
+    once: dict[tuple[str, str], list[Answer]] = {}
     with np.errstate(all="ignore"):
-        declared = every_quantity().all_key_values
-        found = (
-            (one for name in joined(names, declared) for one in _named(case, name, option)) if names else _usual(case)
-        )
-        for one, value in found:
-            # other designs may have a value with an angle where this one has an error
-            angle = (one._replace(angle=True),) if with_angles and isinstance(value, (Extreme, KurbelError)) else ()
-            once.setdefault(one._replace(alone=False), (one, *angle))
-    return tuple(part for parts in once.values() for part in parts)
+        if names:
+            known = joined(names, every_quantity().all_key_values)
+            found = [one for name in known for one in _named(case, name, option)]
+        else:
+            found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
+    for one, value in found:
+        # other designs may have a value with an angle where this one has an error
+        with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
+        each = [one, one._replace(angle=True)] if with_angle else [one]
+        once.setdefault((one.subject, one.quantity.id), each)
+    return tuple(part for each in once.values() for part in each)
 
 
-def _usual(case: Case) -> Iterator[tuple[Answer, Any]]:
-    """Yield the key values that a command prints by default, each with its value for this machine: see `_answer`."""
-    command = "forces" if case.machine.cylinders else "flywheel"
-    for subject in subjects_of(case, command):
-        for quantity in subject.lists.key_values(command).values():
-            value = None if quantity.residual else _answer(subject, quantity, default=True)
-            if value is not None:
-                yield Answer(quantity, command, subject.name), value
-
-
-def _named(case: Case, name: str, option: str, pistons: bool = False) -> list[tuple[Answer, Any]]:
-    """Return (key value, its value for this machine: see `_answer`) for a name; pistons: also of single pistons."""
+def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
+    """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
-    ids = called(name, declared)
     owner, _, own = name.rpartition(".")
-    of_owner = _named(case, own, option, pistons=True) if not ids and called(own, declared) else ()
-    if found := [(one._replace(alone=True), value) for one, value in of_owner if one.subject == owner]:
-        return found
-    if not ids or ambiguity(name, ids):
+    ids = called(own, declared)
+    if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
-        raise UsageError(f"{option}: {ambiguity(name, ids) or f'no key value {shown(name)!r}{near}'}")
-    command = every_quantity().commands_of(ids[0])
-    command = ("forces", *command) if "forces" in command and case.machine.cylinders else command
-    for word in dict.fromkeys(command):
-        found = [
-            (Answer(quantity, word, subject.name), value)
-            for subject in subjects_of(case, word, pistons=pistons)
-            if (quantity := subject.lists.key_values(word).get(ids[0]))
-            and (value := _answer(subject, quantity)) is not None
-        ]
-        if found:
+        raise UsageError(f"{option}: {ambiguity(own, ids) or f'no key value {shown(name)!r}{near}'}")
+    commands = every_quantity().commands_of(ids[0])
+    for command in ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands:
+        if found := [*_holding(case, command, ids[0], "whole machine" if owner == MACHINE else owner)]:
             return found
-    raise UsageError(f"{option}: this machine has no {ids[0]}; kurbel check shows why")
+    raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
 
 
-def _answer(subject: Subject, quantity: Quantity, default: bool = False) -> Any:
-    """Return the value of a key value, None if there is none; or the error, since other designs may have a value."""
-    try:
-        return None if default and not subject.is_printed(quantity) else subject.answer(quantity)
-    except KurbelError as error:
-        return error
+def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
+    """Yield a key value of every subject of a command that has it, or of its owner; without id all that it prints.
 
-
-def answered_alone(machine: Machine, answers: Sequence[Answer]) -> list[Value]:
-    """Return the values of a machine alone, in SI, a number, a tuple or None; raises KurbelError."""
-    found = answers_in(Case(machine), answers)
-    for one, value in zip(answers, found):
-        if value is not None and not np.isfinite(value).all():
-            raise too_large(one.quantity)
-    return found
-
-
-def answers_in(case: Case, answers: Sequence[Answer]) -> list[Any]:
-    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
-    known: dict[tuple[str, str], Subject] = {}
-    for command in dict.fromkeys(one.command for one in answers):
-        known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
-    found = ((one, known.get((one.command, one.subject))) for one in answers)
-    return [one.part_of(subject.answer(one.quantity)) if subject else None for one, subject in found]
-
-
-def answers_of(
-    batches: Sequence[Batch], requested: Sequence[Answer], rows: Container[int] | None = None
-) -> dict[int, Values]:
-    """Return the key values of each of many machines, by its row; rows: those needed, all if None.
-
-    In older versions of numpy rounding depends on the length of an array, and so on the machines that are computed
-    together: for the same digits of a row in every run, give the same batches each time.
+    Each comes with its value for this machine, or the error, since other designs may have a value.
     """
-    at_once = _AT_ONCE_LARGE if any(one.command in _LARGE for one in requested) else AT_ONCE
-    found: dict[int, Values] = {}
-    with np.errstate(all="ignore"):
-        for batch in batches:
-            places = np.arange(len(batch.rows))
-            if not any(is_slow(batch.machine, one) for one in requested):
-                for start in range(0, len(places), at_once):
-                    found |= _together(batch, places[start : start + at_once], requested)
-            for place, row in enumerate(batch.rows):
-                if row not in found and (rows is None or row in rows):
-                    found[row] = _alone(batch.one(place), requested)
-    return found
+    for subject in subjects_of(case, command, pistons=bool(owner)):
+        for quantity in subject.lists.key_values(command).values():
+            if owner not in ("", subject.name) or (quantity.id != id if id else quantity.residual):
+                continue
+            value: Any
+            try:
+                value = subject.answer(quantity) if id or subject.is_printed(quantity) else None
+            except KurbelError as error:
+                value = error
+            if value is not None:
+                yield Answer(quantity, command, subject.name, alone=bool(owner)), value
 
 
-def answers_at(binder: Binder, numbers: Array, requested: Sequence[Answer]) -> list[Values]:
-    """Return the key values of the machines with these numbers (n, keys) in SI under the keys of a binder."""
-    units = [SI[kind] for kind in binder.kinds]
-    rows = [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+# their values
+
+
+def answered(binder: Binder, rows: Sequence[Sequence[str]], requested: Sequence[Answer]) -> list[Values]:
+    """Return the key values of the designs with these texts (rows, keys) under the keys of a binder.
+
+    In older versions of numpy rounding depends on the length of an array, and so on the designs that are computed
+    together: for the same digits of a row in every run, give the same rows each time.
+    """
     bound = binder.bound(rows)
     found = bound.failures | answers_of(bound.batches, requested)
     return [found[row] for row in range(len(rows))]
 
 
-def is_slow(machine: Machine, answer: Answer) -> bool:
-    """Return whether this key value is computed one machine after another, and not in batches.
+def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
+    """Return numbers (rows, keys) in SI as texts under the keys of a binder."""
+    units = [SI[kind] for kind in binder.kinds]
+    return [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+
+
+def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
+    """Return the key values of each of many machines, by its row."""
+    found: dict[int, Values] = {}
+    with np.errstate(all="ignore"):
+        for batch in batches:
+            if not is_slow(batch.machine, requested):
+                for start in range(0, len(batch.rows), _MOST):
+                    found |= _together(batch, np.arange(start, min(start + _MOST, len(batch.rows))), requested)
+            for place, row in enumerate(batch.rows):
+                if row not in found:
+                    found[row] = answered_alone(batch.one(place), requested)
+    return found
+
+
+def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
+    """Return whether these key values are computed one machine after another, and not in batches.
 
     Torsion solves a matrix for each machine; formulas of some mechanisms take no arrays; a long card or a trace has
     so many pieces that it fills an array by itself.
     """
+    if any(one.command == "torsion" for one in requested):
+        return True
     pistons = [piston for one in machine.cylinders for piston in one.pistons]
     cards = [chamber for piston in pistons for chamber in piston.chambers.values()]
-    return (
-        answer.command == "torsion"
-        or any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders)
-        or any(isinstance(one, Trace) for one in cards)
-        or any(sum(len(line.fractions) for line in one.lines) > _MOST_POINTS for one in cards if isinstance(one, Card))
+    return any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders) or any(
+        isinstance(one, Trace)
+        or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
+        for one in cards
     )
 
 
 def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dict[int, Values]:
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
-    if len(places) < _FEWEST or not requested:
+    if len(places) < _FEWEST:
         return {}
     try:
-        machine = changed(batch.machine, lambda numbers: numbers[places])
-        columns = answers_in(Case(machine, len(places)), requested)
+        columns = _values(Case(changed(batch.machine, lambda numbers: numbers[places]), len(places)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(places) // 2
         return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
@@ -218,10 +189,31 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
     return {batch.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
 
 
-def _alone(machine: Machine, requested: Sequence[Answer]) -> Values:
+def answered_alone(machine: Machine, requested: Sequence[Answer]) -> Values:
+    """Return the key values of a machine by itself."""
     try:
-        return answered_alone(machine, requested)
+        found = _values(Case(machine), requested)
+        for one, value in zip(requested, found):
+            if value is not None and not np.isfinite(value).all():
+                raise too_large(one.quantity)
     except KurbelError as error:
         return error.reason
     except ArithmeticError as error:
         return f"numeric overflow ({error})"
+    return found
+
+
+def _values(case: Case, requested: Sequence[Answer]) -> list[Any]:
+    """Return the values of a case of one machine or of many, in SI; raises KurbelError."""
+    known: dict[tuple[str, str], Subject] = {}
+    for command in dict.fromkeys(one.command for one in requested):
+        known |= {(command, subject.name): subject for subject in subjects_of(case, command, pistons=True)}
+    values = []
+    for one in requested:
+        subject = known.get((one.command, one.subject))
+        value = subject.answer(one.quantity) if subject else None
+        if one.angle:
+            values.append(value.degrees if isinstance(value, Extreme) else None)
+        else:
+            values.append(number_of(value))
+    return values

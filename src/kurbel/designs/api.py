@@ -11,7 +11,8 @@ from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.sweep import Design, Spec, Sweep
+from kurbel.designs.study import Design
+from kurbel.designs.sweep import Spec, Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
@@ -41,9 +42,10 @@ def sweep(
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
     origin = _read(machine)
-    given = tuple(_inputs(origin, inputs))
+    start = tuple(written_texts(origin, tuple(inputs)))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
-    found = Sweep(Spec(origin, given=given, side_by_side=True, columns=names, with_angles=with_angles))
+    axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
+    found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
     return _arrays(found, list(rows_of(found, range(found.rows))))
 
 
@@ -70,10 +72,13 @@ def find(
     (1.5,)
     """
     origin = _read(machine)
-    numeric = [key for key, ends in vary.items() if not all(isinstance(one, str) for one in ends)]
-    kinds = Binder(origin, numeric, written_texts(origin, numeric)).kinds if numeric else ()
-    units = dict(zip(numeric, (SI.get(kind, "") for kind in kinds)))
-    texts = [f"{key}={low}:{high} {units.get(key, '')}".rstrip() for key, (low, high) in vary.items()]
+    texts = []
+    for key, (low, high) in vary.items():
+        unit = ""
+        if not (isinstance(low, str) and isinstance(high, str)):
+            (kind,) = Binder(origin, [key], written_texts(origin, [key])).kinds
+            unit = SI.get(kind, "")
+        texts.append(f"{key}={low}:{high} {unit}".rstrip())
     equations, conditions = ([one] if isinstance(one, str) and one else [*one] for one in (wanted, where))
     return find_in(origin, texts, equations, least, greatest, conditions)
 
@@ -86,34 +91,26 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(origin: Origin, inputs: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the inputs with their values as texts of the machine file."""
-    columns = {key: np.atleast_1d(np.asarray(values)) for key, values in inputs.items()}
-    count = max(map(len, columns.values()), default=0)
-    columns = {key: np.repeat(one, count) if np.ndim(inputs[key]) == 0 else one for key, one in columns.items()}
-    lengths = {key: len(column) for key, column in columns.items()}
-    counts = set(lengths.values())
-    if len(counts) != 1 or 0 in counts or any(column.ndim != 1 for column in columns.values()):
-        each = ", ".join(f"{key} has {count}" for key, count in lengths.items())
+def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
+    """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
+    columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
+    count = max(map(len, columns), default=0)
+    if not count or any(column.shape not in ((count,), (1,)) for column in columns):
+        each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
-    keys = tuple(columns)
-    binder = Binder(origin, keys, written_texts(origin, keys))
-    for (key, column), kind in zip(columns.items(), binder.kinds):
+    for key, column, kind in zip(inputs, columns, binder.kinds):
         unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
-        yield Input(key, tuple(f"{one}{unit}" for one in column.tolist()))
+        yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
 
 
 def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
-    for head, values in zip(found.heads, zip(*(row.values for row in rows)), strict=True):
-        if head.input:
-            continue
-        if any(isinstance(one, tuple) for one in values):
-            arrays[head.id] = np.empty(len(values), dtype=object)
-            arrays[head.id][:] = values
-        else:
-            arrays[head.id] = np.array([np.nan if one is None else one for one in values], dtype=float)
-    arrays["failure"] = np.array([row.failure for row in rows])
-    if found.limited:
-        arrays["keeps"] = np.array([bool(row.keeps) for row in rows])
+    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
+        if not head.input:
+            listed = any(isinstance(one, tuple) for one in values)
+            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
+    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
+    arrays["failure"] = np.array(texts["failure"])
+    if "keeps" in texts:
+        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
     return arrays

@@ -34,7 +34,7 @@ class Batch(NamedTuple):
 
     def one(self, place: int) -> Machine:
         """Return a single machine, counted from 0."""
-        return changed(self.machine, lambda numbers: numbers[place].item())  # type: ignore[no-any-return]
+        return changed(self.machine, lambda numbers: numbers[place].item())
 
 
 class Batches(NamedTuple):
@@ -67,11 +67,8 @@ class Binder:
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
 
-    def bound(self, rows: Sequence[Sequence[str]], wanted: range | None = None) -> Batches:
-        """Return the machines of rows of texts, in batches, and why other rows have none.
-
-        wanted: the rows that are needed, all if None; other rows are not read one by one.
-        """
+    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
+        """Return the machines of rows of texts, in batches, and why other rows have none."""
         found = Batches([], {})
         groups: dict[tuple[str, ...], list[int]] = {}
         for place, row in enumerate(rows):
@@ -83,8 +80,7 @@ class Binder:
                 batches, apart = self._together(np.array(places), rows)
                 found.batches.extend(batches)
             for place in apart:
-                if wanted is None or place in wanted:
-                    self._bind_alone(place, rows[place], found)
+                self._bind_alone(place, rows[place], found)
         return found
 
     def _with(self, texts: Sequence[str]) -> Origin:

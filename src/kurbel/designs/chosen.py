@@ -13,7 +13,7 @@ from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.sweep import KEPT, Cell, Design, Head
+from kurbel.designs.study import Cell, Design, Head
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
@@ -38,15 +38,15 @@ _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
 class Condition(NamedTuple):
-    """A comparison of a column with a value in the unit of its head, or with a text; place: or a `Design.text`."""
+    """A comparison of a column, counted through the values and the texts, with a value in its unit, or with a text."""
 
-    place: int | str
+    place: int
     relation: str
     value: float | str
 
     def holds(self, row: Design) -> bool:
         """Return whether it holds; a row without that value keeps no condition."""
-        value = row.text(self.place) if isinstance(self.place, str) else row.values[self.place]
+        value = (*row.values, *row.texts)[self.place]
         known = value if isinstance(self.value, str) else _number(value)
         return known is not None and bool(_RELATIONS[self.relation](known, self.value))
 
@@ -62,37 +62,35 @@ def parts_of(text: str) -> tuple[str, str, str]:
     return name, relation, written
 
 
-def read_condition(text: str, heads: Sequence[Head], texts: Sequence[str]) -> Condition:
-    """Read `c_max < 5 m/s` or, for a text of a row, `keeps = yes`; raises UsageError."""
+def read_condition(text: str, heads: Sequence[Head], option: str = "--where") -> Condition:
+    """Read `c_max < 5 m/s` or, for a column of words, `keeps = yes`; raises UsageError."""
     name, relation, written = parts_of(text)
-    place = name if name in texts else place_of(name, heads, "--where", texts)
-    if isinstance(place, str) or not heads[place].kind:
-        if relation not in _OF_WORDS:
-            no_order = f"{name} has words, of which none is less than another; write = or !="
-            raise UsageError(f"--where {shown(text)}: {no_order}")
-        if name == "keeps" and written not in KEPT.values():
-            raise UsageError(f"--where {shown(text)}: keeps is yes, no, or empty where a limit cannot be judged")
-        return Condition(place, relation, written)
+    place, where = place_of(name, heads, option), f"{option} {shown(text)}"
     head = heads[place]
+    if not head.kind:
+        if relation not in _OF_WORDS:
+            raise UsageError(f"{where}: {name} has words, of which none is less than another; write = or !=")
+        if name == "keeps" and written not in ("yes", "no", ""):
+            raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
+        return Condition(place, relation, written)
     try:
         value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
-        raise UsageError(f"--where {shown(text)}: {error}") from None
-    return Condition(place, relation, convert(value, head.kind, head.unit))
+        raise UsageError(f"{where}: {error}") from None
+    return Condition(place, relation, float(convert(value, head.kind, head.unit)))
 
 
-def place_of(name: str, heads: Sequence[Head], option: str, texts: Sequence[str] = ()) -> int:
+def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
-    ids = [one.id for one in heads]
+    ids = tuple(one.id for one in heads)
     owner, dot, own = name.rpartition(".")
     meant = (name, *(f"{owner}{dot}{id}" for id in called(own, every_quantity().all_key_values)))
-    found = next((one for one in meant if one in ids), "")
-    if not found:
-        near, there = did_you_mean(name, (*ids, *texts)), ", ".join((*ids, *texts))
-        raise UsageError(f"{option}: no column '{shown(name)}'{near} (there are {there})")
-    if heads[ids.index(found)].listed:
-        raise UsageError(f"{option}: {found} is a list of values, which is neither more nor less than another one")
-    return ids.index(found)
+    place = next((ids.index(one) for one in meant if one in ids), None)
+    if place is None:
+        raise UsageError(f"{option}: no column '{shown(name)}'{did_you_mean(name, ids)} (there are {', '.join(ids)})")
+    if heads[place].listed:
+        raise UsageError(f"{option}: {ids[place]} is a list of values, which is neither more nor less than another one")
+    return place
 
 
 def _number(value: Cell) -> float | None:
@@ -125,15 +123,13 @@ def read_aim(text: str, heads: Sequence[Head], option: str) -> Aim:
 
 def pareto_front(rows: Iterable[Design], aims: Sequence[Aim]) -> Iterator[Design]:
     """Yield the Pareto front: the rows than which no other is better in one aim and as good in all."""
-    given = list(rows)
-    found = {place: [aim.of(row) for aim in aims] for place, row in enumerate(given)}
-    places = [place for place, each in found.items() if not any(lacking for lacking, _ in each)]
-    costs = np.array([[cost for _, cost in found[place]] for place in places]).reshape(len(places), len(aims))
+    given = [row for row in rows if not any(aim.of(row)[0] for aim in aims)]
+    costs = np.array([[aim.of(row)[1] for aim in aims] for row in given]).reshape(len(given), len(aims))
     order = np.lexsort(costs.T[::-1])  # of these the first is never bettered by a later one
     front = []
     while len(order):
         first, order = order[0], order[1:]
-        front.append(places[first])
+        front.append(first)
         worse = (costs[first] <= costs[order]).all(axis=1) & (costs[first] < costs[order]).any(axis=1)
         order = order[~worse]
     return (given[place] for place in sorted(front))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from itertools import groupby, product
 from typing import NamedTuple
@@ -12,20 +13,22 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answers_at, requested_answers
-from kurbel.designs.binding import Binder
-from kurbel.designs.chosen import Condition, parts_of, read_condition
+from kurbel.designs.answers import Answer, texts_of
+from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
-from kurbel.designs.sweep import Design, Head, begun, broken_of, limits_of
-from kurbel.errors import NoSolutionError, UnitError, UsageError
+from kurbel.designs.study import Design, Head, Study
+from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
 from kurbel.numerics.search import common_roots, lowest, roots
 
+_EQUATION = re.compile("[^<>≤≥≠!=]+==?[^=]+")
 _EQUAL = 1e-12
 """Relative difference below which extremes are equal."""
 _ASIDE = 1e-6
 """Share of the range: step from an extreme to a design that shows which bound limits it."""
+_FLAT = 0.02
+"""Share of the range, over which an extreme is as good, that is reported."""
 
 
 class Varied(NamedTuple):
@@ -41,12 +44,20 @@ class Varied(NamedTuple):
         """Return a value in SI in the unit of the range."""
         return float(convert(value, self.kind, self.unit))
 
+    def written(self, value: float, figures: int = 6) -> str:
+        """Return a value in SI as a text in the unit of the range."""
+        return f"{self.in_unit(value):.{figures}g} {self.unit}".rstrip()
+
 
 class Target(NamedTuple):
-    """A key value that is to have a value in SI (aim `=`), or to be the `least` or the `greatest`."""
+    """A key value that is to have a value in SI (aim `=`), or to be the `least` or the `greatest`.
+
+    place: among the key values of a solution.
+    """
 
     text: str
-    answer: Answer
+    head: Head
+    place: int
     aim: str
     value: float | None
 
@@ -70,15 +81,15 @@ class Failed(NamedTuple):
 class Solutions(NamedTuple):
     """Solutions in the order of the first key, and jumps: places where a key value jumps across the wanted value.
 
-    machine: its name. names, answers: of the key values of a solution, those that are wanted first. met: least and
-    greatest value of each wanted key value. places (n, keys), values (n, answers): all designs that were computed, in
-    SI, in the order of the keys.
+    machine: its name. heads, answers: of the key values of a solution, in SI. met: least and greatest value of each
+    wanted key value. places (n, keys), values (n, answers): all designs that were computed, in SI, in the order of the
+    keys.
     """
 
     machine: str
     varied: tuple[Varied, ...]
     wanted: tuple[Target, ...]
-    names: tuple[str, ...]
+    heads: tuple[Head, ...]
     answers: tuple[Answer, ...]
     found: tuple[Solution, ...]
     jumps: tuple[Solution, ...]
@@ -86,6 +97,19 @@ class Solutions(NamedTuple):
     met: tuple[tuple[float, float], ...]
     places: Array
     values: Array
+
+
+class _Design(NamedTuple):
+    """A design that was computed: its numbers and key values in SI, nan where it fails.
+
+    failure: why it fails; broken, unmet: the limits and conditions that it breaks, or why it fails.
+    """
+
+    numbers: tuple[float, ...]
+    values: tuple[float, ...]
+    failure: str
+    broken: str
+    unmet: str
 
 
 def find(
@@ -106,19 +130,22 @@ def find(
     Raises UsageError for what cannot be read, and NoSolutionError, with what was met, where nothing is found.
     """
     extreme = least or greatest
-    if wrong := next((one for one in equations if "=" not in one), ""):
+    if wrong := next((one for one in equations if not _EQUATION.fullmatch(one)), ""):
         raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    designs = _Designs(origin, vary, equations or [extreme], "least" if least else "greatest", conditions, progress)
-    solutions, jumps = (_extreme(designs, 1.0 if least else -1.0), ()) if extreme else _solved(designs)
-    findings = designs.findings(solutions, jumps)
-    if not solutions:
-        raise NoSolutionError(_nothing(findings, designs.excluded))
-    return findings
+    search = _Search(origin, vary, [extreme] if extreme else equations, conditions, progress)
+    if extreme:
+        search.find_extreme("least" if least else "greatest")
+    else:
+        search.solve()
+    found = search.findings()
+    if not found.found:
+        raise NoSolutionError(_nothing(found, search.excluded))
+    return found
 
 
-class _Designs:
+class _Search:
     """Designs of a file by their places (n, keys), from 0 to 1 in each range, and all that was computed of them."""
 
     def __init__(
@@ -126,219 +153,153 @@ class _Designs:
         origin: Origin,
         vary: Sequence[str],
         wanted: Sequence[str],
-        aim: str,
         conditions: Sequence[str],
-        progress: Callable[[str], None] | None = None,
+        progress: Callable[[str], None] | None,
     ) -> None:
         self.progress = progress
         spans = [read_span(one) for one in vary]
         keys = [key for key, *_ in spans]
         if len({path_of(key) for key in keys}) < len(keys):
             raise UsageError(f"--vary {keys[-1]}: this key is varied twice")
-        parts = [one.partition("=") for one in wanted]
-        every = dict.fromkeys([*(name.strip() for name, _, _ in parts), *(parts_of(one)[0] for one in conditions)])
-        self.names = [name for name in every if name not in keys]
-        self.binder, self.answers = _begun(origin, spans, self.names)
-        self.varied = [_varied(span, kind) for span, kind in zip(spans, self.binder.kinds)]
-        self.wanted = [
-            Target(text, answer, "=" if equals else aim, _parsed(text, value, answer.kind) if equals else None)
-            for text, answer, (_, equals, value) in zip(wanted, self.answers, parts)
-        ]
-        heads = [Head(one.key, SI[one.kind], True, one.kind) for one in self.varied]
-        heads += [Head(name, SI[one.kind], False, one.kind) for name, one in zip(self.names, self.answers)]
-        self.conditions: list[tuple[str, Condition]] = [(one, read_condition(one, heads, ())) for one in conditions]
-        self.limits = list(limits_of(self.binder.machine))
+        names = [one.partition("=")[0].strip() for one in wanted]
+        names += [name for name in (parts_of(one)[0] for one in conditions) if name not in keys]
+        ends = product(*((low, high) for _, low, high, _ in spans))
+        self.study = Study(origin, keys, ends, names, option="find")
+        self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
+        heads = [*(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied), *self.study.heads("si")]
+        self.heads = tuple(heads[len(keys) :])
+        self.wanted: list[Target] = []
+        for text, name in zip(wanted, names):
+            place = place_of(name, heads, "find")
+            value = None if text == name else float(read_condition(text, heads, "find").value)
+            self.wanted.append(Target(text.strip(), heads[place], place - len(keys), "=", value))
+        self.conditions = [(one, read_condition(one, heads)) for one in conditions]
+        self.computed: list[_Design] = []
+        self.found: list[Solution] = []
+        self.jumps: list[Solution] = []
         self.excluded = 0
         """Solutions that break a condition."""
-        self.computed: list[tuple[tuple[float, ...], Array, str]] = []
-        """Of every design its numbers, its key values, and why it fails."""
 
-    def numbers(self, places: Array) -> Array:
-        """Return the numbers (n, keys) in SI at places."""
-        low, high = np.array([(one.low, one.high) for one in self.varied]).T
-        return np.asarray(low * (1 - places) + high * places)
-
-    def at(self, places: Array) -> tuple[Array, list[str], list[str]]:
-        """Return key values (n, answers), nan where a design fails; the limits each breaks; the conditions each breaks.
-
-        For a design that fails both texts are the reason of the failure.
-        """
+    def at(self, places: Array) -> list[_Design]:
+        """Return the designs at places (n, keys)."""
         if self.progress:
             self.progress(f"{len(self.computed)} designs computed")
-        numbers, count = self.numbers(places), len(self.answers)
-        rows = numbers.tolist()
-        found = answers_at(self.binder, numbers, (*self.answers, *(one.answer for one in self.limits)))
-        values, broken, unmet = np.full((len(rows), count), np.nan), [""] * len(rows), [""] * len(rows)
-        for number, (row, own) in enumerate(zip(rows, found)):
-            if isinstance(own, str):
-                broken[number] = unmet[number] = own
-            else:
-                values[number] = [np.nan if one is None else one for one in own[:count]]
-                broken[number] = ", ".join(f"limits.{name}" for name in broken_of(self.limits, own[count:]))
-                whole = Design(number, (*row, *own[:count]))
-                unmet[number] = ", ".join(text for text, one in self.conditions if not one.holds(whole))
-            self.computed.append((tuple(row), values[number], own if isinstance(own, str) else ""))
-        return values, broken, unmet
+        low, high = np.array([(one.low, one.high) for one in self.varied]).T
+        numbers = low * (1 - places) + high * places
+        found = []
+        for row, one in zip(numbers.tolist(), self.study.of(texts_of(self.study.binder, numbers))):
+            values = tuple(np.array(one.values or [np.nan] * len(self.study.answers), dtype=float).tolist())
+            design = Design(0, (*row, *one.values))
+            unmet = one.failure or ", ".join(text for text, each in self.conditions if not each.holds(design))
+            broken = one.failure or ", ".join(f"limits.{name}" for name in one.broken)
+            found.append(_Design(tuple(row), values, one.failure, broken, unmet))
+        self.computed += found
+        return found
 
-    def findings(self, solutions: Sequence[Solution], jumps: Sequence[Solution]) -> Solutions:
+    def solve(self) -> None:
+        """Find where all equations hold, and, for a single equation, where the key value jumps across its value."""
+        columns = [one.place for one in self.wanted]
+        wanted = np.array([one.value for one in self.wanted], dtype=float)
+
+        def left(places: Array) -> Array:
+            return np.asarray(np.array([one.values for one in self.at(places)])[:, columns] - wanted)
+
+        if len(wanted) == 1:
+            found, jumps = roots(lambda places: left(places)[:, 0])
+            places = found[:, None]
+        else:
+            places = common_roots(left)
+            jumps = np.zeros(len(places), dtype=bool)
+        for one, jump in zip(self.at(places) if len(places) else (), jumps):
+            self.excluded += bool(one.unmet)
+            if not one.unmet:
+                notes = (f"breaks {one.broken}",) if one.broken else ()
+                (self.jumps if jump else self.found).append(Solution(one.numbers, one.values, notes))
+
+    def find_extreme(self, aim: str) -> None:
+        """Find the design whose key value is the `least` or the `greatest` within all limits, if there is one."""
+        sign = 1.0 if aim == "least" else -1.0
+        self.wanted = [self.wanted[0]._replace(aim=aim)]
+        column = self.wanted[0].place
+
+        def cost(places: Array) -> Array:
+            found = self.at(places)
+            return np.array([np.nan if one.broken or one.unmet else sign * one.values[column] for one in found])
+
+        place, best = lowest(cost, len(self.varied))
+        if np.isfinite(best):
+            (one,) = self.at(place[None])
+            self.found.append(Solution(one.numbers, one.values, self._bounds(place, best * sign)))
+
+    def _bounds(self, place: Array, best: float) -> tuple[str, ...]:
+        """Return at which bounds an extreme is, and over which range of the only key it is as good."""
+        notes: list[str] = []
+        steps = _ASIDE * np.concatenate([np.eye(len(place)), -np.eye(len(place))])
+        aside = self.at(np.clip(place + steps, 0.0, 1.0))
+        for own, one in zip(place.tolist(), self.varied):
+            if min(own, 1 - own) < _ASIDE:
+                notes.append(f"{one.key} is at the {'least' if own < 0.5 else 'greatest'} of its range")
+        beyond = dict.fromkeys([*(one.broken for one in aside), *(one.unmet for one in aside)])
+        notes += [f"beyond it: {text}" for text in beyond if text]
+        if len(place) == 1:
+            (key,), column = self.varied, self.wanted[0].place
+            for same, part in groupby(
+                sorted(self.computed), key=lambda one: abs(one.values[column] - best) <= _EQUAL * abs(best)
+            ):
+                level = [one.numbers[0] for one in part]
+                if same and level[-1] - level[0] > _FLAT * (key.high - key.low):
+                    notes.append(f"as good from {key.in_unit(level[0]):.6g} to {key.written(level[-1])}")
+        return tuple(notes)
+
+    def findings(self) -> Solutions:
         """Return what was found together with what was computed."""
-        computed = sorted(self.computed, key=lambda one: one[0])
-        values = np.array([one[1] for one in computed])
-        spans = [
-            (float(column.min()), float(column.max())) if len(column := own[np.isfinite(own)]) else (np.nan, np.nan)
-            for own in values.T[: len(self.wanted)]
-        ]
+        computed = sorted(self.computed)
+        values = np.array([one.values for one in computed])
+        columns = [values[:, one.place] for one in self.wanted]
+        met = [(np.nanmin(one, initial=np.inf), np.nanmax(one, initial=-np.inf)) for one in columns]
         failed: list[Failed] = []
-        for fails, part in groupby(computed, key=lambda one: bool(one[2])):
-            inside = list(part)
+        for fails, part in groupby(computed, key=lambda one: bool(one.failure)):
             if fails and len(self.varied) == 1:
-                failed.append(Failed(inside[0][0][0], inside[-1][0][0], inside[0][2]))
+                inside = list(part)
+                failed.append(Failed(inside[0].numbers[0], inside[-1].numbers[0], inside[0].failure))
         return Solutions(
-            self.binder.machine.name,
+            self.study.binder.machine.name,
             tuple(self.varied),
             tuple(self.wanted),
-            tuple(self.names),
-            tuple(self.answers),
-            tuple(sorted(solutions)),
-            tuple(jumps),
+            self.heads,
+            self.study.answers,
+            tuple(sorted(self.found)),
+            tuple(self.jumps),
             tuple(failed),
-            tuple(spans),
-            np.array([one[0] for one in computed]),
+            tuple(met),
+            np.array([one.numbers for one in computed]),
             values,
         )
 
 
-def _solved(designs: _Designs) -> tuple[Sequence[Solution], Sequence[Solution]]:
-    """Return where all equations hold, and, for a single equation, where the key value jumps across its value."""
-    values = np.array([one.value for one in designs.wanted], dtype=float)
-
-    def left(places: Array) -> Array:
-        found = designs.at(places)[0][:, : len(values)] - values
-        return np.asarray(found[:, 0] if len(values) == 1 else found)
-
-    if len(values) == 1:
-        found, jumps = roots(left)
-        places = found[:, None]
-    else:
-        places = common_roots(left)
-        jumps = np.zeros(len(places), dtype=bool)
-    if not len(places):
-        return [], []
-    key_values, broken, unmet = designs.at(places)
-    solutions: list[list[Solution]] = [[], []]
-    designs.excluded = sum(map(bool, unmet))
-    for number, row in enumerate(designs.numbers(places).tolist()):
-        if not unmet[number]:
-            notes = (f"breaks {broken[number]}",) if broken[number] else ()
-            solutions[int(jumps[number])].append(Solution(tuple(row), tuple(key_values[number].tolist()), notes))
-    return solutions[0], solutions[1]
-
-
-def _extreme(designs: _Designs, sign: float) -> Sequence[Solution]:
-    """Return the design whose first key value is the least (sign 1) or greatest (−1) within all limits; or none."""
-
-    def cost(places: Array) -> Array:
-        values, broken, unmet = designs.at(places)
-        fits = np.array([not one and not other for one, other in zip(broken, unmet)])
-        return np.where(fits, sign * values[:, 0], np.nan)
-
-    place, best = lowest(cost, len(designs.varied))
-    if not np.isfinite(best):
-        return []
-    values, _, _ = designs.at(place[None])
-    return [
-        Solution(
-            tuple(designs.numbers(place[None])[0].tolist()),
-            tuple(values[0].tolist()),
-            _bounds(designs, place, best * sign),
-        )
-    ]
-
-
-def _bounds(designs: _Designs, place: Array, best: float) -> tuple[str, ...]:
-    """Return at which bounds an extreme is, and over which range of the only key it is as good."""
-    notes: list[str] = []
-    steps = _ASIDE * np.concatenate([np.eye(len(place)), -np.eye(len(place))])
-    _, broken, unmet = designs.at(np.clip(place + steps, 0.0, 1.0))
-    for axis, one in enumerate(designs.varied):
-        for end, word in ((0.0, "least"), (1.0, "greatest")):
-            if abs(place[axis] - end) < _ASIDE:
-                notes.append(f"{one.key} is at the {word} of its range")
-    notes += [f"beyond it: {text}" for text in dict.fromkeys([*broken, *unmet]) if text]
-    if len(place) == 1:
-        rows = sorted(designs.computed, key=lambda one: one[0])
-        same = [abs(one[1][0] - best) <= _EQUAL * abs(best) for one in rows]
-        at = next(number for number, one in enumerate(rows) if same[number])
-        last = at + next((number for number, one in enumerate(same[at:]) if not one), len(same) - at) - 1
-        low, high = rows[at][0][0], rows[last][0][0]
-        if high - low > 0.02 * (designs.varied[0].high - designs.varied[0].low):
-            varied = designs.varied[0]
-            notes.append(f"as good from {varied.in_unit(low):.6g} to {varied.in_unit(high):.6g} {varied.unit}".rstrip())
-    return tuple(notes)
-
-
-def _nothing(findings: Solutions, excluded: int) -> str:
+def _nothing(found: Solutions, excluded: int) -> str:
     """Return the message that nothing was found, with the values that were met; excluded: solutions by --where."""
     ranges = " and ".join(
-        f"{one.key} from {one.in_unit(one.low):.6g} to {one.in_unit(one.high):.6g} {one.unit}".rstrip()
-        for one in findings.varied
+        f"{one.key} from {one.in_unit(one.low):.6g} to {one.written(one.high)}" for one in found.varied
     )
-    wanted = " and ".join(one.text.strip() for one in findings.wanted)
-    if not np.isfinite(findings.met).any():
-        return f"{ranges}: no design has {wanted}: {findings.failed[0].why if findings.failed else 'all fail'}"
-    if findings.wanted[0].aim != "=":
+    wanted = " and ".join(one.text for one in found.wanted)
+    if not np.isfinite(found.met).all():
+        return f"{ranges}: no design has {wanted}: {found.failed[0].why if found.failed else 'it has no value there'}"
+    if found.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
-    met = " and ".join(
-        f"{one.answer.quantity.id} is {_shown(low, one.answer)} to {_shown(high, one.answer)}"
-        for one, (low, high) in zip(findings.wanted, findings.met)
-    )
-    more = "; it is passed by a jump" if findings.jumps else ""
+    met = []
+    for one, (low, high) in zip(found.wanted, found.met):
+        met.append(f"{one.head.id} is {show(low, one.head.kind)} to {show(high, one.head.kind)}")
+    more = "; it is passed by a jump" if found.jumps else ""
     more += f"; --where leaves out {excluded} that {'has' if excluded == 1 else 'have'} it" if excluded else ""
-    return f"{ranges}: no design has {wanted}: {met}{more}"
+    return f"{ranges}: no design has {wanted}: {' and '.join(met)}{more}"
 
 
-def _shown(value: float, answer: Answer) -> str:
-    return show(value, answer.kind) if np.isfinite(value) else "nothing"
-
-
-# --- reading the options
-
-_Span = tuple[str, str, str, str]
-"""A key, the texts of both ends of its range, and their unit."""
-
-
-def _begun(origin: Origin, spans: Sequence[_Span], names: Sequence[str]) -> tuple[Binder, list[Answer]]:
-    """Return the binder of the varied keys, made from the first ends of the ranges that give a valid machine, and the
-    key values by these names. Raises UsageError for a name that is a list or that several parts have.
-    """
-    ends = product(*((low, high) for _, low, high, _ in spans))
-    binder, found = begun(
-        origin,
-        [key for key, *_ in spans],
-        ends,
-        lambda machine: [requested_answers(machine, [name], option="find") for name in names],
-    )
-    for name, each in zip(names, found):
-        if each[0].quantity.listed:
-            raise UsageError(f"{name}: a list of values, of which none is the wanted one")
-        if len(each) > 1:
-            own = f"{each[0].subject}.{each[0].quantity.id}"
-            raise UsageError(f"{name}: there are {len(each)} of it; write which one, such as '{own}'")
-    return binder, [each[0] for each in found]
-
-
-def _varied(span: _Span, kind: str) -> Varied:
+def _varied(span: tuple[str, str, str, str], kind: str) -> Varied:
     key, low, high, unit = span
     if not kind:
         raise UsageError(f"--vary {key}: only a number has a range; kurbel sweep compares words")
-    ends = [_parsed(f"--vary {key}", text, kind) for text in (low, high)]
+    ends = [parse_quantity(text, kind) for text in (low, high)]
     if not ends[0] < ends[1]:
         raise UsageError(f"--vary {key}: the range goes from {low} up to {high}; write the smaller one first")
     return Varied(key, ends[0], ends[1], "" if unit == "%" else unit, kind)  # a share is printed as a sweep prints it
-
-
-def _parsed(where: str, text: str, kind: str) -> float:
-    try:
-        return parse_quantity(text.strip(" ="), kind)
-    except UnitError as error:
-        raise UsageError(f"{shown(where)}: {error}") from None

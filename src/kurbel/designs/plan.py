@@ -5,9 +5,10 @@ These are a grid of all values, or of values side by side, each with every point
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal, InvalidOperation
-from functools import cached_property
+from functools import partial
+from itertools import chain
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -21,41 +22,25 @@ from kurbel.machine_file.overrides import path_of
 
 MOST_ROWS = 10_000_000
 """Rows that are computed without a confirmation (`--yes`)."""
-MOST_VALUES = 10_000_000
+_MOST_VALUES = 10_000_000
 """Values of one key; a range of more is a slip of its step."""
 _LARGEST = 1e300
 """Sums of larger numbers may be infinite."""
-_CALL = re.compile(r"(normal|uniform)\s*\((.*)\)\s*")
+_CALL = re.compile(r"([A-Za-z_]+)\s*\((.*)\)\s*")
 _NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
-_UNKNOWN_CALL = re.compile(r"([A-Za-z_]+)\s*\(.*\)\s*")
-
-
-class Distribution(NamedTuple):
-    """How a key is distributed: `normal` by mean and standard deviation, or `uniform` from its least to its most."""
-
-    name: str
-    first: float
-    second: float
-
-    def at(self, share: float) -> float:
-        """Return the value below which this share of all lies, 0 < share < 1."""
-        if self.name == "uniform":
-            return self.first + share * (self.second - self.first)
-        return NormalDist(self.first, self.second).inv_cdf(share)
+_DISTRIBUTIONS = {"normal": "mean, deviation", "uniform": "least, most"}
 
 
 class Input(NamedTuple):
-    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit."""
+    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit.
+
+    quantile: of the distribution, returns the value below which a share of all lies, 0 < share < 1.
+    """
 
     key: str
     texts: tuple[str, ...] = ()
-    distribution: Distribution | None = None
+    quantile: Callable[[float], float] | None = None
     unit: str = ""
-
-    def text(self, share: float) -> str:
-        """Return the value below which this share of all lies, as a text of the machine file."""
-        assert self.distribution is not None
-        return f"{self.distribution.at(share)!r} {self.unit}".rstrip()
 
 
 def read_axis(text: str) -> tuple[Input, ...]:
@@ -68,7 +53,7 @@ def read_axis(text: str) -> tuple[Input, ...]:
     if len(parts) > 1 and not all(parts):
         raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
     together = tuple(map(read_input, parts))
-    if len(together) > 1 and any(one.distribution for one in together):
+    if len(together) > 1 and any(one.quantile for one in together):
         raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
     return together
 
@@ -81,21 +66,14 @@ def read_input(text: str) -> Input:
     >>> read_input("rod_ratio=3:4:0.25").texts
     ('3.00', '3.25', '3.50', '3.75', '4.00')
     """
-    key, equals, values = plain(text).partition("=")
-    key, values = key.strip(), values.strip()
-    if not equals or not key or not values:
+    key, _, values = (part.strip() for part in plain(text).partition("="))
+    if not key or not values:
         raise _refused(text, "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)")
     if call := _CALL.fullmatch(values):
         return Input(key, (), *_distribution(text, call[1], call[2]))
-    if call := _UNKNOWN_CALL.fullmatch(values):
-        raise _refused(
-            text, f"no distribution '{shown(call[1])}'; known are normal(mean, deviation), uniform(least, most)"
-        )
-    if ".." in values:
-        raise _refused(text, "a range is first:last:step, such as 140:160:5 mm")
     if ":" in values and "," not in values and NUMBER.match(values):
         return Input(key, _range(text, values))
-    return Input(key, _with_unit([part.strip() for part in values.split(",")], text))
+    return Input(key, _list(text, [part.strip() for part in values.split(",")]))
 
 
 def read_span(text: str) -> tuple[str, str, str, str]:
@@ -105,10 +83,9 @@ def read_span(text: str) -> tuple[str, str, str, str]:
     ('crank', '300 mm', '500 mm', 'mm')
     """
     key, _, values = (part.strip() for part in plain(text).partition("="))
-    expected = "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
-    if not key:
-        raise _refused(text, expected)
-    (low, high), unit = _numbers(text, values.split(":"), 2, expected)
+    (low, high), unit = _numbers(
+        text, values.split(":") if key else (), 2, "write KEY=low:high, such as rod_ratio=3:6 or crank=300:500 mm"
+    )
     return key, f"{low} {unit}".rstrip(), f"{high} {unit}".rstrip(), unit
 
 
@@ -116,14 +93,14 @@ def _refused(text: str, why: str) -> UsageError:
     return UsageError(f"--vary {shown(text)}: {why}")
 
 
-def _with_unit(parts: list[str], text: str) -> tuple[str, ...]:
+def _list(text: str, parts: list[str]) -> tuple[str, ...]:
     """Return the values of a list; the unit of the last one is that of those before it that have none."""
     if not all(parts) or any(len(part) > LONGEST_VALUE for part in parts):
         raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
     if any(";" in part and NUMBER.match(part) for part in parts):
         raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
-    unit = _number_and_unit(parts[-1])[1] if NUMBER.match(parts[-1]) else ""
-    return tuple(f"{part} {unit}".rstrip() if unit and NUMBER.fullmatch(part) else part for part in parts)
+    number, unit = _number_and_unit(parts[-1])
+    return tuple(f"{part} {unit}" if number and unit and NUMBER.fullmatch(part) else part for part in parts)
 
 
 def _number_and_unit(part: str) -> tuple[str, str]:
@@ -141,7 +118,7 @@ def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tupl
         raise _refused(text, f"write these numbers in one unit, not in {' and '.join(sorted(units))}")
     if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), ""):
         raise _refused(text, f"{shown(large)} is too large to compute with")
-    return [number for number, _ in pairs], units.pop() if units else ""
+    return [number for number, _ in pairs], "".join(units)
 
 
 def _range(text: str, values: str) -> tuple[str, ...]:
@@ -154,50 +131,68 @@ def _range(text: str, values: str) -> tuple[str, ...]:
         raise _refused(text, expected) from None
     if not float(step) or (last - first) / step < 0:
         raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
-    if (last - first) / step >= MOST_VALUES:
-        raise _refused(text, f"this range has more than {MOST_VALUES} values, as no key may")
+    if (last - first) / step >= _MOST_VALUES:
+        raise _refused(text, f"this range has more than {_MOST_VALUES} values, as no key may")
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 
 
-def _distribution(text: str, name: str, inside: str) -> tuple[Distribution, str]:
-    words = {"normal": "mean, standard deviation", "uniform": "least, most"}[name]
-    expected = f"{name}({words}) has two numbers, such as normal(450 mm, 0.2 mm)"
+def _distribution(text: str, name: str, inside: str) -> tuple[Callable[[float], float], str]:
+    if name not in _DISTRIBUTIONS:
+        known = ", ".join(f"{one}({words})" for one, words in _DISTRIBUTIONS.items())
+        raise _refused(text, f"no distribution '{shown(name)}'; known are {known}")
+    expected = f"{name}({_DISTRIBUTIONS[name]}) has two numbers, such as normal(450 mm, 0.2 mm)"
     numbers, unit = _numbers(text, inside.split(","), 2, expected)
     first, second = map(float, numbers)
     if name == "normal" and second <= 0:
         raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
     if name == "uniform" and second <= first:
         raise _refused(text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}")
-    return Distribution(name, first, second), unit
+    return NormalDist(first, second).inv_cdf if name == "normal" else partial(_of_uniform, first, second), unit
+
+
+def _of_uniform(least: float, most: float, share: float) -> float:
+    return least + share * (most - least)
 
 
 class Plan:
     """The rows of a sweep, by their number from 0; the last axis of a grid varies fastest.
 
     axes: for each, the keys that change together along it. side_by_side: all lists form one axis. sample, seed: size
-    and seed of the sample of the distributions. Raises UsageError for lists that do not fit together.
+    and seed of the sample of the distributions. most: largest number of rows, None for any. Raises UsageError for
+    lists that do not fit together.
     """
 
     def __init__(
-        self, axes: Sequence[tuple[Input, ...]], side_by_side: bool = False, sample: int | None = None, seed: int = 0
+        self,
+        axes: Sequence[tuple[Input, ...]],
+        side_by_side: bool = False,
+        sample: int | None = None,
+        seed: int = 0,
+        most: int | None = None,
     ) -> None:
-        self.inputs = tuple(one for axis in axes for one in axis)
-        self._sample, self._seed = sample, seed
-        self._drawn = [one for one in self.inputs if one.distribution is not None]
-        listed = [axis for axis in axes if axis[0].distribution is None]
-        self._axes = [tuple(one for axis in listed for one in axis)] if side_by_side and listed else listed
-        self._refuse("--zip" if side_by_side else "")
-        self.rows = math.prod(len(axis[0].texts) for axis in self._axes) * (sample or 1)
+        self.inputs = tuple(chain(*axes))
+        self._drawn = [one for one in self.inputs if one.quantile]
+        listed = [axis for axis in axes if not axis[0].quantile]
+        self._axes = [tuple(chain(*listed))] if side_by_side and listed else listed
+        self._sample = sample or 1
+        self._refuse(sample, "--zip" if side_by_side else "")
+        self.rows = math.prod(len(axis[0].texts) for axis in self._axes) * self._sample
+        if most and self.rows > most:
+            raise UsageError(f"these are {self.rows} rows; --yes computes more than {most}")
+        self._points = latin_hypercube(self._sample, len(self._drawn), seed)
 
-    def _refuse(self, option: str) -> None:
+    def _refuse(self, sample: int | None, option: str) -> None:
         paths = [path_of(one.key) for one in self.inputs]
-        if twice := next((one for place, one in enumerate(self.inputs) if paths[place] in paths[:place]), None):
-            raise UsageError(f"--vary {twice.key}: this key is varied twice")
-        if bound := next((one.key for one, path in zip(self.inputs, paths) if path[0] == "limits"), ""):
-            raise UsageError(f"--vary {bound}: limits are the same for all rows; --where chooses those within others")
-        if self._drawn and not self._sample:
+        for place, (one, path) in enumerate(zip(self.inputs, paths)):
+            if path in paths[:place]:
+                raise UsageError(f"--vary {one.key}: this key is varied twice")
+            if path[0] == "limits":
+                raise UsageError(
+                    f"--vary {one.key}: limits are the same for all rows; --where chooses those within others"
+                )
+        if self._drawn and not sample:
             raise UsageError(f"--vary {self._drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
-        if self._sample and not self._drawn:
+        if sample and not self._drawn:
             raise UsageError("--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)")
         for axis in self._axes:
             if len({len(one.texts) for one in axis}) > 1:
@@ -205,19 +200,16 @@ class Plan:
                 where = option or f"--vary {'; '.join(one.key for one in axis)}"
                 raise UsageError(f"{where}: the lists must be of one length; {each}")
 
-    @cached_property
-    def _points(self) -> Array:
-        return latin_hypercube(self._sample or 0, len(self._drawn), self._seed)
-
     def texts(self, row: int) -> tuple[str, ...]:
         """Return the texts of the keys in a row, in the order of the inputs."""
-        combination, point = divmod(row, self._sample or 1)
+        combination, point = divmod(row, self._sample)
         found: dict[str, str] = {}
         for axis in reversed(self._axes):
             combination, place = divmod(combination, len(axis[0].texts))
             found.update((one.key, one.texts[place]) for one in axis)
-        for column, one in enumerate(self._drawn):
-            found[one.key] = one.text(float(self._points[point, column]))
+        for one, share in zip(self._drawn, self._points[point].tolist()):
+            assert one.quantile
+            found[one.key] = f"{one.quantile(share)!r} {one.unit}".rstrip()
         return tuple(found[one.key] for one in self.inputs)
 
 

@@ -1,4 +1,4 @@
-"""Chunks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
+"""Blocks of a sweep computed by this process, by others on this machine, or by a cluster, and returned in order."""
 
 import logging
 import os
@@ -8,13 +8,13 @@ import sys
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import CancelledError, ThreadPoolExecutor
-from contextlib import contextmanager
-from queue import SimpleQueue
-from signal import Signals
+from contextlib import contextmanager, suppress
+from functools import lru_cache
+from itertools import cycle, islice
 from typing import Any
 
-from kurbel.designs.sweep import Design, Spec, Sweep, computed
+from kurbel.designs.study import Design
+from kurbel.designs.sweep import Spec, Sweep
 from kurbel.errors import KurbelError, UsageError
 
 _FOR_ONE = 5_000
@@ -22,37 +22,25 @@ _FOR_ONE = 5_000
 _MOST_JOBS = 4
 """Most processes started by default: the computer may have other work, and each needs memory for the library."""
 _AHEAD = 3
-"""Chunks per worker that are submitted ahead: little is computed that is not yet read."""
-_RETRIES = 5
-"""How often a chunk is sent again if its worker is lost."""
+"""Blocks per worker of a cluster that are submitted ahead: little is computed that is not yet read."""
 _ANSWERS_WITHIN = 10.0
 """Seconds in which a cluster must answer."""
-_LOOKED_EVERY = 1.0
-"""Seconds of waiting for a chunk after which it is checked that the cluster has workers."""
-
-Answer = Callable[[], list[Design]]
-"""Waits for the rows of a chunk and returns them."""
-Submit = Callable[[Spec, range, range], Answer]
-"""Submits a chunk: see `computed`."""
 
 
 def rows_of(
-    sweep: Sweep, rows: range, jobs: int = 1, dask: str = "", note: Callable[[str], None] = lambda _: None
+    sweep: Sweep, rows: range, jobs: int = 1, dask: str | None = None, note: Callable[[str], None] = lambda _: None
 ) -> Generator[Design, None, None]:
     """Yield rows in their order as soon as they are computed.
 
     jobs: processes on this computer; dask: address of a cluster; note: is called with messages for the user.
     Raises UsageError for an address that does not answer, KurbelError where a process or the cluster is lost.
     """
-    if dask:
-        with _cluster(dask, note) as (submit, workers):
-            yield from _gathered(sweep, rows, submit, workers)
-    elif jobs > 1:
-        with _processes(jobs) as submit:
-            yield from _gathered(sweep, rows, submit, lambda: jobs)
+    if dask is not None:
+        blocks = _of_cluster(sweep, rows, dask, note)
     else:
-        for together, wanted in sweep.chunks(rows):
-            yield from sweep.chunk(together, wanted)
+        blocks = _of_processes(sweep, rows, jobs) if jobs > 1 else map(sweep.block, sweep.blocks(rows))
+    for block in blocks:
+        yield from (row for row in block if row.number - 1 in rows)
 
 
 def likely_jobs(rows: int) -> int:
@@ -62,100 +50,74 @@ def likely_jobs(rows: int) -> int:
     return max(min(cores, _MOST_JOBS, rows // _FOR_ONE), 1)
 
 
-def _gathered(sweep: Sweep, rows: range, submit: Submit, workers: Callable[[], int]) -> Iterator[Design]:
-    """Yield the rows that others compute, in order, with few chunks of them ahead; workers: how many there are now."""
-    waiting: deque[Answer] = deque()
-    for together, wanted in sweep.chunks(rows):
-        waiting.append(submit(sweep.spec, together, wanted))
-        if len(waiting) > _AHEAD * workers():
-            yield from waiting.popleft()()
-    while waiting:
-        yield from waiting.popleft()()
-
-
-@contextmanager
-def _processes(jobs: int) -> Iterator[Submit]:
+def _of_processes(sweep: Sweep, rows: range, jobs: int) -> Iterator[list[Design]]:
+    """Yield blocks in order from processes that each compute every so-many-th; a full pipe makes them wait."""
     # isolated, so that none looks for modules in the working directory; a session of its own hears no interrupt
     code = f"import sys; sys.path[:] = {list(filter(None, sys.path))}; from kurbel.designs.workers import work; work()"
-    pipe = subprocess.PIPE
+    command, pipe = [sys.executable, "-I", "-c", code], subprocess.PIPE
     processes = [
-        subprocess.Popen([sys.executable, "-I", "-c", code], stdin=pipe, stdout=pipe, start_new_session=True)
+        subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, start_new_session=True)
         for _ in range(jobs)
     ]
-    idle = SimpleQueue[Any]()
-    for process in processes:
-        idle.put(process)
-    threads = ThreadPoolExecutor(jobs)
-
-    def answer(*task: Any) -> list[Design]:
-        process = idle.get()
-        try:
-            return _answered(process, task)
-        finally:
-            idle.put(process)
-
     try:
-        yield lambda *task: threads.submit(answer, *task).result
+        for number, process in enumerate(processes):
+            assert process.stdin
+            pickle.dump((sweep.spec, rows, number, jobs), process.stdin)
+            process.stdin.flush()
+        for _, process in zip(sweep.blocks(rows), cycle(processes)):
+            assert process.stdout
+            yield pickle.load(process.stdout)
+    except (OSError, EOFError, pickle.UnpicklingError):  # its ends of the pipes are closed
+        why = "--jobs 1 needs the least memory, and shows what is wrong"
+        raise KurbelError(f"a worker process ended early, with status {process.wait()}; {why}") from None
     finally:
         for process in processes:
             process.kill()
-        threads.shutdown(cancel_futures=True)
-        for process in processes:
             process.communicate()
 
 
-def _answered(process: "subprocess.Popen[bytes]", task: tuple[Any, ...]) -> list[Design]:
-    """Return the rows that a process computes; raises what it meets, and KurbelError where it ends instead."""
-    assert process.stdin
-    assert process.stdout
-    try:
-        pickle.dump(task, process.stdin)
-        process.stdin.flush()
-        found = pickle.load(process.stdout)
-    except (OSError, EOFError, pickle.UnpicklingError):  # its ends of the pipes are closed
-        raise KurbelError(_end_of(process.wait())) from None
-    if isinstance(found, Exception):
-        raise found
-    return found  # type: ignore[no-any-return]
-
-
-def _end_of(status: int) -> str:
-    if status >= 0:
-        return f"a worker process ended early with status {status}"
-    try:
-        name = Signals(-status).name
-    except ValueError:  # one that has no name, as those for real time
-        name = f"signal {-status}"
-    return f"a worker process was killed ({name}), by the system if memory ran out; --jobs 1 needs the least"
-
-
 def work() -> None:
-    """Compute the chunks that standard input has, until it ends, and write their rows to standard output."""
+    """Compute every so-many-th block of the rows that standard input describes, and write them to standard output."""
     warnings.simplefilter("error", RuntimeWarning)  # as in the process that started this one
-    while True:
-        try:
-            task = pickle.load(sys.stdin.buffer)
-        except EOFError:
-            return
-        try:
-            found: Any = computed(*task)
-        except Exception as error:
-            found = error
-        try:
-            pickle.dump(found, sys.stdout.buffer)
+    spec, rows, first, jobs = pickle.load(sys.stdin.buffer)
+    sweep = Sweep(spec)
+    with suppress(BrokenPipeError):  # the process that started this one has ended
+        for block in islice(sweep.blocks(rows), first, None, jobs):
+            pickle.dump(sweep.block(block), sys.stdout.buffer)
             sys.stdout.buffer.flush()
-        except BrokenPipeError:  # the process that started this one has ended; what is buffered is for nobody
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return
+
+
+_known = lru_cache(maxsize=4)(Sweep)
+
+
+def _computed(spec: Spec, rows: range) -> list[Design]:
+    """Return a block of a sweep, in a worker of a cluster, which makes a sweep only once."""
+    return _known(spec).block(rows)
+
+
+def _of_cluster(sweep: Sweep, rows: range, address: str, note: Callable[[str], None]) -> Iterator[list[Design]]:
+    """Yield blocks in order from the workers of a cluster, with few of them ahead."""
+    blocks, waiting = sweep.blocks(rows), deque[Any]()
+    with _client(address) as client:
+        while True:
+            workers = len(client.nthreads())
+            for block in islice(blocks, max(_AHEAD * max(workers, 1) - len(waiting), 0)):
+                waiting.append(client.submit(_computed, sweep.spec, block, pure=False))
+            if not waiting:
+                return
+            if not workers:
+                note(f"--dask {address}: the cluster has no workers; waiting for one")
+            yield waiting.popleft().result()
 
 
 @contextmanager
-def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit, Callable[[], int]]]:
+def _client(address: str) -> Iterator[Any]:
+    """Yield a client of a cluster; raises UsageError where there is none, KurbelError for what goes wrong later."""
     try:
         import asyncio
 
-        from distributed import Client, TimeoutError
-        from distributed.comm import CommClosedError, connect
+        from distributed import Client
+        from distributed.comm import connect
     except ImportError:
         raise UsageError("--dask needs dask.distributed: pip install 'kurbel[dask]'") from None
 
@@ -167,36 +129,11 @@ def _cluster(address: str, note: Callable[[str], None]) -> Iterator[tuple[Submit
         asyncio.run(reached())  # a client that reaches nothing waits 20 s at its end, and writes a traceback
         client = Client(address, timeout=_ANSWERS_WITHIN, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:  # no address, no answer in time, or a protocol that is not set up
-        raise UsageError(f"--dask {address}: no scheduler responds there ({_first_line(error)})") from None
-
-    def workers() -> int:
-        return max(len(client.nthreads()), 1)
-
-    def submit(spec: Spec, together: range, wanted: range) -> Answer:
-        key = f"kurbel-{hash(spec)}-{wanted}"
-        future = client.submit(computed, spec, together, wanted, retries=_RETRIES, key=key)
-
-        def answer() -> list[Design]:
-            waiting = False
-            while True:
-                try:
-                    return future.result(timeout=_LOOKED_EVERY)  # type: ignore[no-any-return]
-                except TimeoutError:
-                    if not waiting and not client.nthreads():
-                        note(f"--dask {address}: the cluster has no workers; waiting for one")
-                        waiting = True
-
-        return answer
-
+        first_line = str(error).partition("\n")[0]
+        raise UsageError(f"--dask {address}: no scheduler responds there ({first_line})") from None
     try:
-        yield submit, workers
+        yield client
     except Exception as error:
-        if client.status != "running" or isinstance(error, (CancelledError, CommClosedError)):
-            raise KurbelError(f"--dask {address}: the connection to the scheduler is lost") from None
-        raise KurbelError(f"--dask {address}: {type(error).__name__}: {_first_line(error)}") from None
+        raise KurbelError(f"--dask {address}: the cluster failed: {type(error).__name__}") from None
     finally:
         client.close()
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).partition("\n")[0]

@@ -1,8 +1,6 @@
 """The keys of a measured trace, whose samples are in the machine file or in a file of columns."""
 
-import math
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from os.path import basename
 from typing import Any, ClassVar
 
@@ -12,8 +10,8 @@ from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
 from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
 from kurbel.declared.record import Record, Rule, Values, alternative, field
-from kurbel.declared.units import Factor, Point, unit_factor
-from kurbel.errors import Fault, RuleError, UnitError, refused
+from kurbel.declared.units import Factor, Point
+from kurbel.errors import Fault, RuleError, refused
 from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
@@ -73,18 +71,6 @@ class Columns(Record):
         return Layout(columns, delimiter=words.get(delimiter, delimiter), **keys)
 
 
-class Pegging(Record):
-    """What becomes a `KnownLevel`."""
-
-    angle = alternative("angle", "Crank angle from the (firing) dead centre", required=True)
-    pressure = alternative("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
-
-    @classmethod
-    def of_keys(cls, angle: float, pressure: float) -> KnownLevel:
-        """Return where the level is known."""
-        return KnownLevel(angle, pressure)
-
-
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
@@ -124,7 +110,7 @@ class Measured(Columns):
     scale = alternative("ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1")
     offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
-        OneOf(Choice(("ambient",)), RecordForm(Pegging)),
+        OneOf(Choice(("ambient",)), RecordForm(KnownLevel)),
         "Reference point for the absolute level of every cycle; `ambient`: the dead centre where the compression "
         "begins",
         absent="pressures as measured",
@@ -172,16 +158,11 @@ class Measured(Columns):
             angles, figures = np.array(points, dtype=float).T
             values = pressures(figures[np.newaxis])
             samples = whole_cycles(angles, values, lambda row: Fault(("points", row), ""), against=against)
-            laid_out = Layout(columns=(0,))
+            laid_out = Layout()
         else:
             laid_out = cls.layout(layout)
             samples = samples_of_file(file, laid_out, "pressure", pressures, against)
         files, notes = (file,) if file else (), samples.notes
-        if samples.headed and scale == 1:
-            with suppress(UnitError):  # what is in brackets need not be a unit
-                times, over = unit_factor(samples.headed, "pressure")
-                if not math.isclose(times / over, up / down):
-                    notes = (*notes, f"the heading of column {laid_out.columns[0]} has another unit, {samples.headed}")
         if isinstance(angle_zero, Motored):
             files, given = (*files, angle_zero.motored), angle_zero
             angle_zero, note = dead_centre(given, laid_out, pressures, against)
@@ -195,12 +176,10 @@ class Measured(Columns):
             completed=samples.completed,
             clearance=1 / (compression_ratio - 1) if compression_ratio else clearance,
             level=drift == "linear",
-            pegging=KnownLevel() if isinstance(pegging, str) else pegging,
+            pegging=pegging,
             against=against,
             unit=up / down,
             scale=scale,
-            offset=offset,
-            column=laid_out.columns[0],
         )
 
 

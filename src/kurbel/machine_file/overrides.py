@@ -136,7 +136,7 @@ def value_at(tree: Any, path: Path) -> Node | None:
             tree = tree[step]
     except (KeyError, IndexError, TypeError):
         return None
-    return tree  # type: ignore[no-any-return]
+    return tree
 
 
 def _step(node: Node, one: Override, place: int) -> Any:

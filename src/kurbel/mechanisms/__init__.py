@@ -5,22 +5,23 @@ crank angle has. `Mechanism` lists what a new one must supply.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial, reduce
-from operator import mul
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Number
-from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Record, Rule, field
-from kurbel.errors import UsageError
-from kurbel.numerics.arithmetic import sqrt
+from kurbel.crank_angle import CrankAngle, unit_vector
+from kurbel.declared.record import Record, field
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
 from kurbel.quantity import Quantity
+
+Factor = Callable[[Any, CrankAngle], Any]
+"""Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,24 +35,39 @@ class Offer:
     """
 
     quantity: Quantity
-    factor: Callable[[Any, CrankAngle], Any]
+    factor: Factor
     omega: int = 0
     force: Callable[[Any], Any] | None = None
     unless: Callable[[Any], bool] | None = None
 
     def of(self, state: Any) -> Any:
         """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
-        given = [state.omega] * self.omega + ([self.force(state)] if self.force else [])
-        factor = self.factor(state.mechanism, state.posed)
-        return None if factor is None or any(one is None for one in given) else reduce(mul, given, 1.0) * factor
+        factors = [self.factor(state.mechanism, state.posed), *[state.omega] * self.omega]
+        if self.force:
+            factors.append(self.force(state))
+        return None if any(one is None for one in factors) else math.prod(factors)
 
 
-own_motion = partial(Quantity, commands=("motion",), after="b")
-"""Declares a column that a mechanism adds to `kurbel motion`."""
-own_force = partial(Quantity, commands=("forces",), extremes=("forces",), after="N")
-"""Declares a column that a mechanism adds to `kurbel forces`, with extremes, of which `called` says what they are."""
-on_request = partial(Quantity, commands=("motion", "forces"), on_request=("motion", "forces"))
-"""Declares a column that a mechanism adds to both, printed on request, after the column named by `after`."""
+def motion_column(id: str, symbol: str, kind: str, text: str, factor: Factor, omega: int = 0) -> Offer:
+    """Return a column that a mechanism adds to `kurbel motion`."""
+    return Offer(Quantity(id, symbol, kind, text, commands=("motion",), after="b"), factor, omega)
+
+
+def force_column(
+    id: str, symbol: str, kind: str, text: str, factor: Factor, force: Callable[[Any], Any], after: str = "N"
+) -> Offer:
+    """Return a column that a mechanism adds to `kurbel forces`, with extremes, called as the sentence begins."""
+    called = text[0].lower() + text[1:].partition(",")[0]
+    forces = ("forces",)
+    return Offer(Quantity(id, symbol, kind, text, "", forces, forces, called, after), factor, force=force)
+
+
+def requested_column(
+    id: str, symbol: str, kind: str, text: str, factor: Factor, after: str, omega: int = 0, plain: str = ""
+) -> Offer:
+    """Return a column that a mechanism adds to both, printed on request."""
+    both = ("motion", "forces")
+    return Offer(Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +131,17 @@ class Sketch:
     toward: Point | None = None
     across: Point | None = None
 
+    @classmethod
+    def of_crank(
+        cls, radius: float, angle: CrankAngle, joints: dict[str, Point], *links: tuple[str, ...], **more: Any
+    ) -> "Sketch":
+        """Return the sketch of a crank with what else is given; fixed: joints on the frame besides the shaft."""
+        pin = on_circle(radius, angle.cos, angle.sin)
+        fixed = (SHAFT, *more.pop("fixed", ()))
+        return cls({SHAFT: (0.0, 0.0), PIN: pin, **joints}, ((SHAFT, PIN), *links), fixed, **more)
 
-class Mechanism(Record):
+
+class Mechanism(Record, ABC):
     """What every mechanism supplies. It serves forces, work and torque through these alone:
 
     1. `name`, the word in the machine file, fields that are its keys there, and its geometric rules;
@@ -126,9 +151,9 @@ class Mechanism(Record):
        rises from `start` at the inner dead centre (0 unless the book counts otherwise) by `stroke`, in the same unit;
     3. `dead_centres` in degrees, the end of the outstroke after its beginning.
 
-    A class without one of these is refused. All else has a default here that a mechanism may override:
-    `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; `sketch`,
-    what is drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
+    A class without one of these methods cannot be instantiated. All else has a default here that a mechanism may
+    override: `crank_angles_at`, the inverse of `coordinate`; the connecting rod, the radial force; `sketch`, what is
+    drawn of it; `lacks` and `notes`. What only some mechanisms have (a swinging lever, a sliding block, a
     coupler) they add as columns in OFFERS and key values in KEY_OFFERS. No other module tests for the class of a
     mechanism.
     """
@@ -165,35 +190,26 @@ class Mechanism(Record):
     """Results that need further keys of the file, each with the reason why it is missing: (what, why)."""
     crank: float
 
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        own = [one for one in cls.__mro__ if issubclass(one, Mechanism) and one is not Mechanism]
-        given = {name for one in own for name in (*vars(one), *getattr(one, "__annotations__", ()))}
-        required = ("name", "crank", "stroke", "dead_centres", "coordinate", "slope", "curvature")
-        missing = [name for name in required if name not in given]
-        if missing:
-            raise UsageError(f"mechanism {cls.__name__} does not define {', '.join(missing)}")
-
     @property
     def offset(self) -> float:
         """Distance in m of the stroke line from the shaft, positive toward the side of the outstroke."""
         return 0.0
 
+    @abstractmethod
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return q at the crank angle, in m (or rad), of the shape of the angle."""
-        raise NotImplementedError
 
+    @abstractmethod
     def slope(self, angle: CrankAngle) -> Number:
         """Return dq/dφ in m (or rad) per radian."""
-        raise NotImplementedError
 
+    @abstractmethod
     def curvature(self, angle: CrankAngle) -> Number:
         """Return d²q/dφ² in m (or rad) per radian squared."""
-        raise NotImplementedError
 
+    @abstractmethod
     def dead_centres(self) -> tuple[float, float]:
         """Return inner and outer dead centre in degrees; the outstroke runs from the first to the second."""
-        raise NotImplementedError
 
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return the crank angles in degrees where q − start (n,), from 0 to the stroke, is passed on that stroke.
@@ -262,16 +278,10 @@ class Mechanism(Record):
         coupler, R = self.coupler_at(angle), self.crank
         if coupler is None:
             return None
-        turned = CrankAngle.of(coupler.degrees)
-        x, y = turned.cos * along - turned.sin * across, turned.sin * along + turned.cos * across
-        turn, bend = coupler.slope, coupler.curvature
-        speed = -R * angle.sin - y * turn, R * angle.cos + x * turn
-        acceleration = (
-            -R * angle.cos - y * bend - x * turn * turn,
-            -R * angle.sin + x * bend - y * turn * turn,
-        )
-        sizes = (sqrt(one * one + other * other) for one, other in (speed, acceleration))
-        return PointMotion(R * angle.cos + x, R * angle.sin + y, *sizes)
+        pin = R * (angle.cos + 1j * angle.sin)
+        arm = (along + 1j * across) * unit_vector(coupler.degrees)
+        place, acceleration = pin + arm, arm * (1j * coupler.curvature - coupler.slope**2) - pin
+        return PointMotion(place.real, place.imag, abs(pin + arm * coupler.slope), abs(acceleration))
 
     def sketch(self, angle: CrankAngle) -> Sketch | None:
         """Return what is drawn of the mechanism at the crank angle, or None where that cannot be drawn."""
@@ -287,14 +297,6 @@ class Mechanism(Record):
         return None
 
 
-def finite(record: Record, *names: str) -> Iterator[Rule]:
-    """Yield the rule that these lengths are finite; what is not given is None."""
-    for name in names:
-        value = vars(record)[name]
-        if value is not None:
-            yield Rule(name, np.logical_not(np.isfinite(value)), "must be finite")
-
-
 def on_circle(radius: Number, cos: Number, sin: Number, centre: Point = (0.0, 0.0)) -> Point:
     """Return the point of a circle in a direction."""
     return centre[0] + radius * cos, centre[1] + radius * sin
@@ -302,7 +304,13 @@ def on_circle(radius: Number, cos: Number, sin: Number, centre: Point = (0.0, 0.
 
 # columns and key values that several mechanisms have: of a swinging member, a block on the crank pin, a coupler
 
-_BOTH, _MEMBER = ("motion", "forces"), "of the swinging member"
+_BOTH = ("motion", "forces")
+TURNING = (
+    ("", "", "angle", "Angle"),
+    ("_dot", "\u0307", "angular_velocity", "Angular velocity"),
+    ("_ddot", "\u0308", "angular_acceleration", "Angular acceleration"),
+)
+"""How a member turns, by derivatives: end of the id, mark on the symbol, kind, and name."""
 
 
 def _slides(results: Any) -> bool:
@@ -310,26 +318,15 @@ def _slides(results: Any) -> bool:
     return results.command == "forces" and bool(results.mechanism.slides)
 
 
-def _swing(id: str, symbol: str, kind: str, text: str, called: str = "") -> Quantity:
-    searched = ("motion",) if called else ()
-    return Quantity(id, symbol, kind, f"{text} {_MEMBER}", "", _BOTH, searched, called, after="b")
+def _swing(order: int) -> Offer:
+    end, mark, kind, name = TURNING[order]
+    searched, called = (("motion",), f"{name.lower()} of the swing") if order else ((), "")
+    text = f"{name} of the swinging member"
+    quantity = Quantity(f"theta{end}", f"θ{mark}", kind, text, "", _BOTH, searched, called, after="b")
+    return Offer(quantity, lambda one, angle: one.swing_at(angle)[order], order, unless=_slides)
 
 
-SWING_OFFERS = (
-    Offer(_swing("theta", "θ", "angle", "Angle"), lambda one, angle: one.swing_at(angle).degrees, unless=_slides),
-    Offer(
-        _swing("theta_dot", "θ̇", "angular_velocity", "Angular velocity", "angular velocity of the swing"),
-        lambda one, angle: one.swing_at(angle).slope,
-        omega=1,
-        unless=_slides,
-    ),
-    Offer(
-        _swing("theta_ddot", "θ̈", "angular_acceleration", "Angular acceleration", "angular acceleration"),
-        lambda one, angle: one.swing_at(angle).curvature,
-        omega=2,
-        unless=_slides,
-    ),
-)
+SWING_OFFERS = (_swing(0), _swing(1), _swing(2))
 """Of a mechanism with `swing_at`, which returns how its swinging member turns."""
 
 
@@ -345,27 +342,24 @@ SWING_VALUES = (
         lambda one, _: one.swing,
     ),
     KeyOffer(
-        Quantity("theta_min", "θ_min", "angle", f"Smallest angle {_MEMBER}", "", _BOTH, after="stroke"),
+        Quantity("theta_min", "θ_min", "angle", "Smallest angle of the swinging member", "", _BOTH, after="stroke"),
         lambda one, _: min(_ends(one), default=None),
     ),
     KeyOffer(
-        Quantity("theta_max", "θ_max", "angle", f"Largest angle {_MEMBER}", "", _BOTH, after="stroke"),
+        Quantity("theta_max", "θ_max", "angle", "Largest angle of the swinging member", "", _BOTH, after="stroke"),
         lambda one, _: max(_ends(one), default=None),
     ),
 )
 """Of a mechanism with `swing_at`, and a `swing` in degrees, None where the member turns fully."""
 
-F_COUPLER = Offer(
-    own_force(
-        "F_coupler",
-        "F_K",
-        "force",
-        "Force in the coupler, thrust positive",
-        called="force in the coupler",
-        after="M_out",
-    ),
+F_COUPLER = force_column(
+    "F_coupler",
+    "F_K",
+    "force",
+    "Force in the coupler, thrust positive",
     lambda one, angle: one.coupler_force_factor(angle),
-    force=lambda state: state.M_out,
+    lambda state: state.M_out,
+    after="M_out",
 )
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
 
@@ -387,21 +381,21 @@ NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")
 
 
 BLOCK_OFFERS = (
-    Offer(
-        own_motion("c_block", "c_b", "velocity", "Sliding speed of the crank-pin block along its slot"),
+    motion_column(
+        "c_block",
+        "c_b",
+        "velocity",
+        "Sliding speed of the crank-pin block along its slot",
         lambda one, angle: one.block_slope(angle),
         omega=1,
     ),
-    Offer(
-        own_force(
-            "F_pin",
-            "F_z",
-            "force",
-            "Force of the sliding block on the crank pin, positive in the direction of P",
-            called="force of the sliding block on the crank pin",
-        ),
+    force_column(
+        "F_pin",
+        "F_z",
+        "force",
+        "Force of the sliding block on the crank pin, positive in the direction of P",
         lambda one, angle: one.pin_force_factor(angle),
-        force=lambda state: state.along_rod,
+        lambda state: state.along_rod,
     ),
 )
 """Of a mechanism with `block_slope`, the speed of the block over ω in m, and `pin_force_factor`, its force over P."""

@@ -3,53 +3,45 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, field
-from kurbel.declared.unit_systems import show
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
-    SHAFT,
     SWING_OFFERS,
     SWING_VALUES,
+    TURNING,
     KeyOffer,
     Mechanism,
     Offer,
     Sketch,
     Turning,
-    finite,
     on_circle,
-    on_request,
+    requested_column,
 )
 from kurbel.numerics.arithmetic import bearing, sqrt
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity
 
 
-def _coupler(end: str, symbol: str, kind: str, text: str) -> Quantity:
-    id, plain = f"theta_coupler{end}", f"theta_K{end}"
-    return on_request(id, symbol, kind, f"{text} of the coupler", plain, after="theta_ddot")
-
-
-COUPLER_OFFERS = (
-    Offer(
-        _coupler("", "θ_K", "angle", "Angle, from the line crank pivot → rocker pivot,"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).degrees,
-    ),
-    Offer(
-        _coupler("_dot", "θ̇_K", "angular_velocity", "Angular velocity"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).slope,
-        omega=1,
-    ),
-    Offer(
-        _coupler("_ddot", "θ̈_K", "angular_acceleration", "Angular acceleration"),
-        lambda four_bar, angle: four_bar.coupler_at(angle).curvature,
-        omega=2,
-    ),
-)
+def _coupler(order: int) -> Offer:
+    end, mark, kind, name = TURNING[order]
+    text = (
+        f"{name}, from the line crank pivot → rocker pivot, of the coupler" if not order else f"{name} of the coupler"
+    )
+    return requested_column(
+        f"theta_coupler{end}",
+        f"θ{mark}_K",
+        kind,
+        text,
+        lambda one, angle: one.coupler_at(angle)[order],
+        "theta_ddot",
+        order,
+        f"theta_K{end}",
+    )
 
 
 def _transmission(end: str, size: str, degrees: float) -> KeyOffer:
@@ -73,43 +65,6 @@ class Closure(NamedTuple):
     foot: Number
 
 
-def closed_loop(crank: float, coupler: float, rocker: float, frame: float, angle: CrankAngle) -> Closure:
-    """Return the loop of four lengths in m closed at a crank angle, wherever its triangle closes.
-
-    With a, b, c over the frame, the diagonal p from the crank pin to the rocker's pivot has the square
-    w = 1 + a² − 2a cos φ, and
-
-        H² = (b + c + p)(b + c − p)(p + b − c)(p + c − b)/4     twice the area of coupler, rocker and p (Heron)
-        θ′ = [a sin φ E/(2H) + a(a − cos φ)]/w                  E = w + b² − c²: the triangle turns, and p
-        θ″ = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw)             G = b² + c² − w
-
-    Every difference is built from positive terms, so that a linkage that is nearly flat keeps its digits.
-    """
-    a, b, c = crank / frame, coupler / frame, rocker / frame
-    near, far = min(crank, frame), max(crank, frame)
-    flat, near_coupler, near_rocker = (
-        math.fsum(one) / frame
-        for one in (
-            (coupler, rocker, -crank, -frame),  # b + c − a − 1
-            (far, coupler, -near, -rocker),  # |1 − a| + b − c
-            (far, rocker, -near, -coupler),
-        )
-    )
-    span, unlike = (frame - crank) / frame, (coupler - rocker) / frame * (b + c)
-    w = span * span + 2 * a * angle.versine
-    p = sqrt(w)
-    lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
-    drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
-    H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
-    across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
-    sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
-    E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
-    slope = (across * E / (2 * H) + a * (angle.versine - span)) / w
-    triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
-    curvature = across * span * (1 + a) / (w * w) + triangle / (4 * H * w)
-    return Closure(sin, cos, slope, curvature, H, foot)
-
-
 class FourBar(Mechanism):
     """A crank that turns fully and through a coupler swings a rocker, or, where the frame is shortest, turns it too.
 
@@ -124,43 +79,29 @@ class FourBar(Mechanism):
     rocker: float = field("length", "Length of the rocker", "c", above=0, required=True)
     frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0, required=True)
 
-    name: ClassVar[str] = "four-bar"
-    slides: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (
+    name = "four-bar"
+    slides = False
+    OFFERS = (*SWING_OFFERS, *map(_coupler, range(3)), F_COUPLER)
+    KEY_OFFERS = (
         *SWING_VALUES,
         _transmission("min", "Smallest", 0.0),
         _transmission("max", "Largest", 180.0),
     )
-    far_pin: ClassVar[str] = "rocker_pin"
+    far_pin = "rocker_pin"
 
     def rules(self) -> Iterator[Rule]:
-        yield from finite(self, "crank", "coupler", "rocker", "frame")
         # among equals the crank comes first
         links = {"crank": self.crank, "frame": self.frame, "coupler": self.coupler, "rocker": self.rocker}
-        if not all(map(math.isfinite, links.values())):
-            return
         shortest, *others, longest = sorted(links, key=links.__getitem__)
         gap = math.fsum((*(links[name] for name in others), -links[shortest], -links[longest]))
         # lengths that were written in decimals meet a change point only within their rounding
-        rounding = 2 * math.ulp(links[longest])
-        if gap > rounding and shortest in ("crank", "frame"):
-            return
-        named = {name: f"{name} {show(links[name], 'length')}" for name in self.KEYS}
-        rest = [text for name, text in named.items() if name != longest]
-        ends = f"{named[shortest]} + {named[longest]}"
-        pair = " + ".join(one for one in rest if one != named[shortest])
-        if gap + 2 * links[shortest] <= 0:
-            message = f"the links do not meet: {named[longest]} is no shorter than {' + '.join(rest)}"
-        elif shortest not in ("crank", "frame"):
-            longer = f"{show(self.crank, 'length')} is longer than the {named[shortest]}"
-            message = f"{longer}; the crank or the frame must be the shortest link"
-        elif abs(gap) <= rounding:
-            flat = "the linkage folds flat once a turn and may go on either way from there (change point)"
-            message = f"{flat}: {ends} = {pair}"
-        else:
-            message = f"it cannot turn fully: {ends} is more than {pair} (Grashof)"
-        yield Rule("crank", True, message)
+        flat = gap <= 2 * math.ulp(links[longest])
+        numbers = links | {"ends": links[shortest] + links[longest], "pair": sum(links[name] for name in others)}
+        longer = "{crank} is not the shortest link, nor is the frame ({frame}): the crank cannot turn fully"
+        yield Rule("crank", shortest not in ("crank", "frame"), longer)
+        sums = f"{shortest} + {longest}, {{ends:length}}, must be less than {' + '.join(others)}, {{pair:length}}"
+        grashof = f"it cannot turn fully: {sums} (Grashof; where they are equal, it folds flat: a change point)"
+        yield Rule("crank", flat and shortest in ("crank", "frame"), grashof, numbers)
 
     @property
     def turns(self) -> bool:
@@ -175,8 +116,41 @@ class FourBar(Mechanism):
     has_dead_centres = quick_return
 
     def closed_at(self, angle: CrankAngle) -> Closure:
-        """Return the loop closed at a crank angle."""
-        return closed_loop(self.crank, self.coupler, self.rocker, self.frame, angle)
+        """Return the loop closed at a crank angle.
+
+        With a, b, c over the frame, the diagonal p from the crank pin to the rocker's pivot has the square
+        w = 1 + a² − 2a cos φ, and
+
+            H² = (b + c + p)(b + c − p)(p + b − c)(p + c − b)/4     twice the area of coupler, rocker and p (Heron)
+            θ′ = [a sin φ E/(2H) + a(a − cos φ)]/w                  E = w + b² − c²: the triangle turns, and p
+            θ″ = a sin φ (1 − a²)/w² + [w″E + w′²(1 − EG/(4H²) − E/w)]/(4Hw)             G = b² + c² − w
+
+        Every difference is built from positive terms, so that a linkage that is nearly flat keeps its digits.
+        """
+        crank, coupler, rocker, frame = self.crank, self.coupler, self.rocker, self.frame
+        a, b, c = crank / frame, coupler / frame, rocker / frame
+        near, far = min(crank, frame), max(crank, frame)
+        flat, near_coupler, near_rocker = (
+            math.fsum(one) / frame
+            for one in (
+                (coupler, rocker, -crank, -frame),  # b + c − a − 1
+                (far, coupler, -near, -rocker),  # |1 − a| + b − c
+                (far, rocker, -near, -coupler),
+            )
+        )
+        span, unlike = (frame - crank) / frame, (coupler - rocker) / frame * (b + c)
+        w = span * span + 2 * a * angle.versine
+        p = sqrt(w)
+        lift = 2 * a * angle.versine / (p + abs(span))  # p − |1 − a|
+        drop = 2 * a * angle.vercosine / (1 + a + p)  # 1 + a − p
+        H = sqrt((flat + drop) * (b + c + p)) * sqrt((near_coupler + lift) * (near_rocker + lift)) / 2
+        across, along, foot = a * angle.sin, span + a * angle.versine, (w - unlike) / 2
+        sin, cos = (foot * across + H * along) / (w * c), (H * across - foot * along) / (w * c)
+        E, G, rise, bend = w + unlike, b * b + c * c - w, 2 * across, 2 * a * angle.cos
+        slope = (across * E / (2 * H) + a * (angle.versine - span)) / w
+        triangle = bend * E + rise * rise * (1 - (E / (2 * H)) * (G / (2 * H)) - E / w)
+        curvature = across * span * (1 + a) / (w * w) + triangle / (4 * H * w)
+        return Closure(sin, cos, slope, curvature, H, foot)
 
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return θ in radians; where it turns fully, it runs on with φ."""
@@ -230,17 +204,11 @@ class FourBar(Mechanism):
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return crank, coupler and rocker."""
         loop, pivot = self.closed_at(angle), (self.frame, 0.0)
-        joints = {
-            SHAFT: (0.0, 0.0),
-            PIN: on_circle(self.crank, angle.cos, angle.sin),
-            "rocker pin": on_circle(self.rocker, loop.cos, loop.sin, pivot),
-            "pivot": pivot,
-        }
-        return Sketch(joints, ((SHAFT, PIN), (PIN, "rocker pin"), ("rocker pin", "pivot")), (SHAFT, "pivot"))
+        joints = {"rocker pin": on_circle(self.rocker, loop.cos, loop.sin, pivot), "pivot": pivot}
+        links = (PIN, "rocker pin"), ("rocker pin", "pivot")
+        return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("pivot",))
 
-    lacks: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),
-    )
+    lacks = (("inertia of coupler and rocker", "kurbel has no masses on a mechanism that only swings"),)
 
     def dead_centres(self) -> tuple[float, float]:
         """Return the crank angles of smallest and of largest θ: crank and coupler in line, stretched and folded.

@@ -1,46 +1,54 @@
 """Parallel crank (Parallelkurbeltrieb), R ch. 14 A: two equal cranks and a coupler as long as the frame."""
 
 import math
-from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import field
 from kurbel.mechanisms import (
     F_COUPLER,
     PIN,
-    SHAFT,
     SWING_OFFERS,
     SWING_VALUES,
     KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
     Turning,
-    finite,
+    motion_column,
     on_circle,
-    own_motion,
 )
 from kurbel.quantity import Quantity
 
 _POINT = "of every coupler point"
 COUPLER_OFFERS = (
-    Offer(
-        own_motion("x_coupler", "x_K", "length", f"Displacement {_POINT} along the frame"),
+    motion_column(
+        "x_coupler",
+        "x_K",
+        "length",
+        f"Displacement {_POINT} along the frame",
         lambda one, angle: -one.crank * angle.versine,
     ),
-    Offer(
-        own_motion("y_coupler", "y_K", "length", f"Displacement {_POINT} across the frame"),
+    motion_column(
+        "y_coupler",
+        "y_K",
+        "length",
+        f"Displacement {_POINT} across the frame",
         lambda one, angle: one.crank * angle.sin,
     ),
-    Offer(
-        own_motion("bx_coupler", "b_Kx", "acceleration", f"Acceleration {_POINT} along the frame"),
+    motion_column(
+        "bx_coupler",
+        "b_Kx",
+        "acceleration",
+        f"Acceleration {_POINT} along the frame",
         lambda one, angle: -one.crank * angle.cos,
         omega=2,
     ),
-    Offer(
-        own_motion("by_coupler", "b_Ky", "acceleration", f"Acceleration {_POINT} across the frame"),
+    motion_column(
+        "by_coupler",
+        "b_Ky",
+        "acceleration",
+        f"Acceleration {_POINT} across the frame",
         lambda one, angle: -one.crank * angle.sin,
         omega=2,
     ),
@@ -93,20 +101,17 @@ class ParallelCrank(Mechanism):
     frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0, required=True)
     coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
 
-    name: ClassVar[str] = "parallel-crank"
-    slides: ClassVar[bool] = False
-    turns: ClassVar[bool] = True
-    stroke: ClassVar[float] = math.tau
-    swing: ClassVar[None] = None
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, *COUPLER_VALUES)
-    notes: ClassVar[tuple[str, ...]] = (
+    name = "parallel-crank"
+    slides = False
+    turns = True
+    stroke = math.tau
+    swing = None
+    OFFERS = (*SWING_OFFERS, *COUPLER_OFFERS, F_COUPLER)
+    KEY_OFFERS = (*SWING_VALUES, *COUPLER_VALUES)
+    notes = (
         "At 0 and 180 deg cranks and coupler lie in one line: one pair alone passes on no torque there and leaves "
         "the motion undetermined; a second pair of cranks at 90 deg to the first carries it through.",
     )
-
-    def rules(self) -> Iterator[Rule]:
-        return finite(self, "crank", "frame")
 
     def dead_centres(self) -> tuple[float, float]:
         """Return 0° and 180°, where cranks and coupler lie in one line and the motion is undetermined."""
@@ -130,9 +135,10 @@ class ParallelCrank(Mechanism):
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return both cranks and the coupler."""
-        pin = on_circle(self.crank, angle.cos, angle.sin)
-        joints = {SHAFT: (0.0, 0.0), PIN: pin, "second pin": (pin[0] + self.frame, pin[1]), "second": (self.frame, 0.0)}
-        return Sketch(joints, ((SHAFT, PIN), (PIN, "second pin"), ("second pin", "second")), (SHAFT, "second"))
+        second = self.frame, 0.0
+        joints = {"second": second, "second pin": on_circle(self.crank, angle.cos, angle.sin, second)}
+        links = (PIN, "second pin"), ("second pin", "second")
+        return Sketch.of_crank(self.crank, angle, joints, *links, fixed=("second",))
 
     def coupler_force_factor(self, angle: CrankAngle) -> Number:
         """Return the coupler's force over the torque it passes on, sin φ/R in 1/m, with a second pair at 90°.

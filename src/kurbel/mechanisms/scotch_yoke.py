@@ -1,34 +1,29 @@
 """Scotch yoke (Kurbelschleife), R p. 614: the slider-crank with an infinite rod, its block sliding across the yoke."""
 
-from collections.abc import Iterator
-from typing import ClassVar
-
 import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
+from kurbel.declared.record import field
 from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
-    KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
-    finite,
-    own_force,
+    force_column,
     pin_diameter,
     pin_length,
     pin_pressure,
 )
 from kurbel.mechanisms.slider_crank import crank_field, stroke_instead, yoke_sketch
 
-_N_PAIR = own_force(
+_N_PAIR = force_column(
     "N_pair",
     "N_2",
     "force",
     "Force on each of the two guides of a yoke, in opposite directions",
-    called="force on each of the two guides of a yoke",
+    lambda yoke, angle: yoke.guide_pair_factor(angle),
+    lambda state: state.along_rod,
 )
 
 
@@ -53,21 +48,15 @@ class ScotchYoke(Mechanism):
     pin_diameter: float | None = pin_diameter()
     pin_length: float | None = pin_length()
 
-    name: ClassVar[str] = "scotch-yoke"
-    known_across: ClassVar[bool] = True
-    OFFERS: ClassVar[tuple[Offer, ...]] = (
-        *BLOCK_OFFERS,
-        Offer(_N_PAIR, lambda yoke, angle: yoke.guide_pair_factor(angle), force=lambda state: state.along_rod),
-    )
+    name = "scotch-yoke"
+    known_across = True
+    OFFERS = (*BLOCK_OFFERS, _N_PAIR)
     # R p. 615: up to 200 kgf/cm²
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (pin_pressure(bound=200 * 98066.5),)
+    KEY_OFFERS = (pin_pressure(bound=200 * 98066.5),)
 
     def sketch(self, angle: CrankAngle) -> Sketch:
         """Return the crank with its block in the yoke."""
         return yoke_sketch(self.crank, angle)
-
-    def rules(self) -> Iterator[Rule]:
-        yield from finite(self, "crank", "guide_length", "pin_diameter", "pin_length")
 
     @property
     def stroke(self) -> float:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, Values, alternative, field
-from kurbel.mechanisms import PIN, SHAFT, Mechanism, Offer, Sketch, Turning, on_circle, on_request
+from kurbel.mechanisms import PIN, Mechanism, Offer, Sketch, Turning, requested_column
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
 _INFINITE = {"infinite": math.inf}
@@ -33,24 +33,29 @@ def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Numb
     def factor(one: Any, angle: CrankAngle) -> Number | None:
         return one.crank * formula(angle.sin, angle.cos, one.lam) if one.straight else None
 
-    return Offer(on_request(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", after=id), factor, omega)
+    return requested_column(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega)
 
 
-_DISPLACEMENT = "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)"
-_VELOCITY = "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)"
-_ACCELERATION = "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)"
-ROD_OFFERS = (
-    _book("x", "length", _DISPLACEMENT, formulas.first_order_displacement),
-    _book("c", "velocity", _VELOCITY, formulas.first_order_velocity, omega=1),
-    _book("b", "acceleration", _ACCELERATION, formulas.first_order_acceleration, omega=2),
-    Offer(
-        on_request("psi_dot", "ψ̇", "angular_velocity", "Angular velocity of the rod, dψ/dt", after="b"),
+ROD_OFFERS: tuple[Offer, ...] = (
+    _book("x", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", formulas.first_order_displacement),
+    _book("c", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", formulas.first_order_velocity, omega=1),
+    _book("b", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", formulas.first_order_acceleration, 2),
+    requested_column(
+        "psi_dot",
+        "ψ̇",
+        "angular_velocity",
+        "Angular velocity of the rod, dψ/dt",
         lambda one, angle: -one.coupler_at(angle).slope,
+        "b",
         omega=1,
     ),
-    Offer(
-        on_request("psi_ddot", "ψ̈", "angular_acceleration", "Angular acceleration of the rod", after="b"),
+    requested_column(
+        "psi_ddot",
+        "ψ̈",
+        "angular_acceleration",
+        "Angular acceleration of the rod",
         lambda one, angle: -one.coupler_at(angle).curvature,
+        "b",
         omega=2,
     ),
 )
@@ -93,33 +98,26 @@ class SliderCrank(Mechanism):
         default=0.0,
     )
 
-    name: ClassVar[str] = "slider-crank"
-    has_rod: ClassVar[bool] = True
-    OFFERS: ClassVar[tuple[Offer, ...]] = ROD_OFFERS
+    name = "slider-crank"
+    has_rod = True
+    OFFERS = ROD_OFFERS
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
-        stroke, rod, k, offset = map(given.get, ("stroke", "rod", "rod_ratio", "offset"))
-        if stroke is None or offset is None:
-            return
-        numbers = {"rod": rod, "offset": offset}
-        if rod is not None:
-            short = np.not_equal(offset, 0) & ((rod - stroke / 2) * (rod + stroke / 2) <= offset * offset)
-            yield Rule("rod", short, "{rod:length} is too short for this stroke and offset", numbers)
-        elif k is not None:
-            square = k * k
-            large = (square - 1) ** 2 < 4 * square * (2 * offset / stroke) ** 2
-            yield Rule("offset", large, "{offset:length} is too large for this stroke and rod_ratio", numbers)
+        rod = given.get("rod") if given.get("rod") is not None else given.get("rod_ratio")
+        stroke, offset = given.get("stroke"), given.get("offset")
+        if not (stroke is None or offset is None or rod is None):
+            crank, known = _crank_of_stroke(given), stroke + offset + rod
+            remedy = (
+                "no crank has this stroke with {offset:length} and so short a rod; give a longer one, or less offset"
+            )
+            yield Rule("offset", (crank != crank) & (known == known), remedy, given)
 
     def rules(self) -> Iterator[Rule]:
         crank, rod, offset = self.crank, self.rod, abs(self.offset)
-        apart = (np.isfinite(crank) & (rod > 0) & np.isfinite(offset)) | np.isnan(crank + rod + offset)
-        yield Rule("crank", ~apart, "crank and rod must be positive, crank and offset finite")
-        if not np.any(apart):
-            return
         # rounding: decimal lengths with L = R + |e| exactly may differ by this as floats; without an offset they do not
         rounding = where(self.offset == 0, 0.0, ulp(rod) + ulp(offset) / 2)
-        short = apart & np.isfinite(rod) & (total(rod, -crank, -offset) <= rounding)
+        short = np.isfinite(rod) & (total(rod, -crank, -offset) <= rounding)
         numbers = {"reach": offset}
         reach = "{rod} does not reach: it must be longer than crank and offset together ({crank} + {reach:length})"
         yield Rule("rod", short & np.not_equal(offset, 0), reach, numbers)
@@ -191,14 +189,11 @@ class SliderCrank(Mechanism):
         if math.isinf(self.rod):
             return yoke_sketch(self.crank, angle)
         far = self.rod * self._reaches[0]
-        return Sketch(
-            {
-                SHAFT: (0.0, 0.0),
-                PIN: on_circle(self.crank, angle.cos, angle.sin),
-                "crosshead": (far - self.coordinate(angle), self.offset),
-            },
-            ((SHAFT, PIN), (PIN, "crosshead")),
-            (SHAFT,),
+        return Sketch.of_crank(
+            self.crank,
+            angle,
+            {"crosshead": (far - self.coordinate(angle), self.offset)},
+            (PIN, "crosshead"),
             guides=(((far - self.stroke, self.offset), (far, self.offset)),),
             output="crosshead",
             toward=(-1.0, 0.0),
@@ -207,37 +202,25 @@ class SliderCrank(Mechanism):
 
     @cached_property
     def _start(self) -> CrankAngle:
-        """The inner dead centre, with the rod there."""
-        start = CrankAngle.of(self.dead_centres()[0])
-        return start._replace(rod=self.rod_angle(start))
+        """The inner dead centre."""
+        return CrankAngle.of(self.dead_centres()[0])
+
+    @cached_property
+    def _start_rod(self) -> tuple[Number, Number]:
+        """The rod there."""
+        return self.rod_angle(self._start)
 
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0.
 
-        With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
+        As R [cos φ_i − cos φ + (sin φ − sin φ_i)(sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)], of which no term is as long as L.
         """
-        if self.straight:  # (1 − cos φ) + (1 − cos ψ)/λ, as a sum of positive terms
-            beyond = self.lam * (angle.sin * angle.sin) / (1 + self.rod_angle(angle)[1])
-            return self.crank * (angle.versine + beyond)
-        start = self._start
-        sin_start, cos_start = self.rod_angle(start)
         sin_psi, cos_psi = self.rod_angle(angle)
-        # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
-        sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
-        large = sqrt((1 + magnitude(cos)) / 2)
-        small = sin / (2 * large)
-        half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
-        middle_sin = start.sin * half_cos + start.cos * half_sin
-        middle_cos = start.cos * half_cos - start.sin * half_sin
-        bracket = middle_sin + middle_cos * (sin_psi + sin_start) / (cos_psi + cos_start)
-        return self.crank * (2 * half_sin * bracket)
-
-    def remaining(self, angle: CrankAngle) -> Number:
-        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), without cancellation."""
-        if not self.straight:
-            return super().remaining(angle)
-        lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
-        return self.crank * (angle.vercosine * (1 - lead))
+        if self.straight:
+            return self.crank * (angle.versine + self.lam * (angle.sin * angle.sin) / (1 + cos_psi))
+        start, (sin_start, cos_start) = self._start, self._start_rod
+        lead = (sin_psi + sin_start) / (cos_psi + cos_start)
+        return self.crank * (start.cos - angle.cos + (angle.sin - start.sin) * lead)
 
     def _lead(self, angle: CrankAngle, cos_psi: Number) -> Number:
         """Return cos ψ + λ cos φ without cancellation, for e = 0; for cos φ < 0 as (1 − λ²)/(cos ψ − λ cos φ)."""
@@ -290,19 +273,13 @@ class SliderCrank(Mechanism):
 
 def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     """Return a crank whose block slides in an upright yoke, and the rod that this moves."""
-    x, y = on_circle(crank, angle.cos, angle.sin)
-    joints = {
-        SHAFT: (0.0, 0.0),
-        PIN: (x, y),
-        "top": (x, 1.2 * crank),
-        "bottom": (x, -1.2 * crank),
-        "yoke": (x, 0.0),
-        "rod": (x + 2 * crank, 0.0),
-    }
-    return Sketch(
-        joints,
-        ((SHAFT, PIN), ("bottom", "top"), ("yoke", "rod")),
-        (SHAFT,),
+    x = crank * angle.cos
+    return Sketch.of_crank(
+        crank,
+        angle,
+        {"top": (x, 1.2 * crank), "bottom": (x, -1.2 * crank), "yoke": (x, 0.0), "rod": (x + 2 * crank, 0.0)},
+        ("bottom", "top"),
+        ("yoke", "rod"),
         blocks=((PIN, ("bottom", "top")),),
         guides=(((crank, 0.0), (3 * crank, 0.0)),),
         output="rod",
@@ -313,14 +290,15 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
 
 def _crank_of_stroke(given: Values) -> Any:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
-    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset", 0.0)
-    length: Any = rod if k is None else k
+    half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset") or 0.0
+    length: Any = k if rod is None else rod
     straight = np.equal(offset, 0) | np.isinf(length)
     if np.all(straight):
         return half
     with np.errstate(all="ignore"):
         if k is None:
-            share = np.sqrt(1 - offset * offset / ((rod - half) * (rod + half)))
+            between = np.asarray((rod - half) * (rod + half))
+            share = np.sqrt(1 - offset * offset / np.where(between > 0, between, 0.0))
         else:
             # k² u² − (1 + k²) u + (ε² + 1) = 0 for u = (R/half)², ε = e/half; the root that is 1 for ε = 0
             square = k * k

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -13,27 +13,23 @@ from kurbel.mechanisms import (
     BLOCK_OFFERS,
     NO_PIN,
     PIN,
-    SHAFT,
     SWING_OFFERS,
     SWING_VALUES,
-    KeyOffer,
     Mechanism,
-    Offer,
     Sketch,
     Turning,
-    finite,
     on_circle,
     pin_diameter,
     pin_length,
     pin_pressure,
 )
-from kurbel.numerics.arithmetic import bearing, sqrt, where
+from kurbel.numerics.arithmetic import bearing, sqrt
 
 
 class Lever(NamedTuple):
     """The lever at a crank angle: (sin θ, cos θ), θ′ and θ″.
 
-    reach: distance of the pin from the pivot over the longer of r and e.
+    reach: distance of the pin from the pivot in m.
     """
 
     sin: Number
@@ -101,42 +97,35 @@ class SlottedLever(Mechanism):
     pin_diameter: float | None = pin_diameter()
     pin_length: float | None = pin_length()
 
-    name: ClassVar[str] = "slotted-lever"
-    OFFERS: ClassVar[tuple[Offer, ...]] = (*SWING_OFFERS, *BLOCK_OFFERS)
-    KEY_OFFERS: ClassVar[tuple[KeyOffer, ...]] = (*SWING_VALUES, pin_pressure())
-    quick_return: ClassVar[bool] = True
+    name = "slotted-lever"
+    OFFERS = (*SWING_OFFERS, *BLOCK_OFFERS)
+    KEY_OFFERS = (*SWING_VALUES, pin_pressure())
+    quick_return = True
 
     def rules(self) -> Iterator[Rule]:
         forked = math.isinf(self.link)
-        yield from finite(self, "crank", "frame", "lever")
-        hanging = not (self.slides or forked)
-        yield Rule("link", hanging, "needs the end of the lever; give 'lever' too")
-        yield from finite(self, "pin_diameter", "pin_length")
+        yield Rule("link", not (self.slides or forked), "needs the end of the lever; give 'lever' too")
         same = "{frame} is also the crank: the pin would pass through the lever's pivot"
         yield Rule("frame", self.crank == self.frame, same)
         fork = forked and self.ram_height is not None
         yield Rule("ram_height", fork, "has no meaning for a fork head; give 'link' with it")
-        yield from finite(self, "ram_height")
-        lengths = (self.crank, self.frame, self.lever or 0.0, self.ram_height or 0.0)
-        if not hanging and all(map(math.isfinite, lengths)) and self.crank != self.frame:
-            fault = "" if forked else self._link_fault()
-            yield Rule("link", bool(fault), f"{{link}} {fault}")
+        if self.slides and not forked and self.crank != self.frame:
+            yield from self._rules_of_link()
 
-    def _link_fault(self) -> str:
-        """Return why the link cannot follow the lever, or an empty text."""
+    def _rules_of_link(self) -> Iterator[Rule]:
         end, height = self._end, self._height
         if self.rotates:
-            arms = f"{show(end, 'length')} + {show(abs(height), 'length')}"
-            turning = "as the lever turns fully it must be longer than lever and ram_height together"
-            reaches = math.fsum((self.link, -end, -abs(height))) > 0
-            return "" if reaches else f"does not reach: {turning} ({arms})"
-        farthest = max(abs(height - end), abs(height - end * self._kappa[1]))
-        if self.link <= farthest:
-            ram, least = show(height, "length"), show(farthest, "length")
-            return f"does not reach the ram at {ram}; it must be longer than {least}"
-        if min(self._ram(sin, cos).lead for sin, cos in self._limits) <= 0:
-            return "gets into line with the lever within its swing; give a longer link or another ram_height"
-        return ""
+            least = end + abs(height)
+            turning = "as the lever turns fully it must be longer than lever and ram_height together ({least:length})"
+            yield Rule("link", self.link <= least, f"{{link}} does not reach: {turning}", {"least": least})
+            return
+        least = max(abs(height - end), abs(height - end * self._kappa[1]))
+        numbers = {"ram": height, "least": least}
+        reach = "{link} does not reach the ram at {ram:length}; it must be longer than {least:length}"
+        yield Rule("link", self.link <= least, reach, numbers)
+        in_line = self.link > least and min(self._ram(sin, cos).lead for sin, cos in self._limits) <= 0
+        remedy = "give a longer link or another ram_height"
+        yield Rule("link", in_line, f"{{link}} gets into line with the lever within its swing; {remedy}")
 
     # what it is, by its lengths
 
@@ -160,17 +149,15 @@ class SlottedLever(Mechanism):
         """R_l in m, where there is a ram."""
         return self.lever or 0.0
 
-    @cached_property
-    def _shares(self) -> tuple[float, float, float]:
-        """r, e and e − r, over the longer of r and e."""
-        longer = max(self.crank, self.frame)
-        return self.crank / longer, self.frame / longer, (self.frame - self.crank) / longer
+    @property
+    def _gap(self) -> float:
+        return self.frame - self.crank
 
     @cached_property
     def _kappa(self) -> tuple[float, float]:
         """κ, the shorter of r and e over the longer, and √(1 − κ²)."""
-        crank, frame, gap = self._shares
-        return min(crank, frame), math.sqrt(abs(gap) * (crank + frame))
+        shorter, longer = sorted((self.crank, self.frame))
+        return shorter / longer, math.sqrt((longer - shorter) / longer * (1 + shorter / longer))
 
     @cached_property
     def _height(self) -> float:
@@ -181,15 +168,16 @@ class SlottedLever(Mechanism):
     # the lever, and the ram that it drives
 
     def _lever_at(self, angle: CrankAngle) -> Lever:
-        """Return θ′ = r(r + e cos φ)/ρ², θ″ = −r e (e² − r²) sin φ/ρ⁴ and the rest of the lever at a crank angle."""
-        crank, frame, gap = self._shares
+        """Return θ′ = r(r + e cos φ)/ρ², θ″ = −r e (e² − r²) sin φ/ρ⁴ and the rest of the lever at a crank angle.
+
+        Sums that may cancel are those of e − r, as they were given, and 1 + cos φ.
+        """
+        crank, frame, gap = self.crank, self.frame, self._gap
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
-        square = reach * reach
-        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (square * square)
-        cos = _sum_along(frame, crank, gap, angle) / reach
-        return Lever(
-            crank * angle.sin / reach, cos, reach, crank * _sum_along(crank, frame, -gap, angle) / square, bend
-        )
+        along_crank = (frame * angle.vercosine - gap) / reach  # (r + e cos φ)/ρ
+        bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (reach * reach * reach * reach)
+        sin, cos = crank * angle.sin / reach, (gap + crank * angle.vercosine) / reach
+        return Lever(sin, cos, reach, crank * along_crank / reach, bend)
 
     def _ram(self, sin: Number, cos: Number) -> Ram:
         """Return the ram where the lever is at (sin θ, cos θ), by the link's angle γ, sin γ = (h − cos θ)/l.
@@ -238,9 +226,9 @@ class SlottedLever(Mechanism):
 
     def swing_at(self, angle: CrankAngle) -> Turning:
         """Return how the lever turns; the rotating lever's θ runs on with φ from turn to turn."""
-        (crank, frame, _), lever = self._shares, self._lever_at(angle)
+        lever, frame = self._lever_at(angle), self.frame
         if self.rotates:
-            degrees = angle.degrees - bearing(frame * angle.sin, crank + frame * angle.cos)
+            degrees = angle.degrees - bearing(frame * angle.sin, self.crank + frame * angle.cos)
         else:
             degrees = bearing(lever.sin, lever.cos)
         return Turning(degrees, lever.slope, lever.curvature)
@@ -291,19 +279,19 @@ class SlottedLever(Mechanism):
 
     def block_slope(self, angle: CrankAngle) -> Number:
         """Return dρ/dφ = −r e sin φ/ρ in m: times ω, the speed at which the block slides along the lever."""
-        return -self.crank * self._shares[1] * angle.sin / self._lever_at(angle).reach
+        return -self.crank * self.frame * angle.sin / self._lever_at(angle).reach
 
     def pin_force_factor(self, angle: CrankAngle) -> Number | None:
         """Return the force on the crank pin, square to the lever, over the force P on the ram: (dx/dθ)/ρ."""
         if not self.slides:
             return None
         lever = self._lever_at(angle)
-        return self._end / max(self.crank, self.frame) * self._ram(lever.sin, lever.cos).lead / lever.reach
+        return self._end * self._ram(lever.sin, lever.cos).lead / lever.reach
 
     def radial(self, angle: CrankAngle) -> Number | None:
         """Return D/P = −(force on the pin over P) (e sin φ)/ρ: the part of that force toward the shaft."""
         force = self.pin_force_factor(angle)
-        return None if force is None else -force * (self._shares[1] * angle.sin / self._lever_at(angle).reach)
+        return None if force is None else -force * (self.frame * angle.sin / self._lever_at(angle).reach)
 
     # what readers see of it
 
@@ -311,18 +299,25 @@ class SlottedLever(Mechanism):
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
         lever, pivot = self._lever_at(angle), (-self.frame, 0.0)
         length = 1.1 * (self.crank + self.frame) if self.lever is None else self.lever
-        end = on_circle(length, lever.cos, lever.sin, pivot)
-        joints = {SHAFT: (0.0, 0.0), PIN: on_circle(self.crank, angle.cos, angle.sin), "pivot": pivot, "end": end}
-        links: tuple[tuple[str, ...], ...] = ((SHAFT, PIN), ("pivot", "end"))
-        blocks, fixed = ((PIN, ("pivot", "end")),), (SHAFT, "pivot")
+        joints = {"pivot": pivot, "end": on_circle(length, lever.cos, lever.sin, pivot)}
+        blocks = ((PIN, ("pivot", "end")),)
         if not self.slides:
-            return Sketch(joints, links, fixed, blocks)
+            return Sketch.of_crank(self.crank, angle, joints, ("pivot", "end"), fixed=("pivot",), blocks=blocks)
         forked = math.isinf(self.link)
         line = pivot[0] + (length if forked else self._height)
         middle = 0.0 if forked else length * sum(self._places) / 2 + self.link
-        joints["ram"] = (line, middle + self.coordinate(angle))
-        guide = ((line, middle - self.stroke / 2), (line, middle + self.stroke / 2))
-        return Sketch(joints, (*links, ("end", "ram")), fixed, blocks, (guide,), "ram", (0.0, 1.0))
+        return Sketch.of_crank(
+            self.crank,
+            angle,
+            {**joints, "ram": (line, middle + self.coordinate(angle))},
+            ("pivot", "end"),
+            ("end", "ram"),
+            fixed=("pivot",),
+            blocks=blocks,
+            guides=(((line, middle - self.stroke / 2), (line, middle + self.stroke / 2)),),
+            output="ram",
+            toward=(0.0, 1.0),
+        )
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:
@@ -351,8 +346,3 @@ class SlottedLever(Mechanism):
                 f"{show(self.lever, 'length')}: the slot must go on beyond the joint with the ram."
             )
         return tuple(found)
-
-
-def _sum_along(base: float, arm: float, gap: float, angle: CrankAngle) -> Number:
-    """Return base + arm cos φ; where that is a difference, from gap = base − arm, as they were given."""
-    return where(angle.cos >= -0.5, base + arm * angle.cos, gap + arm * angle.vercosine)

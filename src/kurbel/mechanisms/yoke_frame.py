@@ -5,57 +5,48 @@ slider-crank; the side force N of the rod finds no guide and bends the piston ro
 """
 
 import math
-from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import Any
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, field
-from kurbel.mechanisms import Offer, finite, own_force
+from kurbel.declared.record import field
+from kurbel.mechanisms import Offer, force_column
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.arithmetic import some
 
-_M_BEND = own_force(
-    "M_bend",
-    "M_b",
-    "torque",
-    "Bending moment of N on the piston rod at its stuffing box",
-    called="bending moment of N on the piston rod",
-)
 
-
-_BENDING = own_force(
-    "sigma_bend", "σ_b", "stress", "Bending stress of the piston rod by M_b", called="bending stress of the piston rod"
-)
-_PUSHED = own_force(
-    "sigma_rod",
-    "σ_KS",
-    "stress",
-    "Stress of the piston rod by P and M_b on the side that M_b > 0 compresses, compression positive",
-    called="stress of the piston rod on the side that M_b > 0 compresses",
-)
-_PULLED = own_force(
-    "sigma_rod_other",
-    "σ_KS2",
-    "stress",
-    "The same on the other side",
-    called="stress of the piston rod on the other side",
-)
-
-
-def _of_rod(state: Any, force: Any, factor: float, power: int) -> Any:
-    """Return factor · force/(π d^power) by the piston rod at the crank end; None where there is none."""
-    pistons = state.drive.cylinder.pistons
-    if force is None or not pistons or not some(pistons[0].crank_end_rod != 0):
+def _stress(state: Any, along: float, across: float) -> Any:
+    """Return along · P/A + across · M_b/W of the piston rod at the crank end; None without it, force or gland."""
+    pistons, arm = state.drive.cylinder.pistons, state.mechanism.bending_arm(state.posed)
+    if state.N is None or arm is None or not pistons or not some(pistons[0].crank_end_rod != 0):
         return None
-    return force * (factor / math.pi) / pistons[0].crank_end_rod ** power
+    diameter = pistons[0].crank_end_rod
+    return (4 * along * state.P + 32 * across * state.N * arm / diameter) / (math.pi * diameter * diameter)
 
 
-def _fibre(state: Any, side: float) -> Any:
-    """Return P/A + M_b/W on one side of the piston rod, or with the other sign on the other one."""
-    arm = state.mechanism.bending_arm(state.posed)
-    along, across = _of_rod(state, state.P, 4, 2), _of_rod(state, state.N, 32, 3)
-    return None if along is None or across is None or arm is None else along + across * arm * side
+def _stress_column(id: str, symbol: str, text: str, along: float, across: float) -> Offer:
+    return force_column(id, symbol, "stress", text, lambda *_: 1.0, lambda state: _stress(state, along, across))
+
+
+BENDING_OFFERS = (
+    force_column(
+        "M_bend",
+        "M_b",
+        "torque",
+        "Bending moment of N on the piston rod, at its stuffing box",
+        lambda drive, angle: drive.bending_arm(angle),
+        lambda state: state.N,
+    ),
+    _stress_column("sigma_bend", "σ_b", "Bending stress of the piston rod, by M_b", 0.0, 1.0),
+    _stress_column(
+        "sigma_rod",
+        "σ_KS",
+        "Stress of the piston rod on the side that M_b > 0 compresses, by P and M_b, compression positive",
+        1.0,
+        1.0,
+    ),
+    _stress_column("sigma_rod_other", "σ_KS2", "Stress of the piston rod on the other side, by P and M_b", 1.0, -1.0),
+)
 
 
 class YokeFrame(SliderCrank):
@@ -73,24 +64,10 @@ class YokeFrame(SliderCrank):
         absent="no bending of the piston rod",
     )
 
-    name: ClassVar[str] = "yoke-frame"
-    guided: ClassVar[bool] = False
-    OFFERS: ClassVar[tuple[Offer, ...]] = (
-        *SliderCrank.OFFERS,
-        Offer(_M_BEND, lambda drive, angle: drive.bending_arm(angle), force=lambda state: state.N),
-        Offer(
-            _BENDING, lambda drive, angle: drive.bending_arm(angle), force=lambda state: _of_rod(state, state.N, 32, 3)
-        ),
-        Offer(_PUSHED, lambda drive, angle: 1.0 + 0 * angle.sin, force=lambda state: _fibre(state, 1.0)),
-        Offer(_PULLED, lambda drive, angle: 1.0 + 0 * angle.sin, force=lambda state: _fibre(state, -1.0)),
-    )
-    notes: ClassVar[tuple[str, ...]] = (
-        "There is no crosshead guide: the side force N bends the piston rod (R p. 614).",
-    )
-
-    def rules(self) -> Iterator[Rule]:
-        yield from SliderCrank.rules(self)
-        yield from finite(self, "gland")
+    name = "yoke-frame"
+    guided = False
+    OFFERS = (*SliderCrank.OFFERS, *BENDING_OFFERS)
+    notes = ("There is no crosshead guide: the side force N bends the piston rod (R p. 614).",)
 
     def bending_arm(self, angle: CrankAngle) -> Number | None:
         """Return l_g + x in m, on which N bends the piston rod at the stuffing box; None where `gland` is not given.

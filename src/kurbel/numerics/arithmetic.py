@@ -18,7 +18,7 @@ def sqrt(value: N) -> N:
     if isinstance(value, (float, int)):
         return math.sqrt(value)
     if hasattr(value, "sqrt"):
-        return value.sqrt()  # type: ignore[no-any-return]
+        return value.sqrt()
     return np.sqrt(value)
 
 

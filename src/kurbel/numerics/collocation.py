@@ -110,7 +110,7 @@ class Periodic(NamedTuple):
     def samples(self) -> Array:
         """y at the Lobatto nodes of the pieces, (m, nodes, pieces); 0 of machines that have no solution."""
         y = np.where(self.pieces.of(self.failed), 0.0, self.y)
-        return np.asarray(radau(len(self.pieces.rule.nodes)).to_lobatto @ y)
+        return radau(len(self.pieces.rule.nodes)).to_lobatto @ y
 
     def refuse(self) -> None:
         """Raise Unsettled where the only machine has no solution."""
@@ -136,7 +136,7 @@ class Periodic(NamedTuple):
             whole = gain @ whole
             largest = np.maximum(np.abs(whole).max(axis=(1, 2)), 1e-300)
             whole, size = whole / largest[:, None, None], size + np.log(largest)
-        return np.asarray(size + np.log(np.maximum(np.abs(np.linalg.eigvals(whole)).max(axis=-1), 5e-324)))
+        return size + np.log(np.maximum(np.abs(np.linalg.eigvals(whole)).max(axis=-1), 5e-324))
 
 
 def periodic(equation: Equation, pieces: Pieces) -> Periodic:
@@ -297,7 +297,7 @@ class _System:
 
         def size_of(jump: Array, lack: Array, _: Array) -> Array:
             squares = np.square(jump).sum(axis=0) + np.square(lack).sum(axis=(0, 1))
-            return np.asarray(np.sqrt(np.bincount(of, squares, minlength=pieces.count)))
+            return np.sqrt(np.bincount(of, squares, minlength=pieces.count))
 
         lacking = self.lacking(y)
         for _ in range(100):
@@ -363,7 +363,7 @@ def _paired(gain: Array, more: Array) -> Array:
     count, size = more.shape[1:]
     if count == 1:
         closed = np.linalg.pinv(np.eye(size) - gain[:, 0], rcond=_OPEN)
-        return np.asarray(closed @ more[:, 0, :, None])[:, None, :, 0]
+        return (closed @ more[:, 0, :, None])[:, None, :, 0]
     if count % 2:  # a piece on which nothing changes
         unit = np.broadcast_to(np.eye(size), gain[:, :1].shape)
         gain, more = np.concatenate((gain, unit), axis=1), np.concatenate((more, 0 * more[:, :1]), axis=1)

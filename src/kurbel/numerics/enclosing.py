@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property, lru_cache
-from itertools import combinations
+from itertools import combinations, combinations_with_replacement
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,9 +50,8 @@ class Enclosing(NamedTuple):
 @lru_cache
 def _choices(count: int) -> Indices:
     """Return which points may carry a circle round so many: one, as (i, i, i), two, as (i, j, j), or three."""
-    alone, pairs = ([(i, i, i) for i in range(count)], [(i, j, j) for i, j in combinations(range(count), 2)])
-    columns = zip(*alone, *pairs, *combinations(range(count), 3))
-    return np.array([*columns], dtype=np.intp)
+    few = [(i, j, j) for i, j in combinations_with_replacement(range(count), 2)]
+    return np.array([*few, *combinations(range(count), 3)], dtype=np.intp).T
 
 
 def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
@@ -68,10 +67,10 @@ def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
     (a, b, c), (more_a, more_b, more_c) = points[choices], more[choices]
     u, v = b - a, c - a
     p, q = np.abs(u) ** 2 + (more_b - more_a), np.abs(v) ** 2 + (more_c - more_a)
-    alone, two = ((choices[i] == choices[2])[:, None] for i in (0, 1))
+    two = (choices[1] == choices[2])[:, None]
     with np.errstate(all="ignore"):
         area = (u.conj() * v).imag
-        along = np.where(alone, 0.0, p / (2 * np.abs(u) ** 2))
+        along = p / np.where(u == 0, np.inf, 2 * np.abs(u) ** 2)
         w = np.where(two, along * u, (p * v - q * u) / (2j * area))
         of_b = np.where(two, along, (w.conj() * v).imag / area)
         of_c = np.where(two, 0.0, (u.conj() * w).imag / area)
@@ -93,10 +92,9 @@ class ClosedCurve:
     def __init__(self, waves: ComplexArray) -> None:
         self.waves, self.numbers = waves, np.arange(len(waves)) - len(waves) // 2
 
-    def of(self, number: int) -> Any:
+    def of(self, number: int) -> ComplexArray:
         """Return the amplitudes of a wave (machines,), 0 of one that there is not."""
-        index = number + len(self.waves) // 2
-        return self.waves[index] if 0 <= index < len(self.waves) else np.zeros(self.waves.shape[1])
+        return self.waves[self.numbers == number].sum(axis=0)
 
     def plus(self, number: int, amplitude: Any) -> ClosedCurve:
         """Return the sum of this curve and one more wave of a number that it has."""
@@ -125,7 +123,7 @@ class ClosedCurve:
         count = 1 << math.ceil(math.log2(max(_PER_WAVE * shortest, 2 * len(self.waves))))
         spectrum = np.zeros((count, self.waves.shape[1]), complex)
         spectrum[self.numbers] = self.waves
-        return np.asarray(np.fft.ifft(spectrum, axis=0) * count)
+        return np.fft.ifft(spectrum, axis=0) * count
 
     def farthest(self) -> tuple[Array, Array]:
         """Return the largest distances from 0, and the first angles in degrees that have them, each (machines,)."""

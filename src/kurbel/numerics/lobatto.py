@@ -51,7 +51,7 @@ def series_at(series: Array, places: Array) -> Array:
         np.subtract(coefficient, last, out=last)
         last += twice * ahead
         ahead, last = last, ahead
-    return np.asarray(series[0] + places * ahead - last)
+    return series[0] + places * ahead - last
 
 
 @lru_cache

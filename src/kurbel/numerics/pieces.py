@@ -71,6 +71,9 @@ class Angles(NamedTuple):
         return tuple(tuple(known[low:high]) for low, high in pairwise(ends))
 
 
+NOWHERE = Angles(np.zeros(0, dtype=np.intp), np.zeros(0))
+
+
 class SampledExtremes(NamedTuple):
     """Largest and smallest values of quantities, and the first angles in degrees that have them; each (q, machines)."""
 
@@ -225,7 +228,7 @@ class Pieces:
 
     def mean(self, values: Array) -> Array:
         """Return the means over the cycle, (…, machines)."""
-        return np.asarray(self.integral(values) / np.radians(self.cycle))
+        return self.integral(values) / np.radians(self.cycle)
 
     def running(self, values: Array) -> Array:
         """Return ∫ value dφ (φ in radians) from the angle 0 to every node, (nodes, pieces)."""
@@ -233,7 +236,7 @@ class Pieces:
         after = np.cumsum(inside[-1])
         before = np.append(0.0, after[:-1])
         before[1:] += np.cumsum(lost(before, inside[-1], after))[:-1]
-        return np.asarray(inside + (before - before[self.first][self.machine]))
+        return inside + (before - before[self.first][self.machine])
 
     def carried(self, values: Array, source: Pieces, later: Number = 0.0) -> Array:
         """Return samples (…, nodes, pieces) of other pieces, within which these lie, at the nodes of these.
@@ -454,7 +457,7 @@ def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags
         share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
     rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
     crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
-    return np.asarray(rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine]))
+    return rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine])
 
 
 def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:

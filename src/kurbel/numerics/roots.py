@@ -28,4 +28,4 @@ def bracketed_roots(
         moved, places = np.abs(new - places), new
         if not (moved > size).any():
             break
-    return np.asarray(places)
+    return places

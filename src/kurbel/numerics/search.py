@@ -83,7 +83,7 @@ def _closed(function: Function, low: Array, high: Array, f_low: Array, f_high: A
             step = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi) & np.isfinite(step)
         part = np.where(safe, np.clip(step, 0.0, 1.0), 0.5)
-    return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))
+    return np.where(np.abs(fa) < np.abs(fb), a, b)
 
 
 def _sampled(function: Function) -> tuple[Array, Array]:
@@ -220,7 +220,7 @@ def _spread(near: Array, low: Array, centres: Array) -> Array:
     apart = np.where(np.isfinite(low)[..., None], near - centres[:, None], 0.0)
     squares, directions = np.linalg.eigh(np.swapaxes(apart, 1, 2) @ apart / near.shape[1])
     sizes = _REACH * np.sqrt(np.maximum(squares, 0.0))
-    return np.asarray(np.maximum(sizes, _THIN * sizes[:, -1:])[..., None] * np.swapaxes(directions, 1, 2))
+    return np.maximum(sizes, _THIN * sizes[:, -1:])[..., None] * np.swapaxes(directions, 1, 2)
 
 
 def _cost(function: Function, places: Array) -> Array:

@@ -5,7 +5,7 @@ import numpy as np
 import kurbel
 from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.designs.find import Solution, Solutions
-from kurbel.designs.sweep import Design
+from kurbel.designs.study import Design
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import level
 
@@ -15,9 +15,8 @@ Heads = tuple[tuple[str, str], ...]
 def heads(found: Solutions, system: str) -> Heads:
     """Return names and units of the columns: the keys in the units of their ranges, and the key values."""
     keys = [(one.key, one.unit) for one in found.varied]
-    largest = [max(abs(one.key_values[place]) for one in found.found) for place in range(len(found.answers))]
-    sized = zip(found.names, found.answers, largest)
-    return (*keys, *((name, shown_unit(one.kind, system, size)) for name, one, size in sized))
+    largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
+    return (*keys, *((one.id, shown_unit(one.kind, system, size)) for one, size in zip(found.heads, largest)))
 
 
 def as_rows(found: Solutions, system: str) -> list[Design]:
@@ -38,8 +37,8 @@ def as_json(found: Solutions) -> dict[str, object]:
 
     def solution(one: Solution) -> dict[str, object]:
         key_values = [
-            {"id": name, "symbol": answer.quantity.symbol, "unit": SI[answer.kind], "value": value}
-            for name, answer, value in zip(found.names, found.answers, one.key_values)
+            {"id": head.id, "symbol": answer.quantity.symbol, "unit": head.unit, "value": value}
+            for head, answer, value in zip(found.heads, found.answers, one.key_values)
         ]
         return {"values": list(one.values), "key_values": key_values, "notes": list(one.notes)}
 
@@ -51,8 +50,7 @@ def as_json(found: Solutions) -> dict[str, object]:
         "machine": found.machine,
         "varied": [{"key": one.key, "low": one.low, "high": one.high, "unit": SI[one.kind]} for one in found.varied],
         "wanted": [
-            {"id": name, "unit": SI[one.answer.kind], "aim": one.aim, "value": one.value}
-            for name, one in zip(found.names, found.wanted)
+            {"id": one.head.id, "unit": one.head.unit, "aim": one.aim, "value": one.value} for one in found.wanted
         ],
         "found": [solution(one) for one in found.found],
         "range": ranges[0] if len(ranges) == 1 else ranges,
@@ -64,24 +62,27 @@ def as_json(found: Solutions) -> dict[str, object]:
 def picture(found: Solutions, system: str) -> Picture:
     """Return the wanted key value over the only key, with the solutions, and gaps at jumps and where designs fail."""
     key, wanted = found.varied[0], found.wanted[0]
-    numbers, values, kind = found.places[:, 0], found.values[:, 0], wanted.answer.kind
+    numbers, values, kind = found.places[:, 0], found.values[:, wanted.place], wanted.head.kind
     unit = shown_unit(kind, system, float(np.nanmax(np.abs(values))))
     # one nan at a jump, two for a design that fails
     numbers, values = (np.repeat(one, 1 + np.isnan(values)) for one in (numbers, values))
     jumps = np.searchsorted(numbers, [one.values[0] for one in found.jumps])
     numbers, values = np.insert(numbers, jumps, np.nan), np.insert(values, jumps, np.nan)
     x, y = np.where(np.isnan(values), np.nan, convert(numbers, key.kind, key.unit)), convert(values, kind, unit)
-    symbol = Words(wanted.answer.quantity.symbol, wanted.answer.quantity.ascii_symbol)
+    quantity = found.answers[wanted.place].quantity
+    symbol = Words(quantity.symbol, quantity.ascii_symbol)
     curves = [Curve(symbol, x, y)]
     if wanted.value is not None:
-        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text.strip())))
+        curves.append(level(x, float(convert(wanted.value, kind, unit)), Words(wanted.text)))
     name = Words(key.key.rpartition(".")[2])
-    places = [(key.in_unit(one.values[0]), float(convert(one.key_values[0], kind, unit))) for one in found.found]
+    places = [
+        (key.in_unit(one.values[0]), float(convert(one.key_values[wanted.place], kind, unit))) for one in found.found
+    ]
     marks = tuple(Mark(*place, PageFigure(name, place[0], key.unit)) for place in places)
     across = Axis(Words(key.key), unit=key.unit, low=key.in_unit(key.low), high=key.in_unit(key.high))
     panel = Panel(across, Axis(symbol, unit=unit), tuple(curves), marks=marks)
     text = "The key value over the key; marked where it is as wanted, parted where it jumps or designs fail."
-    return Picture("find", f"{found.names[0]} over {key.key}", text, (panel,), found.machine)
+    return Picture("find", f"{wanted.head.id} over {key.key}", text, (panel,), found.machine)
 
 
 def remarks(found: Solutions) -> list[str]:
@@ -89,10 +90,9 @@ def remarks(found: Solutions) -> list[str]:
     key = found.varied[0]
     lines = [f"solution {number}: {note}" for number, one in enumerate(found.found, 1) for note in one.notes]
     for one in found.jumps:
-        place = f"{key.key} = {key.in_unit(one.values[0]):.9g} {key.unit}".rstrip()
-        lines.append(f"{found.wanted[0].text.strip()}: passed by a jump at {place}")
+        place = key.written(one.values[0], figures=9)
+        lines.append(f"{found.wanted[0].text}: passed by a jump at {key.key} = {place}")
     for part in found.failed:
-        ends = [f"{key.in_unit(end):.6g}" for end in (part.low, part.high)]
-        where = f"at {ends[0]}" if ends[0] == ends[1] else f"from {ends[0]} to {ends[1]}"
-        lines.append(f"{key.key} {where} {key.unit}".rstrip() + f": designs fail: {part.why}")
+        where = "at" if part.low == part.high else f"from {key.in_unit(part.low):.6g} to"
+        lines.append(f"{key.key} {where} {key.written(part.high)}: designs fail: {part.why}")
     return lines

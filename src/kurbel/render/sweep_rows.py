@@ -16,7 +16,8 @@ from itertools import chain, islice
 from typing import BinaryIO, NamedTuple, NoReturn
 
 from kurbel.designs.chosen import Condition, Unit
-from kurbel.designs.sweep import Cell, Design, Sweep
+from kurbel.designs.study import Cell, Design
+from kurbel.designs.sweep import Sweep
 from kurbel.designs.workers import rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
@@ -55,7 +56,7 @@ class Titles(NamedTuple):
 
     def values(self, row: Design) -> list[Cell]:
         """Return the values of a row under the heads."""
-        return [row.number, *row.values, *map(row.text, self.last)]
+        return [row.number, *row.values, *row.texts]
 
 
 # rows as lines of text
@@ -77,8 +78,9 @@ def lines_of(titles: Titles, look: Look, first: Sequence[Design] = ()) -> tuple[
         heads = titles.whole
 
         def json_row(row: Design) -> str:
-            texts = {"keeps": row.keeps, "broken": row.broken or None, "failure": row.failure or None}
-            found = {name: texts.get(name, value) for name, value in zip(heads, titles.values(row))}
+            texts = {"": None, "yes": True, "no": False}
+            found = dict(zip(heads, titles.values(row)))
+            found |= {name: texts.get(text, text) for name, text in zip(titles.last, row.texts)}
             return json.dumps(found, allow_nan=False, ensure_ascii=False) + "\n"
 
         return "", json_row

@@ -76,17 +76,14 @@ def balance_report(case: Case, frame: Frame, orders_only: bool = False) -> Repor
     Raises UsageError if no masses move.
     """
     machine, balance = case.machine, case.balance
-    free, square = balance.free, (balance.omega or 0.0) ** 2
+    free = balance.free
     notes = ["φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."]
     if free.moment is not None and balance.z_0 is not None:
         notes.append(f"Moments are taken about z = {show(balance.z_0, 'length')}.")
     if free.next_order and balance.omega is not None:
-        most = f"{show(free.at_most(free.force) * square, 'force')} of the force"
-        if free.moment is not None:
-            most += f", {show(free.at_most(free.moment) * square, 'torque')} of the moment"
         notes.append(
-            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on: "
-            f"together at most {most}."
+            f"The rod is hardly longer than the crank, so that more orders follow, from n = {free.next_order} on; "
+            "all of them are in forces and moments."
         )
     if balance.counterweights or machine.balance_shafts:
         notes.append(

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from kurbel.report.left_out import missing
 from kurbel.report.tables import LeftOut, PlaceTable, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.delivery import CompressorEnd, CompressorStage, MachineDelivery
+from kurbel.solver.delivery import CompressorStage, MachineDelivery
 
 ENDS = by_id(
     Quantity("stroke_volume", "V_s", "volume", "Volume that the end sweeps in a turn"),
@@ -59,11 +58,9 @@ def delivery_report(case: Case, frame: Frame) -> Report:
 
 
 def _ends_table(stage: CompressorStage, system: str) -> PlaceTable:
-    def values(end: CompressorEnd) -> dict[str, Any]:
-        each = (end.volume, end.efficiency, end.capacity, end.mass_flow, end.temperature)
-        return {id: one for id, one in zip(ENDS, each) if one is not None}
-
-    rows: list[Row] = [((end.owner, end.end), values(end)) for end in stage.ends]
+    rows: list[Row] = [
+        ((one.owner, one.end), {id: one.figures[id] for id in ENDS if id in one.figures}) for one in stage.ends
+    ]
     pressures = ""
     if stage.suction is not None:
         pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
@@ -111,7 +108,7 @@ def delivery_warnings(found: MachineDelivery) -> Iterator[str]:
     """Yield stages in series whose mass flows differ, vessels that are small, and a lift that is too high."""
     known = [one for one in found.stages if one.suction is not None]
     for one, after in pairwise(known):
-        flow, next_flow = one.answers["mass_flow"], after.answers["mass_flow"]
+        flow, next_flow = one.answers.get("mass_flow"), after.answers.get("mass_flow")
         low, high = _IN_SERIES
         if not (flow and next_flow and low <= after.suction / one.delivery <= high):
             continue

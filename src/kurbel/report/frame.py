@@ -106,7 +106,7 @@ def subjects_of(case: Case, command: str, compare: bool = False, pistons: bool =
         for forces in case.cylinders:
             forces.refuse_locking()
         return [
-            Subject(one.name, one, one.at, of=one.followed[0].cylinder.name if one.of_rod else "")
+            Subject(one.name, one, one.at, of=one.followed[0].drive.name if one.of_rod else "")
             for one in case.bearings.parts
         ]
     if command == "balance":

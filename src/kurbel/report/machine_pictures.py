@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, ComplexArray
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.report.picture_source import PHI, Sampled, Source, between, level
+from kurbel.report.picture_source import Line, Source, curve, level
+from kurbel.solver.bearings import BearingColumns
 from kurbel.solver.effort import Term
+from kurbel.solver.flywheel import TurningState
 from kurbel.solver.state import State
 from kurbel.solver.stress import PARTS
 
@@ -36,63 +38,54 @@ def effort(source: Source) -> Iterator[Panel]:
     if not source.having("M"):
         return
     id, radius = ("T", results.crank) if source.having("T") else ("M", 1.0)
-    samples = source.samples((PHI, id, "M_load"), results.phi_crossing)
-    x, line, load = samples.values
     level_load = results.machine.load is None or results.machine.load.diagram is None
     name = Words("W" if id == "T" else "M_m" if level_load else "M_W", words="resistance")
-    resistance = samples.curve(name, x, load / radius)
-    curves = samples.curve(source.words(id), x, line), resistance._replace(kind="faint" if level_load else "line")
-    shades, lobes = list(between(x, load / radius, line)), results.lobes
+    load: Line = name, lambda state: state["M_load"] / radius
+    panel = source.panel([id, load], shaded=True, faint=level_load, also=results.phi_crossing)
+    shades, lobes = list(panel.shades), results.lobes
     if 0 < len(lobes) <= _MOST_NUMBERED:
-        # of a lobe that the end of the cycle cuts, the wider part has its number and work
-        widest: dict[int, int] = {}
-        for place, shade in enumerate(shades):
-            owner = int(np.searchsorted(results.phi_crossing, (shade.x[0] + shade.x[-1]) / 2) - 1) % len(lobes)
-            wide = [np.ptp(shades[one].x) for one in (place, widest.get(owner, place))]
-            widest[owner] = place if wide[0] >= wide[1] else widest[owner]
-        for owner, place in widest.items():
-            shades[place] = shades[place]._replace(figure=PageFigure(Words(f"A_{owner + 1}"), lobes[owner]))
-    marks = source.marks(id, lambda angle: angle)
-    yield Panel(source.axis(PHI), source.axis(id), curves, tuple(shades), marks)
+        owners = [np.searchsorted(results.phi_crossing, (one.x[0] + one.x[-1]) / 2) - 1 for one in shades]
+        for lobe, work in enumerate(lobes):
+            own = [place for place, owner in enumerate(owners) if owner % len(lobes) == lobe]
+            # of a lobe that the end of the cycle cuts, the wider part has its number and work
+            widest = max(own, key=lambda place: float(np.ptp(shades[place].x)), default=None)
+            if widest is not None:
+                shades[widest] = shades[widest]._replace(figure=PageFigure(Words(f"A_{lobe + 1}"), work, kind="energy"))
+    yield panel._replace(shades=tuple(shades))
 
-    yield from source.panels(("E",))
-    means = ("omega", "omega_mean", results.omega_mean), ("M_coupling", "M_mean", results.M_mean)
-    for id, mean, height in means:
-        for panel in source.panels((id,)):
-            mean_line = level(panel.curves[0].x, height, source.words(mean))
-            yield panel._replace(curves=(*panel.curves, mean_line))
+    yield from source.panels(["E"])
+    if source.having("omega"):
+        mean_speed: Line = source.words("omega_mean"), lambda state: results.omega_mean
+        yield source.panel(["omega", mean_speed], faint=True)
+    if source.having("M_coupling"):
+        mean_torque: Line = source.words("M_mean"), lambda state: results.M_mean
+        yield source.panel(["M_coupling", mean_torque], faint=True)
 
 
 def flow(source: Source) -> Iterator[Panel]:
     """Flow that the pumps deliver over the crank angle, and its mean; what is between them fills and empties the air
     vessel. Below it, where there is a suction pipe without a vessel, the head that accelerates the liquid."""
-    if not source.having("flow"):
-        return
-    samples, mean = source.samples((PHI, "flow")), source.results.flow_mean
-    x, line = samples.values
-    panel = source.panel(("flow",))
-    curves = (*panel.curves, level(x, mean, source.words("flow_mean")))
-    yield panel._replace(curves=curves, shades=tuple(between(x, np.full_like(x, mean), line)))
-    yield from source.panels(("acceleration_head",))
+    if source.having("flow"):
+        mean: Line = source.words("flow_mean"), lambda state: source.results.flow_mean
+        yield source.panel(["flow", mean], shaded=True, faint=True)
+        yield from source.panels(["acceleration_head"])
 
 
 def crank_efforts(source: Source) -> Iterator[Panel]:
     """Tangential force of each cylinder as its crank stands, their sum, and dashed the sum with the efficiency (R Abb.
     1062, 1064)."""
-    effort, crank = source.results.effort, source.results.crank
+    effort = source.results.effort
     acting = [one for one in effort.cylinders if one.drive.has_force]
     lossy = bool(effort.machine.efficiency != 1)
     if effort.given is not None or not source.having("T") or len(acting) > _MOST_CRANKS or len(acting) + lossy < 2:
         return
-    lines = [(source.words("T"), 0, effort.sampled([Term(1.0, group) for group in effort.groups]))]
-    lines += [(Words("T with η", "T with eta"), 1, effort.M)] if lossy else []
-    for number, one in enumerate(acting if len(acting) > 1 else ()):
-        lines.append((Words(one.drive.name), 2 + number, effort.sampled([Term(1.0, [one])])))
-    samples = _efforts(source, [torque for *_, torque in lines])
-    x, *found = samples.values
-    curves = [samples.curve(name, x, y)._replace(look=look) for (name, look, _), y in zip(lines, found)]
-    mean = level(x, float(effort.mean[0]) / crank, Words("W"))
-    yield Panel(source.axis(PHI), source.axis("T"), (*curves, mean), marks=source.marks("T", lambda angle: angle))
+    whole = effort.sampled([Term(1.0, group) for group in effort.groups])
+    lines = [_on_crank_1(source, source.words("T"), whole)]
+    lines += [_on_crank_1(source, Words("T with η", "T with eta"), effort.M)] if lossy else []
+    for one in acting if len(acting) > 1 else ():
+        lines.append(_on_crank_1(source, Words(one.drive.name), effort.sampled([Term(1.0, [one])])))
+    lines.append((Words("W"), lambda state: effort.mean[0] / source.results.crank))
+    yield source.panel(lines, like="T", faint=True)._replace(marks=source.marks("T"))
 
 
 def effort_of_sides(source: Source) -> Iterator[Panel]:
@@ -103,12 +96,10 @@ def effort_of_sides(source: Source) -> Iterator[Panel]:
     if effort.given is not None or not source.having("T") or not driven or not effort.drives:
         return
     resistance = -effort.sampled([Term(1.0, group, lambda one: driven_force(one) * one.slope) for group in driven])
-    samples = _efforts(source, [effort.M + resistance, resistance])
-    x, driving, against = samples.values
-    names = Words("T_driving", words="driving pistons"), Words("−T_driven", words="driven pistons")
-    curves = [samples.curve(name, x, line) for name, line in zip(names, (driving, against))]
-    shades = tuple(between(x, against, driving))
-    yield Panel(source.axis(PHI), source.axis("T"), (*curves, level(x)), shades)
+    driving = Words("T_driving", words="driving pistons"), effort.M + resistance
+    against = Words("−T_driven", words="driven pistons"), resistance
+    lines = [_on_crank_1(source, *one) for one in (driving, against)]
+    yield source.panel(lines, like="T", shaded=True, zero=True)
 
 
 def driven_force(state: State) -> Any:
@@ -117,34 +108,33 @@ def driven_force(state: State) -> Any:
     return gas if state.P_ram is None else gas + state.P_ram
 
 
-def _efforts(source: Source, torques: Sequence[Array]) -> Sampled:
-    """Return crank angles and torques on the pieces of the machine as forces on crank 1."""
+def _on_crank_1(source: Source, name: Words, torque: Array) -> Line:
+    """Return a torque on the pieces of the machine as a force on crank 1."""
     effort, crank = source.results.effort, source.results.crank
 
-    def values(degrees: Array, within: Array) -> Array:
-        return np.stack([degrees, *(effort.at(effort.pieces, one, degrees, within) / crank for one in torques)])
+    def force(state: TurningState) -> Array:
+        return np.asarray(effort.at(effort.pieces, torque, state.phi, state.within) / crank)
 
-    return source.samples((PHI, *("T" for _ in torques)), values=values)
+    return name, force
 
 
 def throw_stress(source: Source) -> Iterator[Panel]:
     """Largest combined stress of each part of the crank throw over the cycle."""
-    called = {f"σ_{index}": part.removeprefix("the ") for index, part in PARTS.values()}
-    for panel in source.panels(tuple(f"sigma_{part}" for part in PARTS)):
-        yield panel.called(called)._replace(y=panel.y._replace(name=Words("", words="combined stress")))
+    called = {f"sigma_{part}": words.removeprefix("the ") for part, (_, words) in PARTS.items()}
+    return source.panels([*called], words=called)
 
 
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    gas, whole = (np.abs(one.amplitudes)[drawn] for one in (found.gas, found.whole))
+    spectra = [np.abs(one.amplitudes)[drawn] for one in (found.whole, found.gas, found.inertia) if one]
+    whole, *parts = spectra
     orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
-    inertia = np.abs(found.inertia.amplitudes)[drawn] if found.inertia else np.zeros(0)
-    both = gas.any() and inertia.any()  # one alone is all
+    both = len(parts) == 2 and all(one.any() for one in parts)  # one alone is all
     if whole.any():
         yield _bars(orders, [whole], name, "torque", "all" if both else "")
     if both:
-        yield _bars(orders, [gas, inertia], name, "torque", "left: gas, weight, friction; right: inertia")
+        yield _bars(orders, parts, name, "torque", "left: gas, weight, friction; right: inertia")
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
@@ -161,58 +151,63 @@ def unbalanced_orders(source: Source) -> Iterator[Panel]:
 
 def _bars(orders: Sequence[float], sizes: Sequence[Array], name: Words, kind: str, title: str) -> Panel:
     """Return one or two rows of sizes as bars over orders, next to each other."""
-    wide = 0.76 / len(sizes)
-    shades = []
+    wide, shades = 0.76 / len(sizes), list[Shade]()
     for number, row in enumerate(sizes):
         for place, size in enumerate(row):
-            left = place - 0.38 + number * wide
-            shades.append(Shade(np.array([left, left + wide]), np.zeros(2), np.full(2, size), number == 0))
+            x = place - 0.38 + np.array([number, number + 1]) * wide
+            shades.append(Shade(x, np.zeros(2), np.full(2, size), number == 0))
     names = tuple(f"{order:g}" for order in orders)
-    x = Axis(Words("n", words="order"), low=-0.6, high=max(len(names), _LEAST_BARS) - 0.4, names=names)
-    return Panel(x, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
+    x_axis = Axis(Words("n", words="order"), low=-0.6, high=max(len(names), _LEAST_BARS) - 0.4, names=names)
+    return Panel(x_axis, Axis(name, kind, low=0.0), shades=tuple(shades), title=title)
 
 
 def shaft_modes(source: Source) -> Iterator[Panel]:
     """Angles by which the masses of the shaft line turn in its first natural vibrations."""
-    found, curves = source.results, []
-    places = np.arange(float(len(found.line.masses)))
-    for mode in range(1, min(_MODES, found.first + len(found.modes.omegas) - 1) + 1):
+    found, curves = source.results, list[Curve]()
+    names = tuple(mass.name for mass in found.line.masses)
+    places = np.arange(float(len(names)))
+    for mode, frequency in _frequencies(source):
         angles = np.asarray(found.holzer(mode).angles, dtype=float)
-        frequency = float(found.modes.omegas[mode - found.first]) / (2 * math.pi)
         curves.append(Curve(Words(f"{mode}: {frequency:.4g} Hz"), places, angles / np.abs(angles).max()))
     if curves:
-        names = tuple(mass.name for mass in found.line.masses)
-        yield Panel(
-            Axis(Words(""), names=names), Axis(Words("θ", words="angle over the largest")), (*curves, level(places))
-        )
+        up = Axis(Words("θ", words="angle over the largest"))
+        yield Panel(Axis(Words(""), names=names), up, (*curves, level(places)))
+
+
+def _frequencies(source: Source) -> list[tuple[int, float]]:
+    """Return the first modes of a shaft line, each with its frequency in Hz."""
+    found = source.results
+    omegas = found.modes.omegas[1 - found.first :][:_MODES]
+    return [(mode, float(omega) / (2 * math.pi)) for mode, omega in enumerate(omegas, 1)]
 
 
 def campbell(source: Source) -> Iterator[Panel]:
     """Natural frequencies against the speed with the lines of the orders that excite them; where they cross the speed
     is critical. The upright line is the working speed."""
-    found = source.results
-    modes = [float(omega) / (2 * math.pi) for omega in found.modes.omegas[1 - found.first :][:_MODES]]
+    found, modes = source.results, _frequencies(source)
     working = found.machine.speed
     if not modes or not working:
         return
     fastest = _FASTEST * working
-    critical = found.critical_speeds(_MODES, _HIGHEST)
-    reached = [one for one in critical if one.speed <= fastest and one.share > 0]
-    orders = sorted({one.order for one in sorted(reached, key=lambda one: -one.share)[:_MOST_ORDERS]})
-    drawn = [one for one in reached if one.order in orders and one.mode <= len(modes)]
-    top = max((one for one in modes if one <= fastest * max(orders, default=0.0)), default=modes[0]) * 1.15
-    ends = np.array([0.0, fastest])
-    curves = []
-    for number, frequency in enumerate(modes, 1):
-        if frequency <= top:
-            curves.append(Curve(Words(f"f_{number}", words=f"mode {number}"), ends, np.full(2, frequency)))
+    every = [one for one in found.critical_speeds(_MODES, _HIGHEST) if one.speed <= fastest and one.share > 0]
+    strongest = sorted(every, key=lambda one: -one.share)
+    orders = sorted({one.order for one in strongest[:_MOST_ORDERS]})
+    reached = [frequency for _, frequency in modes if frequency <= fastest * max(orders, default=0.0)]
+    top = 1.15 * max(reached, default=modes[0][1])
+
+    curves = [
+        curve("line", 1j * frequency, fastest + 1j * frequency, name=Words(f"f_{mode}", words=f"mode {mode}"))
+        for mode, frequency in modes
+        if frequency <= top
+    ]
     for order in orders:
         end = min(fastest, top / order)
-        curves.append(Curve(Words(f"ν = {order:g}"), np.array([0.0, end]), np.array([0.0, order * end]), "faint"))
-    curves.append(Curve(Words("working speed"), np.full(2, working), np.array([0.0, top]), "faint"))
+        curves.append(curve("faint", 0j, complex(end, order * end), name=Words(f"ν = {order:g}")))
+    curves.append(curve("faint", complex(working), complex(working, top), name=Words("working speed")))
     marks = [
-        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed), of_x=True)
-        for one in sorted(drawn, key=lambda one: -one.share)
+        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed, kind="speed"))
+        for one in strongest
+        if one.order in orders
     ]
     x, y = Axis(Words("n", words="speed"), "speed", low=0.0), Axis(Words("f", words="frequency"), "frequency", low=0.0)
     yield Panel(x, y, tuple(curves), marks=tuple(marks))
@@ -228,41 +223,42 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
     known = [one for one in each if source.having(*one[:2]) == one[:2]]
     # what is balanced is a point, which is shown only where all is
     for x, y, id, largest in [one for one in known if one[3] and one[3].value] or known[:1]:
-        tip = partial(source.values, (x, y))
-        marks = (source.mark(id, largest, *tip(largest.degrees)[:, 0].tolist()),) if largest and largest.value else ()
-        panel = source.locus((x, y), tip, source.words(y), marks, cycle=360.0)
+        tip = partial(_of_components, x, y)
+        panel = source.locus(tip, x, source.words(y), cycle=360.0, largest=(id, largest))
         yield panel._replace(x=source.axis(x), y=source.axis(y))
+
+
+def _of_components(x: str, y: str, state: Any) -> ComplexArray:
+    return np.asarray(state[x] + 1j * state[y])
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
     """Unbalanced force, unbalanced moment and rolling moment on the frame over the crank angle."""
     words = {"F_x": "along the stroke", "F_y": "across it", "M_x": "along the stroke", "M_y": "across it"}
-    for panel in source.panels(("F_x", "F_y"), ("M_x", "M_y"), ("M_roll",)):
-        yield panel.called(words)
+    return source.panels(["F_x", "F_y"], ["M_x", "M_y"], ["M_roll"], words=words)
 
 
 def polar_loads(source: Source) -> Iterator[Panel]:
     """Locus of the tip of the load on every pin and main bearing, in the frames of throw, engine and rod, unless it is
     all but a straight line."""
-    largest = source.results.load_max if "load_max" in source.key_values and source.marks("load", float) else None
-    panels = list[Panel]()
-    for frame in source.having(*_FRAMES):
-
-        def tip(degrees: Array, within: Array, frame: str = frame) -> Array:
-            """Return the load (2, n) along and across the direction from which its angle counts; of 0 there is none."""
-            load, angle = source.values(("load", frame), degrees, within)
-            angle = np.radians(np.where(load > 0, np.nan_to_num(angle), 0.0))
-            return np.stack([load * np.cos(angle), load * np.sin(angle)])
-
-        marks: tuple[Mark, ...] = ()
-        if largest and largest.value:
-            at = np.full(2, largest.degrees)
-            # at a jump the largest load is on one of its sides
-            sides = tip(at, at + np.array([-1e-6, 1e-6]))
-            side = int(np.argmin(np.abs(np.hypot(*sides) - largest.value)))
-            marks = (source.mark("load_max", largest, *sides[:, side].tolist()),)
-        panels.append(source.locus(("load", "load"), tip, source.words("load"), marks, _FRAMES[frame]))
+    largest = source.extreme("load_max")
+    panels = [
+        source.locus(
+            partial(_tip_of_load, frame),
+            "load",
+            source.words("load"),
+            _FRAMES[frame],
+            largest=("load_max", largest),
+        )
+        for frame in source.having(*_FRAMES)
+    ]
     yield from [one for one in panels if _slenderness(one) < _SLENDEREST] or panels[:1]
+
+
+def _tip_of_load(frame: str, state: BearingColumns) -> ComplexArray:
+    """Return the load along and across the direction from which its angle counts; of 0 there is none."""
+    angle = np.where(state.load > 0, np.nan_to_num(state[frame]), 0.0)
+    return np.asarray(state.load * np.exp(1j * np.radians(angle)))
 
 
 def _slenderness(panel: Panel) -> float:

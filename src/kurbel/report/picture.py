@@ -3,7 +3,7 @@
 Panels are made in SI; `in_units` of `picture_source` gives them the units in which they are shown.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple, Union
 
@@ -11,9 +11,6 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray
 from kurbel.report.tables import PlaceTable, Provenance, Report
-
-_SAME = 1e-9
-"""Share of its largest coordinate by which two points of a curve may differ and be one."""
 
 
 class Words(NamedTuple):
@@ -25,7 +22,7 @@ class Words(NamedTuple):
 
 
 class Axis(NamedTuple):
-    """What runs along an axis, its kind of quantity and unit; mark: text behind the unit; log: by powers of ten.
+    """What runs along an axis, its kind of quantity and unit; log: by powers of ten.
 
     low, high: how far it must reach at least; falling: large values are on the left; names: texts at 0, 1, … instead of
     numbers.
@@ -34,12 +31,16 @@ class Axis(NamedTuple):
     name: Words
     kind: str = ""
     unit: str = ""
-    mark: str = ""
     log: bool = False
     low: float | None = None
     high: float | None = None
     falling: bool = False
     names: tuple[str, ...] = ()
+
+    def shown(self, to: Callable[[float], float], unit: str) -> "Axis":
+        """Return the axis in a unit, to which a function takes numbers."""
+        low, high = (None if end is None else to(end) for end in (self.low, self.high))
+        return self._replace(unit=unit, low=low, high=high)
 
 
 class Curve(NamedTuple):
@@ -56,28 +57,20 @@ class Curve(NamedTuple):
     kind: str = "line"
     look: int | None = None
 
-    def _parted(self) -> list[tuple[Array, Array]]:
-        jumps = np.flatnonzero(np.isnan(self.x))
-        starts, ends = [0, *(jumps + 1)], [*jumps, len(self.x)]
-        return [(self.x[start:end], self.y[start:end]) for start, end in zip(starts, ends)]
-
     def pieces(self) -> list[tuple[Array, Array]]:
         """Return the points between jumps and gaps."""
-        return [piece for piece in self._parted() if len(piece[0])]
+        ends = [-1, *np.flatnonzero(np.isnan(self.x)).tolist(), len(self.x)]
+        return [(self.x[start + 1 : end], self.y[start + 1 : end]) for start, end in pairwise(ends) if end > start + 1]
 
     def jumps(self) -> list[tuple[Array, Array]]:
         """Return the two points of each jump."""
-        return [
-            (np.array([before[0][-1], after[0][0]]), np.array([before[1][-1], after[1][0]]))
-            for before, after in pairwise(self._parted())
-            if len(before[0]) and len(after[0])
-        ]
+        ends = np.flatnonzero(np.isnan(self.x[1:-1]))[:, None] + np.array([0, 2])
+        return [(self.x[pair], self.y[pair]) for pair in ends if not np.isnan(self.x[pair]).any()]
 
     def closed(self) -> "Curve":
-        """Return the curve of a cycle with a jump from its end to its beginning, if these are apart."""
+        """Return the curve of a cycle with a jump from its end to its beginning."""
         x, y = (np.concatenate((one, [np.nan], one[:2])) for one in (self.x, self.y))  # a piece has two points
-        apart = [abs(one[0] - one[-1]) > _SAME * np.nanmax(np.abs(one)) for one in (self.x, self.y)]
-        return self._replace(x=x, y=y) if any(apart) else self
+        return self._replace(x=x, y=y)
 
     def at_moment(self, moment: int) -> "Curve":
         """Return the curve at one moment of its movement."""
@@ -85,21 +78,24 @@ class Curve(NamedTuple):
 
 
 class PageFigure(NamedTuple):
-    """A figure written into a picture: symbol, value with unit, and its crank angle."""
+    """A figure written into a picture: symbol, value with unit, and its crank angle.
+
+    kind: of quantity, if that is not the one of the upright axis.
+    """
 
     name: Words
     value: float | None = None
     unit: str = ""
     at_deg: float | None = None
+    kind: str = ""
 
 
 class Mark(NamedTuple):
-    """A point with its figure, a value of the upright axis or of the other one."""
+    """A point with its figure."""
 
     x: float
     y: float
     figure: PageFigure
-    of_x: bool = False
 
 
 class Shade(NamedTuple):
@@ -115,6 +111,7 @@ class Shade(NamedTuple):
     figure: PageFigure | None = None
 
 
+_CIRCLE = np.exp(2j * np.pi * np.arange(25) / 24)
 MOMENTS_PER_TURN = 48
 """Moments of one turn of the crank, through which bodies and arrows move."""
 
@@ -131,9 +128,8 @@ class Shape(NamedTuple):
 
     @property
     def outline(self) -> ComplexArray:
-        """The points of its outline, of a circle 24."""
-        around = self.radius * np.exp(2j * np.pi * np.arange(25) / 24) if self.radius else 0.0
-        return self.points + around if self.radius else np.append(self.points, self.points[:1])
+        """The points of its outline."""
+        return self.points + self.radius * _CIRCLE if self.radius else np.append(self.points, self.points[:1])
 
 
 class Body(NamedTuple):
@@ -154,8 +150,7 @@ class Body(NamedTuple):
         cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0
     ) -> "Body":
         """Return the body of numbers or arrays."""
-        place, *others = (np.atleast_1d(one) for one in (np.asarray(place, dtype=complex), turn, stretch, tint))
-        return cls(tuple(shapes), place, *(np.asarray(one, dtype=float) for one in others))
+        return cls(tuple(shapes), *(np.atleast_1d(one) for one in (place, turn, stretch, tint)))
 
     @property
     def moves(self) -> bool:
@@ -178,12 +173,10 @@ class Body(NamedTuple):
 
     def outlines(self) -> list[tuple[str, ComplexArray]]:
         """Return the look and the outline (moments, points) of each shape, wherever it moves."""
-        place, turn, stretch = np.broadcast_arrays(*(one[:, None] for one in (self.place, self.turn, self.stretch)))
-        turned, found = np.exp(1j * np.radians(turn)), []
-        for one in self.shapes:
-            line = one.outline
-            found.append((one.look, place + turned * (stretch * line.real + 1j * line.imag)))
-        return found
+        place, turn, stretch = (one[:, None] for one in (self.place, self.turn, self.stretch))
+        turned, lines = np.exp(1j * np.radians(turn)), [one.outline for one in self.shapes]
+        found = [place + turned * (stretch * line.real + 1j * line.imag) for line in lines]
+        return [(shape.look, line) for shape, line in zip(self.shapes, found)]
 
 
 class Caption(NamedTuple):
@@ -217,19 +210,12 @@ class Panel(NamedTuple):
     @property
     def places(self) -> tuple[list[Array], list[Array]]:
         """All x and all y that are drawn."""
-        across = [curve.x for curve in self.curves] + [shade.x for shade in self.shades]
-        up = [curve.y for curve in self.curves] + [line for one in self.shades for line in (one.low, one.high)]
-        marked = np.array([(mark.x, mark.y) for mark in self.marks]).reshape(-1, 2)
-        drawn: list[ComplexArray] = [line.ravel() for body in self.bodies for _, line in body.outlines()]
+        drawn = [one.x + 1j * one.y for one in self.curves]
+        drawn += [one.x + 1j * line for one in self.shades for line in (one.low, one.high)]
+        drawn += [np.array([complex(one.x, one.y)]) for one in self.marks]
+        drawn += [line for body in self.bodies for _, line in body.outlines()]
         drawn += [np.array([one.place - one.half, one.place + one.half]) for one in self.captions]
-        across += [one.real for one in drawn]
-        up += [one.imag for one in drawn]
-        return [*across, marked[:, 0]], [*up, marked[:, 1]]
-
-    def called(self, words: Mapping[str, str]) -> "Panel":
-        """Return the panel with other words for curves, by their symbols."""
-        names = [one.name._replace(words=words.get(one.name.symbol, one.name.words)) for one in self.curves]
-        return self._replace(curves=tuple(one._replace(name=name) for one, name in zip(self.curves, names)))
+        return [one.real.ravel() for one in drawn], [one.imag.ravel() for one in drawn]
 
     def at_moment(self, moment: int) -> "Panel":
         """Return the panel at one moment of its movement."""

@@ -1,13 +1,15 @@
 """The curves of pictures: results sampled so finely that straight lines between the points look like the curve."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from itertools import pairwise
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity
@@ -27,9 +29,13 @@ _CROSSING = 1e-9
 """Share of the largest distance between two lines that counts as rounding error, where they cross."""
 _MOST_SHADES = 100
 _JUMP = 1e-9  # of the height of a curve; a smaller step at a break is rounding
+NO_NAME = Words("")
+AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
+"""A circle."""
+NO_WORDS: Mapping[str, str] = {}
 
-Values = Callable[[Array, Array], Array]
-"""Several quantities (k, n) in SI at crank angles (n,) in degrees, on the sides of jumps that hold `within` (n,)."""
+Line = tuple[Words, Callable[[Any], Any]]
+"""A name, and what takes the columns of results at crank angles (n,) and returns values (n,) in SI."""
 
 
 class PictureOptions(NamedTuple):
@@ -48,43 +54,35 @@ class Sampled(NamedTuple):
 
     def curve(self, name: Words, x: Array, y: Array) -> Curve:
         """Return the curve through points x, y (n,) at these angles, with a gap where either jumps."""
-        breaks = np.flatnonzero(np.diff(self.degrees) == 0)
-        jumps = [np.abs(np.diff(line)[breaks]) > _JUMP * (np.ptp(line) or 1.0) for line in (x, y)]
-        gaps = breaks[jumps[0] | jumps[1]] + 1
-        return Curve(name, np.insert(x, gaps, np.nan), np.insert(y, gaps, np.nan))
+        breaks, points = np.flatnonzero(np.diff(self.degrees) == 0), np.stack((x, y))
+        jumps = np.abs(np.diff(points)[:, breaks]) > _JUMP * np.ptp(points, axis=1, keepdims=True)
+        return Curve(name, *np.insert(points, breaks[jumps.any(axis=0)] + 1, np.nan, axis=1))
 
 
-def sampled(breaks: Array, values: Values) -> Sampled:
+def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     """Return points so dense that straight lines between them miss no quantity by more than its height × FINENESS.
 
-    breaks: crank angles (m,) in degrees between which all quantities are smooth. Intervals are halved where the point
-    in their middle is off the line; every point is one of `values`.
+    breaks: crank angles (m,) in degrees between which all quantities are smooth; values: takes crank angles (n,), and
+    angles (n,) that are on the same side of a break, and returns quantities (k, n). Intervals are halved where the
+    point in their middle is off the line.
     """
-    counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int)
-    ends = np.append(0, counts.cumsum())
-    edges = np.interp(np.arange(ends[-1] + 1), ends, breaks)
-    low, high, within = edges[:-1], edges[1:], np.repeat((breaks[:-1] + breaks[1:]) / 2, counts)
-    at_low, at_high = values(low, within), values(high, within)
-    found = [(low, within, at_low), (high, within, at_high)]
-    ends_of_all = np.concatenate((at_low, at_high), axis=1)
-    height, size = np.ptp(ends_of_all, axis=1), np.abs(ends_of_all).max(axis=1)
-    allowed = np.maximum(height * FINENESS, size * _JUMP)[:, None]  # a constant has only rounding for its height
+    pieces = [np.linspace(low, high, math.ceil((high - low) / _WIDEST) + 1) for low, high in pairwise(breaks.tolist())]
+    degrees, within = np.concatenate(pieces), np.repeat((breaks[:-1] + breaks[1:]) / 2, [len(one) for one in pieces])
+    points = values(degrees, within)
+    # a constant has only rounding for its height
+    allowed = np.maximum(np.ptp(points, axis=1) * FINENESS, np.abs(points).max(axis=1) * _JUMP)[:, None]
+    left = np.flatnonzero(np.diff(within) == 0)  # the points before the intervals that are not known to be straight
     for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        at_middle = values(middle, within)
-        found.append((middle, within, at_middle))
-        off = (np.abs(at_middle - (at_low + at_high) / 2) > allowed).any(axis=0)
-        if not off.any():
+        middle, side = (degrees[left] + degrees[left + 1]) / 2, within[left]
+        found = values(middle, side)
+        off = (np.abs(found - (points[:, left] + points[:, left + 1]) / 2) > allowed).any(axis=0)
+        degrees, within = np.insert(degrees, left + 1, middle), np.insert(within, left + 1, side)
+        points = np.insert(points, left + 1, found, axis=1)
+        halves = (left + np.arange(len(left)))[off]
+        left = np.sort(np.append(halves, halves + 1))
+        if not len(left):
             break
-        low, high = np.append(low[off], middle[off]), np.append(middle[off], high[off])
-        at_low = np.concatenate((at_low[:, off], at_middle[:, off]), axis=1)
-        at_high = np.concatenate((at_middle[:, off], at_high[:, off]), axis=1)
-        within = np.tile(within[off], 2)
-    degrees, within, points = (np.concatenate(parts, axis=-1) for parts in zip(*found))
-    order = np.lexsort((degrees, within))
-    degrees, within, points = degrees[order], within[order], points[:, order]
-    new = np.append(True, (np.diff(degrees) != 0) | (np.diff(within) != 0))
-    return Sampled(degrees[new], points[:, new])
+    return Sampled(degrees, points)
 
 
 class Source:
@@ -97,148 +95,157 @@ class Source:
         if isinstance(results, Results):  # others have no columns
             self.quantities = {one.id: one for one in results.lists.all_columns}
             self.key_values = results.lists.key_values(results.command)
-        if self.quantities:
-            self._start = results.at(np.zeros(1), np.full(1, 1e-3))
+
+    @cached_property
+    def _start(self) -> Any:
+        return self.results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, *ids: str) -> tuple[str, ...]:
         """Return those of these columns that the results have."""
         return tuple(id for id in ids if id in self.quantities and self._start[id] is not None)
-
-    def values(self, ids: Sequence[str], degrees: Any, within: Array | None = None) -> Array:
-        """Return columns (k, n) in SI at crank angles (n,); φ is one of them."""
-        degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
-        state = self.results.at(degrees, degrees if within is None else within)
-        found = [degrees if id == PHI else np.broadcast_to(state[id], degrees.shape) for id in ids]
-        return np.array(found, dtype=float)
-
-    def samples(
-        self, ids: Sequence[str], also: Iterable[float] = (), values: Values | None = None, breaks: Array | None = None
-    ) -> Sampled:
-        """Return columns over the cycle, or other `values` under these ids, with points at the angles `also`.
-
-        breaks: instead of those of the results. Raises UsageError where one has left the range of floats.
-        """
-        breaks = self.results.breaks if breaks is None else breaks
-        # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
-        breaks = np.array(sorted({*breaks.tolist(), *(angle for angle in also if 0 < angle < breaks[-1])}))
-        found = sampled(breaks, values or (lambda degrees, within: self.values(ids, degrees, within)))
-        for id, line in zip(ids, found.values):
-            if not np.isfinite(line).all():
-                raise too_large(self.quantities[id])
-        return found
-
-    def axis(self, id: str) -> Axis:
-        """Return the axis of a column."""
-        return Axis(self.words(id), self.quantities[id].kind)
 
     def words(self, id: str) -> Words:
         """Return the symbol of a column, or of a key value."""
         quantity = self.quantities.get(id) or self.key_values[id]
         return Words(quantity.symbol, quantity.ascii_symbol, quantity.short)
 
-    def marks(self, id: str, place: Callable[[float], Any]) -> tuple[Mark, ...]:
-        """Return marks at the extremes of a column, none for a constant; place: crank angle -> x, or x and y.
+    def axis(self, id: str) -> Axis:
+        """Return the axis of a column."""
+        return Axis(self.words(id), self.quantities[id].kind)
 
-        Without y the value is used.
+    def line(self, id: str, words: str = "") -> Line:
+        """Return a column as a line; words: instead of its own."""
+        name = self.words(id)
+        return name._replace(words=words or name.words), itemgetter(id)
+
+    def values(self, lines: Iterable[Line], degrees: Any, within: Array | None = None) -> Array:
+        """Return lines (k, n) in SI at crank angles (n,)."""
+        degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
+        state = self.results.at(degrees, degrees if within is None else within)
+        return np.array([np.broadcast_to(of(state), degrees.shape) for _, of in lines], dtype=float)
+
+    def samples(
+        self, id: str, lines: Sequence[Line], also: Iterable[float] = (), breaks: Iterable[float] | None = None
+    ) -> Sampled:
+        """Return lines over the cycle, with points at the angles `also`; id: of a column that is like them.
+
+        breaks: instead of those of the results; beyond the end of the cycle it begins again. Raises UsageError where a
+        line has left the range of floats.
         """
-        rows = self.results.rows.key_values
-        named = {name: rows[name].of(self.results) for name in (f"{id}_max", f"{id}_min") if name in self.key_values}
-        found = {name: one for name, one in named.items() if isinstance(one, Extreme)}
-        if len({one.value for one in found.values()}) < len(found):
-            return ()
-        return tuple(self.mark(name, one, *np.atleast_1d(place(one.degrees)).tolist()) for name, one in found.items())
+        ends, cycle = self.results.breaks, self.results.breaks[-1]
 
-    def mark(self, id: str, extreme: Extreme, x: float, y: float | None = None) -> Mark:
-        """Return an extreme, which is the key value of this id, at a place; y: its value, if none is given."""
-        figure = PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees)
-        return Mark(x, extreme.value if y is None else y, figure)
+        def values(degrees: Array, within: Array) -> Array:
+            turned = cycle * np.floor(within / cycle)
+            return self.values(lines, degrees - turned, within - turned)
 
-    def panel(self, ids: Sequence[str], over: str = PHI, zero: bool = False) -> Panel:
-        """Return a panel of columns of one kind over another column, with their extremes; zero: with the line y = 0."""
-        samples = self.samples((over, *ids))
-        x, *lines = samples.values
-        curves = [samples.curve(self.words(id), x, line) for id, line in zip(ids, lines)]
+        # not numpy.unique, which loads numpy.ma, a fifth of the whole start-up
+        every = sorted({*(ends.tolist() if breaks is None else breaks), *(one for one in also if 0 < one < cycle)})
+        found = sampled(np.array(every), values)
+        if not np.isfinite(found.values).all():
+            raise too_large(self.quantities[id])
+        return found
+
+    def extreme(self, id: str) -> Extreme | None:
+        """Return the key value of this id, if there is one and it is an extreme."""
+        found = self.results.rows.key_values[id].of(self.results) if id in self.key_values else None
+        return found if isinstance(found, Extreme) else None
+
+    def marks(self, id: str, place: Callable[[float], float | complex] = float) -> tuple[Mark, ...]:
+        """Return marks at the extremes of a column, none for a constant; place: see `mark`, at a crank angle."""
+        both = {name: found for name in (f"{id}_max", f"{id}_min") if (found := self.extreme(name))}
+        constant = len({one.value for one in both.values()}) < len(both)
+        return () if constant else tuple(self.mark(name, one, place(one.degrees)) for name, one in both.items())
+
+    def mark(self, id: str, extreme: Extreme, place: float | complex) -> Mark:
+        """Return an extreme, which is the key value of this id, at x, with its value for y, or at a point x + iy."""
+        point = place if isinstance(place, complex) else complex(place, extreme.value)
+        return Mark(point.real, point.imag, PageFigure(self.words(id), extreme.value, at_deg=extreme.degrees))
+
+    def panel(
+        self,
+        lines: Sequence[str | Line],
+        over: str = PHI,
+        like: str = "",
+        shaded: bool = False,
+        faint: bool = False,
+        zero: bool = False,
+        also: Iterable[float] = (),
+        breaks: Iterable[float] | None = None,
+        title: str = "",
+        words: Mapping[str, str] = NO_WORDS,
+    ) -> Panel:
+        """Return a panel of lines over a column: columns of one kind, with their extremes, or others.
+
+        words: of columns, instead of their own. like: column whose axis is the upright one, if that is not the only
+        line. shaded: what is between the first line and the last, or zero, if there is one line; faint: the last line,
+        to compare with; zero: with the line y = 0.
+        """
+        ids = [one for one in lines if isinstance(one, str)]
+        drawn = [self.line(one, words.get(one, "")) if isinstance(one, str) else one for one in lines]
+        samples = self.samples(like or ids[0], [self.line(over), *drawn], also, breaks)
+        x, *rows = samples.values
+        curves = [samples.curve(name, x, row) for (name, _), row in zip(drawn, rows)]
+        curves[-1] = curves[-1]._replace(kind="faint" if faint else "line")
         curves += [level(x)] if zero else []
-        marks = [mark for id in ids for mark in self.marks(id, lambda angle: self.values((over,), angle)[0])]
-        axis, title = self.axis(ids[0]), "" if np.any(lines) else ZERO
-        up = axis if len(ids) == 1 else axis._replace(name=Words("", words=axis.kind.replace("_", " ")))
-        return Panel(self.axis(over), up, tuple(curves), (), tuple(marks), title=title)
+        shades = between(x, rows[-1] if len(rows) > 1 else np.zeros_like(x), rows[0]) if shaded else ()
+        place = float if over == PHI else lambda angle: float(self.values([self.line(over)], angle)[0, 0])
+        marks = [mark for id in ids for mark in self.marks(id, place)]
+        up = self.axis(like or ids[0])
+        if len(ids) > 1 and not like:
+            up = up._replace(name=Words("", words=up.kind.replace("_", " ")))
+        title = title if np.any(rows) else ZERO
+        return Panel(self.axis(over), up, tuple(curves), tuple(shades), tuple(marks), title=title)
 
-    def panels(self, *groups: tuple[str, ...], over: str = PHI) -> Iterator[Panel]:
+    def panels(self, *groups: Sequence[str], words: Mapping[str, str] = NO_WORDS) -> Iterator[Panel]:
         """Yield a panel for each group of columns of one kind, without columns that the results lack."""
-        if over == PHI or self.having(over):
-            yield from (self.panel(ids, over) for group in groups if (ids := self.having(*group)))
+        yield from (self.panel(ids, words=words) for group in groups if (ids := self.having(*group)))
+
+    def point(self, tip: Callable[[Any], ComplexArray], degrees: float, off: float = 0.0) -> complex:
+        """Return where a tip is at a crank angle, at a jump on the side of the angle that is so far off."""
+        at = np.array([degrees])
+        return complex(tip(self.results.at(at, at + off))[0])
 
     def locus(
         self,
-        ids: Sequence[str],
-        tip: Values,
+        tip: Callable[[Any], ComplexArray],
+        id: str,
         name: Words,
-        marks: tuple[Mark, ...],
         title: str = "",
         cycle: float = math.inf,
+        largest: tuple[str, Extreme | None] = ("", None),
     ) -> Panel:
-        """Return the path of a point (2, n), made from these columns, with one scale for both axes and crank angles.
+        """Return the path of a point with one scale for both axes, and crank angles along it.
 
-        cycle: degrees after which it repeats, if before the end of the cycle of the machine.
+        tip: takes the columns of the results at crank angles (n,), returns points x + iy in SI; id: of a column that is
+        like them. cycle: degrees after which it repeats, if before the end of the cycle of the machine. largest: its
+        largest distance from the pole, with the id of that key value.
         """
-        samples = self.samples(ids, values=tip)
-        curve, axis = samples.curve(name, *samples.values).closed(), Axis(Words("F"), "force")
+        along = (name, lambda state: tip(state).real), (name, lambda state: tip(state).imag)
+        samples = self.samples(id, along)
         angles = np.arange(0.0, min(samples.degrees[-1], cycle), _BEADS)
-        x, y = tip(angles, angles)
-        labelled = [Mark(*place) for place in zip(x[::3].tolist(), y[::3].tolist(), map(_at, angles[::3].tolist()))]
-        curves = (curve, Curve(Words(""), x, y, "beads"), Curve(Words(""), np.zeros(1), np.zeros(1), "pole"))
-        return Panel(axis, axis, curves, marks=(*marks, *labelled), equal=True, title=title)
+        x, y = self.values(along, angles)
+        figures = [PageFigure(NO_NAME, at_deg=one) for one in angles[::3].tolist()]
+        marks = [Mark(*one) for one in zip(x[::3].tolist(), y[::3].tolist(), figures)]
+        key_value, extreme = largest
+        if extreme and extreme.value:
+            # at a jump it is on one of the two sides
+            sides = [self.point(tip, extreme.degrees, off) for off in (-1e-6, 1e-6)]
+            place = min(sides, key=lambda one: abs(abs(one) - extreme.value))
+            marks.insert(0, self.mark(key_value, extreme, place))
+        curves = samples.curve(name, *samples.values).closed(), Curve(NO_NAME, x, y, "beads")
+        pole, axis = Curve(NO_NAME, np.zeros(1), np.zeros(1), "pole"), Axis(Words("F"), "force")
+        return Panel(axis, axis, (*curves, pole), marks=tuple(marks), equal=True, title=title)
 
 
-def _at(degrees: float) -> PageFigure:
-    return PageFigure(Words(""), at_deg=degrees)
+def curve(kind: str, *places: complex, name: Words = NO_NAME, look: int | None = None) -> Curve:
+    """Return a line through places x + iy."""
+    points = np.array(places)
+    return Curve(name, points.real, points.imag, kind, look)
 
 
-def level(x: Array, height: float = 0.0, name: Words = Words("")) -> Curve:  # noqa: B008 (immutable)
+def level(x: Array, height: float = 0.0, name: Words = NO_NAME) -> Curve:
     """Return a faint horizontal line over the range of x (n,)."""
     return Curve(name, np.array([np.nanmin(x), np.nanmax(x)]), np.full(2, height), "faint")
-
-
-def in_units(panel: Panel, system: str) -> Panel:
-    """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
-    across, up = panel.places
-    up.append(np.array([end for end in (panel.y.low, panel.y.high) if end is not None]))  # shared by several panels
-    if panel.equal:
-        across = up = [*across, *up]
-    works = [np.array([shade.figure.value]) for shade in panel.shades if shade.figure]
-    kinds = panel.x.kind, panel.y.kind, "energy"
-    units = []
-    for kind, values in zip(kinds, (across, up, works)):
-        largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
-        units.append(shown_unit(kind, system, largest) if kind else "")
-
-    def to(axis: int, values: Any) -> Any:
-        return convert(values, kinds[axis], units[axis])
-
-    def shown(figure: PageFigure, axis: int, unit: str) -> PageFigure:
-        return figure._replace(value=None if figure.value is None else float(to(axis, figure.value)), unit=unit)
-
-    def scaled(axis: Axis, number: int, unit: str) -> Axis:
-        low, high = (None if end is None else float(to(number, end)) for end in (axis.low, axis.high))
-        return axis._replace(unit=unit, low=low, high=high)
-
-    y_unit = f"{units[1]} {panel.y.mark}".rstrip()
-    return panel._replace(
-        x=scaled(panel.x, 0, units[0]),
-        y=scaled(panel.y, 1, y_unit),
-        curves=tuple(one._replace(x=to(0, one.x), y=to(1, one.y)) for one in panel.curves),
-        shades=tuple(
-            Shade(to(0, x), to(1, low), to(1, high), gain, figure and shown(figure, 2, units[2]))
-            for x, low, high, gain, figure in panel.shades
-        ),
-        marks=tuple(
-            Mark(float(to(0, x)), float(to(1, y)), shown(of, 0, units[0]) if of_x else shown(of, 1, y_unit))
-            for x, y, of, of_x in panel.marks
-        ),
-        bodies=tuple(one.scaled(to(0, 1.0)) for one in panel.bodies),
-        captions=tuple(one._replace(place=to(0, one.place), half=to(0, one.half)) for one in panel.captions),
-    )
 
 
 def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
@@ -253,5 +260,36 @@ def between(x: Array, base: Array, line: Array) -> Iterator[Shade]:
         return
     for start, end in pairwise((0, *crossings.tolist(), len(x) - 1)):
         part = slice(start, end + 1)
-        if end > start and (above[part] != 0).any():
+        if above[part].any():
             yield Shade(x[part], base[part], line[part], bool(above[part].sum() > 0))
+
+
+def in_units(panel: Panel, system: str) -> Panel:
+    """Return a panel, which is in SI, in the units of a system: one for each axis, and one for the works in shades."""
+    across, up = panel.places
+    up += [np.array([one]) for one in (panel.y.low, panel.y.high) if one is not None]  # shared by several panels
+    if panel.equal:
+        across = up = across + up
+    works = [np.array([one.figure.value]) for one in panel.shades if one.figure]
+    units, kinds = dict[str, str](), {"energy": works, panel.x.kind: across, panel.y.kind: up}
+    for kind, values in kinds.items():
+        largest = max((float(np.nanmax(np.abs(one))) for one in values if one.size), default=0.0)
+        units[kind] = shown_unit(kind, system, largest) if kind else ""
+    x, y = (partial(convert, kind=one.kind, unit=units[one.kind]) for one in (panel.x, panel.y))
+
+    def figure(one: PageFigure) -> PageFigure:
+        kind = one.kind or panel.y.kind
+        return one._replace(value=one.value and convert(one.value, kind, units[kind]), unit=units[kind])
+
+    return panel._replace(
+        x=panel.x.shown(x, units[panel.x.kind]),
+        y=panel.y.shown(y, units[panel.y.kind]),
+        curves=tuple(one._replace(x=x(one.x), y=y(one.y)) for one in panel.curves),
+        shades=tuple(
+            Shade(x(one.x), y(one.low), y(one.high), one.gain, one.figure and figure(one.figure))
+            for one in panel.shades
+        ),
+        marks=tuple(Mark(x(one.x), y(one.y), figure(one.figure)) for one in panel.marks),
+        bodies=tuple(one.scaled(x(1.0)) for one in panel.bodies),
+        captions=tuple(one._replace(place=x(one.place), half=x(one.half)) for one in panel.captions),
+    )

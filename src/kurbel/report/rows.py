@@ -39,7 +39,7 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
         turn = np.concatenate((out, back[1:]))
         # the end of a turn is the beginning of the next one
         every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
-        return np.concatenate(every).tolist()  # type: ignore[no-any-return]
+        return np.concatenate(every).tolist()
 
     return angles
 
@@ -83,7 +83,7 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
             )
         # a table over one turn has the rows of both turns of a cycle
         turned = np.sort(np.mod(found.angles, end))
-        return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()  # type: ignore[no-any-return]
+        return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()
 
     return angles
 

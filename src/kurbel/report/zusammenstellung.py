@@ -6,6 +6,7 @@ The printed figures are those of F. Rötscher, Die Maschinenelemente (1927), p. 
 import math
 from array import array
 from collections.abc import Sequence
+from pathlib import Path
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
@@ -14,42 +15,32 @@ from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 
-FACTORS = by_id(
-    Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R"),
-    Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P"),
-    Quantity("displacement_factor", "x/R", "ratio", "x over R"),
-    Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line"),
-    Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)"),
-    Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)"),
-    Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)"),
-    Quantity(
-        "inertia_torque_factor", "T_b/(m R ω²)", "ratio", "Tangential inertia force, −(b R/v²)(c/v) (Tolle, R p. 614)"
+_EACH = (
+    ("b", Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R")),
+    ("c", Quantity("velocity_factor", "sin(φ+ψ)/cos ψ", "ratio", "c over v, and T over P")),
+    ("x", Quantity("displacement_factor", "x/R", "ratio", "x over R")),
+    ("psi", Quantity("psi", "ψ", "angle", "Angle between connecting rod and stroke line")),
+    ("S", Quantity("rod_force_factor", "S/P", "ratio", "Rod force over piston force, 1/cos ψ (R 300)")),
+    ("N", Quantity("guide_force_factor", "N/P", "ratio", "Guide force over piston force, tan ψ (R 301)")),
+    ("D", Quantity("radial_force_factor", "D/P", "ratio", "Radial over piston force, cos(φ+ψ)/cos ψ (R 302)")),
+    (
+        "T_b",
+        Quantity(
+            "inertia_torque_factor",
+            "T_b/(m R ω²)",
+            "ratio",
+            "Tangential inertia force, −(b R/v²)(c/v) (Tolle, R p. 614)",
+        ),
     ),
-    Quantity("stroke_share", "x/s", "ratio", "Share of the stroke"),
+    ("x/s", Quantity("stroke_share", "x/s", "ratio", "Share of the stroke")),
 )
+FACTORS = by_id(*(quantity for _, quantity in _EACH))
 """Rows of Zusammenstellung 112, by id."""
-
-
-RATIOS = (5.0, 4.5, 4.0)
-ROWS = {
-    "b": "acceleration_factor",
-    "c": "velocity_factor",
-    "x": "displacement_factor",
-    "psi": "psi",
-    "S": "rod_force_factor",
-    "N": "guide_force_factor",
-    "D": "radial_force_factor",
-    "T_b": "inertia_torque_factor",
-    "x/s": "stroke_share",
-}
+ROWS = {word: quantity.id for word, quantity in _EACH}
 """What `--rows` calls a row -> its id."""
-
-_ODD = (
-    "velocity_factor",
-    "psi",
-    "guide_force_factor",
-    "inertia_torque_factor",
-)  # they change their sign on the return stroke
+RATIOS = (5.0, 4.5, 4.0)
+_ODD = "velocity_factor", "psi", "guide_force_factor", "inertia_torque_factor"
+"""Rows that change their sign on the return stroke."""
 
 
 ROOTS = by_id(
@@ -86,8 +77,8 @@ def zusammenstellung(
             near = did_you_mean(row, (*ROWS, *ROWS.values()))
             raise UsageError(f"--rows: no row '{row}'{near} (known: {', '.join(ROWS)})")
         ids += found
-    parts = []
-    for ratio in dict.fromkeys(ratios):
+    ratios, parts = tuple(dict.fromkeys(ratios)), list[Part]()
+    for ratio in ratios:
         if not ratio > 1:
             raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
         every = {id: array("d") for id in dict.fromkeys(ids)}
@@ -102,13 +93,13 @@ def zusammenstellung(
         parts.append(Part(ratio, tuple(columns)))
 
     shown = [column.symbol for column in parts[0].columns[1:]]
-    title = f"Zusammenstellung 112. Werte für {_listed(shown, 'und')} am geraden Kurbeltrieb."
+    title = f"Zusammenstellung 112. Werte für {' und '.join(shown)} am geraden Kurbeltrieb."
     mirrored = ""
     if min(angles) >= 0 and max(angles) <= 180:
         odd = [column.symbol for column in parts[0].columns if column.id in _ODD]
-        changes = f"{_listed(odd, 'and')} {'has' if len(odd) == 1 else 'have'} the opposite sign" if odd else ""
+        changes = f"{' and '.join(odd)} {'has' if len(odd) == 1 else 'have'} the opposite sign" if odd else ""
         mirrored = f"On the return stroke (360° − φ) {changes or 'the values are the same'}."
-    whole = Part("", (), place_tables=(_roots(tuple(dict.fromkeys(ratios))),)) if "acceleration_factor" in ids else None
+    whole = Part("", (), place_tables=(_roots(ratios),)) if "acceleration_factor" in ids else None
     report = Report(title, "table", None, "ratios", tuple(parts), whole, mirrored)
     return _with_printed(report, formula) if compare else report
 
@@ -157,39 +148,21 @@ def _roots(ratios: tuple[float, ...]) -> PlaceTable:
     return PlaceTable("roots", "Where b = 0: exactly, and by first order", ("ratio",), names, tuple(columns))
 
 
-def _listed(words: list[str], last: str) -> str:
-    return f" {last} ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
-
-
 # the printed figures
 
-__ = None  # illegible: 70° and 80° lie in the fold between the two pages
-
-_ACCELERATION = {
-    5: (1.200, 1.173, 1.093, 0.966, 0.801, 0.608, 0.400, __, __, -0.200,
-        -0.362, -0.495, -0.600, -0.678, -0.731, -0.766, -0.785, -0.796, -0.800),
-    4.5: (1.222, 1.194, 1.110, 0.977, 0.805, 0.604, __, __, __, -0.222,
-          -0.382, -0.512, -0.611, -0.681, -0.727, -0.755, -0.769, -0.776, -0.778),
-    4: (1.250, 1.220, 1.131, 0.981, 0.809, 0.599, __, __, __, -0.250,
-        -0.409, -0.534, -0.625, -0.686, -0.723, -0.741, -0.748, -0.750, -0.750),
-}  # fmt: skip
-"""L/R -> cos φ + R/L cos 2φ as printed, for φ = 0, 10, … 180°."""
-
-_VELOCITY = {
-    5: (0.0, 0.206, 0.405, 0.585, 0.740, 0.865, 0.953, __, __, 1.000,
-        0.950, 0.874, 0.779, 0.666, 0.542, 0.413, 0.278, 0.139, 0.0),
-    4.5: (0.0, 0.212, 0.413, 0.597, 0.753, 0.877, __, __, __, 1.000,
-          0.946, 0.867, 0.768, 0.655, 0.532, 0.403, 0.271, 0.136, 0.0),
-    4: (0.0, 0.216, 0.423, 0.609, 0.768, 0.891, __, __, __, 1.000,
-        0.941, 0.857, 0.755, 0.641, 0.518, 0.391, 0.261, 0.131, 0.0),
-}  # fmt: skip
-"""L/R -> sin(φ+ψ)/cos ψ as printed."""
-
-_PRINTED = {"acceleration_factor": _ACCELERATION, "velocity_factor": _VELOCITY}
-"""Row id -> L/R -> figures."""
 
 _HALF_UNIT = 0.0005
 """Half a unit of the last printed decimal: what rounding may differ by."""
+
+
+def _printed() -> dict[tuple[str, float], list[float | None]]:
+    """Return the figures as printed for φ = 0, 10, … 180° by the id of the row and L/R.
+
+    None is illegible: 70° and 80° lie in the fold between the two pages.
+    """
+    with open(Path(__file__).parent / "zusammenstellung.tsv", encoding="utf-8") as file:
+        rows = [line.split() for line in file]
+    return {(id, float(ratio)): [None if one == "-" else float(one) for one in of] for id, ratio, *of in rows}
 
 
 def _with_printed(report: Report, formula: str) -> Report:
@@ -197,34 +170,25 @@ def _with_printed(report: Report, formula: str) -> Report:
 
     Raises UsageError if the book prints no such table.
     """
-    wrong = [
-        *(f"L/R = {one.name:g}" for one in report.parts if one.name not in _VELOCITY),
-        *(f"the row {column.id}" for column in report.parts[0].columns[1:] if column.id not in _PRINTED),
-        *([] if formula == "book" else [f"--formula {formula}"]),
-        *([] if list(report.parts[0].columns[0].values) == list(range(0, 181, 10)) else ["other angles"]),
-    ]
-    if wrong:
-        raise UsageError(
-            f"--compare: the book prints nothing for {', '.join(wrong)}; "
-            "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
-        )
-    # the small margin keeps a figure that rounds a tie the other way
-    slack, parts = _HALF_UNIT * (1 + 1e-9), []
+    printed = _printed()
+    wanted = {(column.id, part.name) for part in report.parts for column in part.columns[1:]}
+    if wanted - {*printed} or formula != "book" or [*report.parts[0].columns[0].values] != [*range(0, 181, 10)]:
+        only = "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
+        raise UsageError(f"--compare: the book prints {only}")
+    parts = []
     notes = ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."]
     for part in report.parts:
-        phi, *rows = part.columns
-        columns = [phi]
-        for row in rows:
-            figures, misprints = _PRINTED[row.id][float(part.name)], []
-            for index, (angle, value, figure) in enumerate(zip(phi.values, row.values, figures)):
-                if value is not None and figure is not None and abs(value - figure) > slack:
+        phi, *columns = part.columns
+        shown = [phi]
+        for column in columns:
+            figures, misprints = printed[column.id, float(part.name)], []
+            for index, (angle, value, figure) in enumerate(zip(phi.values, column.values, figures)):
+                # the small margin keeps a figure that rounds a tie the other way
+                if value is not None and figure is not None and abs(value - figure) > _HALF_UNIT * (1 + 1e-9):
                     misprints.append(index)
                     where = f"L/R = {part.name:g}, φ = {angle:g}°"
-                    notes.append(f"{where}: {row.symbol} is {value:.3f}, printed {figure:.3f}")
-            text = f"{row.text}, as printed"
-            columns += [
-                row,
-                Column(f"{row.id}_printed", "  printed", "  printed", "", figures, text, 3, tuple(misprints)),
-            ]
-        parts.append(part._replace(columns=tuple(columns)))
+                    notes.append(f"{where}: {column.symbol} is {value:.3f}, printed {figure:.3f}")
+            id, text, name = f"{column.id}_printed", f"{column.text}, as printed", "  printed"
+            shown += [column, Column(id, name, name, "", figures, text, 3, tuple(misprints))]
+        parts.append(part._replace(columns=tuple(shown)))
     return report._replace(parts=tuple(parts), notes=tuple(notes))

@@ -34,7 +34,7 @@ from kurbel.numerics.enclosing import ClosedCurve
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.quantity import Computed, Heading, value
 from kurbel.solver.effort import Term, TurningEffort
-from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.state import State
 from kurbel.solver.weights import (
@@ -57,8 +57,6 @@ _FEWEST = 8
 """Smallest number of orders, so that those of balance shafts are included."""
 _MOST = 24
 """Largest number of orders listed; a rod hardly longer than the crank has thousands, which decrease slowly."""
-_AT_ONCE = 1 << 20
-"""Largest number of angles times orders evaluated at once, to bound the memory."""
 _EPS = float(np.finfo(float).eps)
 _REAL = 1e-12
 """Rounding of a direction (relative), or of a lever in m."""
@@ -66,112 +64,99 @@ _REAL = 1e-12
 # forces and moments, order by order
 
 
-Curvature = Callable[[Mechanism, CrankAngle], Any]
-"""Takes a mechanism and returns d²x/dφ² in m."""
-
-
-def orders_of(throw: CylinderThrow, curvature: Curvature, count: int) -> ComplexArray:
+def orders_of(throw: CylinderThrow, book: bool, count: int) -> ComplexArray:
     """Return the Fourier coefficients c_n in m, n = 1 … k, (k, count): x″ = 2 Re Σ c_n e^{inφ}; rounding is set to 0.
 
-    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. Raises
-    UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
+    Samples are added until all orders in the upper half of those resolved vanish; a short rod needs more. book: of the
+    acceleration of first order. Raises UsageError for a rod with more orders than can be computed, L/R < 1.00000001.
     """
-    samples = _SAMPLES
+    samples, mechanism = _SAMPLES, throw.cylinder.mechanism
     while samples * count <= _MOST_SAMPLES:
         degrees: Array = np.arange(samples, dtype=float)[:, None] * (360.0 / samples)
-        values = np.broadcast_to(curvature(throw.mechanism, CrankAngle.of(degrees)), (samples, count))
+        angle = CrankAngle.of(degrees)
+        found = book_curvature(mechanism, angle) if book else mechanism.curvature(angle)
+        values = np.broadcast_to(found, (samples, count))
         waves, least = np.fft.rfft(values, axis=0)[1:] / samples, _EPS * np.abs(values).max(axis=0)
         # cosines and sines each: an even function is without sines
-        cos, sin = (np.where(np.abs(part) > least, part, 0.0) for part in (waves.real, waves.imag))
-        waves = cos + 1j * sin
+        waves = unless_cancelled(waves, least, 1.0)
         last = int(np.flatnonzero(waves.any(axis=1)).max(initial=0)) + 1
         if last <= samples // 4:
-            return np.asarray(waves[:last])
+            return waves[:last]
         samples *= 4
     raise UsageError(
         f"{throw.name}: the rod is so little longer than the crank that the orders of its forces do not converge"
     )
 
 
-def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Number | None:
+def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     """Return d²x/dφ² in m of first order, R 291; the true one where there is no rod, None where the book has none."""
     offer = next((one for one in mechanism.OFFERS if one.quantity.id == "b_book"), None)
     return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
 
 
-def waves_of(throws: Sequence[CylinderThrow], curvature: Curvature, count: int) -> ComplexArray:
-    """Return m x″(φ − β) e^{iγ} of each throw in kg m as Fourier coefficients from −k to k, (throws, 2k + 1, count).
+class Part(NamedTuple):
+    """What a throw or weight adds to the unbalanced force over ω²; place: along the shaft in m, None if not known.
 
-    Cylinders with the same mechanism share one analysis.
+    waves: its Fourier coefficients in kg m from −k to k, (2k + 1, count).
     """
-    orders: dict[int, ComplexArray] = {}
-    for throw in throws:
-        if id(throw.mechanism) not in orders:
-            orders[id(throw.mechanism)] = orders_of(throw, curvature, count)
 
+    waves: ComplexArray
+    place: Number | None
+
+
+def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int) -> list[Part]:
+    """Return (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
+
+    book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
+    """
+    alike = {id(one.cylinder.mechanism): one for one in throws}
+    orders = {mechanism: orders_of(throw, book, count) for mechanism, throw in alike.items()}
     k, found = max(_FEWEST, *map(len, orders.values())), []
     for throw in throws:
-        own = orders[id(throw.mechanism)]
+        own = orders[id(throw.cylinder.mechanism)]
         forward = np.concatenate((own, np.zeros((k - len(own), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
-        lag = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.lag, count))
-        found.append(waves * throw.mass * unit_vector(throw.bank - lag))
-    return np.array(found)
+        lag = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.cylinder.crank_position, count))
+        found.append(Part(waves * throw.mass * unit_vector(throw.bank - lag), throw.place))
+    for weight in (*(throw.weight(throw.rotating) for throw in throws), *weights):
+        if some(weight.product != 0):
+            waves = np.zeros((2 * k + 1, count), complex)
+            waves[k + weight.order] = weight.product * weight.order**2
+            found.append(Part(waves, weight.place))
+    return found
 
 
-class Unbalanced(NamedTuple):
-    """The unbalanced force over ω² in kg m, and the moment over ω² in kg m², None where an axial position is unknown.
+class Unbalanced:
+    """The unbalanced force over ω² in kg m, and the moment over ω² in kg m², of the sum of all parts.
 
-    orders: of one machine, the lowest orders that any throw or weight has, whether or not they cancel in the sum;
+    z_0: reference plane of the moments in m; the moment is None where it, or a place, is not known. Orders that cancel
+    are exactly 0. orders: of one machine, the lowest orders that any part has, whether or not they cancel in the sum;
     next_order: the first one that is not listed, None if all are.
     """
 
-    force: ClosedCurve
-    moment: ClosedCurve | None
-    orders: tuple[int, ...]
-    next_order: int | None
+    def __init__(self, parts: Sequence[Part], z_0: Number | None) -> None:
+        waves, places = np.array([one.waves for one in parts]), [one.place for one in parts]
+        levers = [place - z_0 for place in places if place is not None and z_0 is not None]
+        self.force = _summed(waves, [1.0] * len(places))
+        self.moment = _summed(waves, levers) if len(levers) == len(places) else None
+        sizes = np.abs(waves[:, :, 0]).max(axis=0)
+        both = (sizes + sizes[::-1])[len(sizes) // 2 + 1 :]
+        orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
+        self.orders, self.next_order = orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None
 
-    def at_most(self, vector: ClosedCurve) -> float:
-        """Return an upper bound, over ω², of the force or moment of the orders that are not listed."""
-        higher = np.abs(vector.numbers)[:, None] > self.orders[-1]
-        return float(ClosedCurve(vector.waves * higher).farthest()[0][0])
 
-
-def unbalanced_of(
-    throws: Sequence[CylinderThrow], waves: ComplexArray, weights: Sequence[Weight], z_0: float | None
-) -> Unbalanced:
-    """Return the unbalanced force and moment of all throws and weights.
-
-    waves: Fourier coefficients of the reciprocating masses, see `waves_of`; z_0: reference plane of the moments in m,
-    None where it is not known. Orders that cancel are exactly 0.
-    """
-    turning = [one for one in weights if some(one.product != 0)]
-    pulls = np.zeros((len(turning), *waves.shape[1:]), complex)
-    for row, one in enumerate(turning):
-        pulls[row, one.order + waves.shape[1] // 2] = one.product * one.order**2
-    waves = np.concatenate((waves, pulls))
-
-    def summed(levers: Sequence[Number]) -> ClosedCurve:
-        terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
-        return ClosedCurve(np.asarray(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0))))
-
-    places = [*(one.place for one in throws), *(one.place for one in turning)]
-    levers = [place - z_0 for place in places if place is not None and z_0 is not None]
-    moment = summed(levers) if len(levers) == len(places) else None
-    sizes, k = np.abs(waves[:, :, 0]).max(axis=0), waves.shape[1] // 2
-    both = sizes[k + 1 :] + sizes[:k][::-1]
-    orders = tuple((np.flatnonzero(both > _SHOWN * both.max()) + 1).tolist())
-    return Unbalanced(
-        summed([1.0] * len(places)), moment, orders[:_MOST], orders[_MOST] if len(orders) > _MOST else None
-    )
+def _summed(waves: ComplexArray, levers: Sequence[Number]) -> ClosedCurve:
+    terms = waves * np.array([np.broadcast_to(one, waves.shape[2]) for one in levers])[:, None]
+    return ClosedCurve(unless_cancelled(terms.sum(axis=0), np.abs(terms).sum(axis=0)))
 
 
 def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
     """Return the force or moment vectors (n,) of one machine at crank angles (n,) in degrees; rounding is set to 0."""
-    parts = np.array_split(degrees, math.ceil(len(degrees) * len(curve.waves) / _AT_ONCE) or 1)
-    return np.asarray(
-        unless_cancelled(np.concatenate([curve.at(part)[0] for part in parts]), np.abs(curve.waves).sum())
-    )
+    found = np.zeros(degrees.shape, complex)
+    for number, wave in zip(curve.numbers.tolist(), curve.waves[:, 0]):
+        if wave:
+            found += wave * unit_vector(number * degrees)
+    return unless_cancelled(found, np.abs(curve.waves).sum())
 
 
 # over the crank angle
@@ -220,20 +205,12 @@ class BalanceColumns(AtAngles):
     )
 
     def __init__(self, balance: MachineBalance, phi: Array, within: Array) -> None:
-        self.phi = phi
-        self._balance, self._within = balance, within
-        self._vectors: dict[str, ComplexArray | None] = {}
+        self.phi, self._balance, self._within = phi, balance, within
 
     def vector(self, name: str) -> ComplexArray | None:
         """Return a vector (n,): `force`, `moment`, `book force`, `book moment`; None where it does not exist."""
-        balance = self._balance
-        if name not in self._vectors:
-            free = balance.book if name.startswith("book") else balance.free
-            curve = None if free is None else free.force if name.endswith("force") else free.moment
-            self._vectors[name] = None
-            if curve is not None and balance.omega is not None:
-                self._vectors[name] = vector_at(curve, self.phi) * (balance.omega * balance.omega)
-        return self._vectors[name]
+        curve, omega = self._balance.curve(name), self._balance.omega
+        return None if curve is None or omega is None else vector_at(curve, self.phi) * (omega * omega)
 
     def rolling(self) -> Array | None:
         """Return the rolling moment (n,) in N m; None without a speed."""
@@ -261,10 +238,10 @@ class MachineBalance(Results):
 
     _unbalanced = Heading("Unbalanced forces and moments")
     _book = "The same by the acceleration of first order (R 291)"
-    F_free_max = value("F_max", "force", "Largest unbalanced force", lambda one: one.farthest["force"])
-    F_free_max_book = value("F_0,max", "force", _book, lambda one: one.farthest_of_book[0])
-    M_free_max = value("M_f,max", "torque", "Largest unbalanced moment", lambda one: one.farthest.get("moment"))
-    M_free_max_book = value("M_f,0,max", "torque", _book, lambda one: one.farthest_of_book[1])
+    F_free_max = value("F_max", "force", "Largest unbalanced force", lambda one: one.largest("force"))
+    F_free_max_book = value("F_0,max", "force", _book, lambda one: one.largest_of_book("book force"))
+    M_free_max = value("M_f,max", "torque", "Largest unbalanced moment", lambda one: one.largest("moment"))
+    M_free_max_book = value("M_f,0,max", "torque", _book, lambda one: one.largest_of_book("book moment"))
     M_roll_max = value(
         "M_roll,max",
         "torque",
@@ -292,11 +269,14 @@ class MachineBalance(Results):
         "u_1",
         "unbalance",
         "Counterweight balancing all rotating and half of the reciprocating mass",
-        lambda one: abs(one.forward),
+        lambda one: one.shown(abs(one.forward)),
     )
     counterweight_best_angle = value("α_1", "angle", _direction, lambda one: one.angle_of(-one.forward))
     counterweight_least = value(
-        "u_min", "unbalance", "Counterweight that minimises the largest unbalanced force", lambda one: abs(one.least)
+        "u_min",
+        "unbalance",
+        "Counterweight that minimises the largest unbalanced force",
+        lambda one: one.shown(abs(one.least)),
     )
     counterweight_least_angle = value("α_min", "angle", _direction, lambda one: one.angle_of(one.least))
     share_best = value(
@@ -305,7 +285,7 @@ class MachineBalance(Results):
         "Share of the reciprocating mass that this counterweight balances",
         lambda one: one.share_of_least(),
     )
-    F_free_best = value("F_min", "force", "Largest unbalanced force with it", lambda one: one.least_and_force[1])
+    F_free_best = value("F_min", "force", "Largest unbalanced force with it", lambda one: one.force_with_least)
 
     _locomotive = Heading("Locomotive")
     counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
@@ -329,7 +309,7 @@ class MachineBalance(Results):
         if not any(some(one.mass != 0) or some(one.rotating != 0) for one in self.throws):
             raise UsageError(f"{machine.name}: no moving masses to balance; give 'masses' to its cylinders")
         for throw in self.throws:
-            if throw.mechanism.quick_return:
+            if throw.cylinder.mechanism.quick_return:
                 raise UsageError(f"{throw.name}: the masses of a quick-return mechanism are not known")
         self.omega = None if machine.speed is None else 2 * math.pi * machine.speed
         self.z_0, self.wheels = middle_of(machine), wheels_of(machine)
@@ -338,19 +318,14 @@ class MachineBalance(Results):
     def _columns(self, phi: Array, within: Array) -> BalanceColumns:
         return BalanceColumns(self, phi, within)
 
-    def _of_one(self, values: Any) -> Any:
-        """Return complex numbers (machines,) of many machines, or the number of the only machine."""
-        return values[0].item() if self.count is None else values
+    def shown(self, values: Array) -> Any:
+        """Return real numbers (machines,); of the only machine a float, None for nan."""
+        return None if self.count is None and math.isnan(values[0]) else result(values, self.count)
 
     # unbalanced vectors, all divided by ω²
 
-    @cached_property
-    def _waves(self) -> ComplexArray:
-        return waves_of(self.throws, lambda one, angle: one.curvature(angle), self.count or 1)
-
-    def _with(self, waves: ComplexArray, *weights: Weight) -> Unbalanced:
-        rotating = (throw.weight(throw.rotating) for throw in self.throws)
-        return unbalanced_of(self.throws, waves, (*rotating, *weights), self.z_0)
+    def _with(self, weights: Sequence[Weight], book: bool = False) -> Unbalanced:
+        return Unbalanced(parts_of(self.throws, weights, book, self.count or 1), self.z_0)
 
     @cached_property
     def _weights(self) -> tuple[Weight, ...]:
@@ -364,45 +339,45 @@ class MachineBalance(Results):
     @cached_property
     def bare(self) -> Unbalanced:
         """The unbalance of the throws, without counterweights and balance shafts."""
-        return self._with(self._waves)
+        return self._with(())
 
     @cached_property
     def free(self) -> Unbalanced:
         """The unbalance with the counterweights and balance shafts of the machine file."""
-        return self._with(self._waves, *self._weights) if self._weights else self.bare
+        return self._with(self._weights) if self._weights else self.bare
 
     @cached_property
     def book(self) -> Unbalanced | None:
         """The same by the acceleration of first order, R 291; None where the book has none for a mechanism."""
-        if any(book_curvature(one.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
+        if any(book_curvature(one.cylinder.mechanism, CrankAngle.of(0.0)) is None for one in self.throws):
             return None
-        return self._with(waves_of(self.throws, book_curvature, self.count or 1), *self._weights)
+        return self._with(self._weights, book=True)
+
+    def curve(self, name: str) -> ClosedCurve | None:
+        """Return `force`, `moment`, `book force` or `book moment`, over ω²; None where it does not exist."""
+        vectors = self.book if name.startswith("book") else self.free
+        if vectors is None:
+            return None
+        return vectors.force if name.endswith("force") else vectors.moment
 
     def _times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
         """Return the extreme of a vector from its largest magnitude over ω²; None without a speed."""
         if self.omega is None:
             return None
-        return Extreme(self._of_one(lengths) * self.omega * self.omega, self._of_one(degrees))
+        return Extreme(self.shown(lengths) * self.omega * self.omega, self.shown(degrees))
 
-    @cached_property
-    def farthest(self) -> dict[str, Extreme | None]:
-        """Largest unbalanced `force` and `moment`; for a locomotive also those `along` the stroke lines."""
-        curves = {"force": self.free.force, "moment": self.free.moment}
-        waves = {name: one.waves for name, one in curves.items() if one is not None}
-        if self.machine.locomotive:
-            waves |= {f"{name} along": (one + one[::-1].conj()) / 2 for name, one in waves.items()}
-        found = ClosedCurve(np.concatenate([*waves.values()], axis=1)).farthest()
-        return dict(zip(waves, map(self._times_omega_squared, *(np.split(one, len(waves)) for one in found))))
+    def largest(self, name: str, along: bool = False) -> Extreme | None:
+        """Return the largest magnitude of a vector, see `curve`; along: of what it has along the stroke lines."""
+        curve = self.curve(name)
+        if curve is None:
+            return None
+        if along:
+            curve = ClosedCurve((curve.waves + curve.waves[::-1].conj()) / 2)
+        return self._times_omega_squared(*curve.farthest())
 
-    @cached_property
-    def farthest_of_book(self) -> tuple[Extreme | None, Extreme | None]:
-        """The largest force and moment by the acceleration of first order, where they are to be compared."""
-        if not self._compare or self.book is None:
-            return None, None
-        force, moment = self.book.force, self.book.moment
-        return self._times_omega_squared(*force.farthest()), self._times_omega_squared(
-            *moment.farthest()
-        ) if moment else None
+    def largest_of_book(self, name: str) -> Extreme | None:
+        """Return the largest magnitude of a vector by the acceleration of first order, where these are compared."""
+        return self.largest(name) if self._compare else None
 
     # the rolling moment on the frame about the shaft: −(M + dH/dt), H the angular momentum about the shaft
 
@@ -453,36 +428,36 @@ class MachineBalance(Results):
 
     # counterweights, and shafts
 
-    @cached_property
-    def forward(self) -> Any:
-        """Forward rotating vector of order 1 over ω², in kg m."""
-        return self._of_one(self.bare.force.of(1))
+    @property
+    def forward(self) -> ComplexArray:
+        """Forward rotating vector of order 1 over ω², in kg m, (machines,)."""
+        return self.bare.force.of(1)
 
     @cached_property
-    def least_and_force(self) -> tuple[Any, Extreme | None]:
-        """The counterweight u in kg m, complex, that minimises the largest unbalanced force, and that force.
+    def _circle(self) -> tuple[ComplexArray, Array, Array]:
+        """The smallest circle round the curve c, see `least`."""
+        return self.bare.force.plus(1, -self.forward).turned_back().least_circle()
+
+    @property
+    def least(self) -> ComplexArray:
+        """The counterweight u in kg m, (machines,), that minimises the largest unbalanced force.
 
         In the frame of the crank the force without a counterweight is the closed curve F e^{−iφ} = c_1 + c(φ). A weight
         u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
         encloses the curve.
         """
-        turning = self.bare.force.of(1)
-        centre, radius, degrees = self.bare.force.plus(1, -turning).turned_back().least_circle()
-        return self._of_one(-(turning + centre)), self._times_omega_squared(radius, degrees)
+        return -(self.forward + self._circle[0])
 
     @property
-    def least(self) -> Any:
-        """The counterweight in kg m, complex, that minimises the largest unbalanced force."""
-        return self.least_and_force[0]
+    def force_with_least(self) -> Extreme | None:
+        """The largest unbalanced force with that counterweight."""
+        return self._times_omega_squared(*self._circle[1:])
 
-    def angle_of(self, product: Any) -> Any:
-        """Return the direction of a weight from throw 1 in degrees, in (−180, 180]; None, or nan, for no weight."""
-        turned = product / self.throws[0].arm
-        degrees = np.degrees(np.arctan2(turned.imag, turned.real))
+    def angle_of(self, product: ComplexArray) -> Any:
+        """Return the direction of a weight (machines,) from throw 1 in degrees, in (−180, 180]; none for no weight."""
+        degrees = np.degrees(np.angle(product / self.throws[0].arm))
         degrees = np.where(degrees > _REAL - 180, degrees, 180.0)
-        if self.count is None:
-            return float(degrees) if product else None
-        return np.where(product != 0, degrees, np.nan)
+        return self.shown(np.where(product != 0, degrees, math.nan))
 
     def share_of_least(self) -> Any:
         """Return the share of the reciprocating mass that the counterweight `least` balances in a single-throw machine.
@@ -493,14 +468,12 @@ class MachineBalance(Results):
         if others or not some(throw.mass != 0):
             return None
         opposite = -self.least / throw.arm
-        aside = abs(opposite.imag) > _REAL * abs(opposite)
-        if self.count is None:
-            return None if aside else (opposite.real - throw.rotating) / throw.mass
-        with np.errstate(all="ignore"):
-            return np.where(aside | (throw.mass == 0), np.nan, (opposite.real - throw.rotating) / throw.mass)
+        known = (np.abs(opposite.imag) <= _REAL * np.abs(opposite)) & (throw.mass != 0)
+        share = (opposite.real - throw.rotating) / np.where(known, throw.mass, math.nan)
+        return self.shown(share)
 
     @property
-    def planes(self) -> tuple[float, ...]:
+    def planes(self) -> tuple[Any, ...]:
         """The two correction planes in m: those given, else of the wheels, else of the outer cylinders; or ()."""
         given = self.machine.counterweights
         named = () if isinstance(given, tuple) else given.planes
@@ -515,7 +488,7 @@ class MachineBalance(Results):
         """
         if not self.planes or self.bare.moment is None or self.z_0 is None:
             return ()
-        force, moment = self._of_one(self.bare.force.of(order)), self._of_one(self.bare.moment.of(order))
+        force, moment = (complex(one.of(order)[0]) for one in (self.bare.force, self.bare.moment))
         first, second = self.planes
         far = ((first - self.z_0) * force - moment) / (second - first)
         return Weight((-force - far) / order**2, order, first), Weight(far / order**2, order, second)
@@ -535,8 +508,8 @@ class MachineBalance(Results):
         force, moment = self.bare.force, self.bare.moment
         found: list[Weight] = []
         for order in (-1, 2, -2):
-            circle = self._of_one(force.of(order))
-            couple = None if moment is None else self._of_one(moment.of(order))
+            circle = complex(force.of(order)[0])
+            couple = None if moment is None else complex(moment.of(order)[0])
             arm = 1j if couple is None or not circle else couple / circle
             at_a_place = abs(arm.imag) <= _REAL * (1 + abs(arm)) and self.z_0 is not None
             if couple and not at_a_place and self.planes:
@@ -571,8 +544,8 @@ class MachineBalance(Results):
         if given is None:
             return {}
         found: dict[str, Any] = {
-            "traction_variation": self.farthest["force along"],
-            "swaying_couple": self.farthest.get("moment along"),
+            "traction_variation": self.largest("force", along=True),
+            "swaying_couple": self.largest("moment", along=True),
         }
         wheels = [map(abs, self.in_wheels(of)) for of in ("all", "reciprocating", "counterweights")]
         most, whole, weight = (where(near >= far, near, far) for near, far in wheels)

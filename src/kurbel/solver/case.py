@@ -65,8 +65,12 @@ class Case(Shown):
 
     @cached_property
     def cylinders(self) -> tuple[CylinderForces, ...]:
-        """Motion, forces and key values of every cylinder, in the order of the machine file."""
-        return tuple(CylinderForces(self.machine, cylinder, self.count) for cylinder in self.machine.cylinders)
+        """Motion, forces and key values of every cylinder, in the order of the file; those of equal ones are shared."""
+        found: list[CylinderForces] = []
+        for cylinder in self.machine.cylinders:
+            twin = next((one for one in found if one.twin is None and one.is_like(cylinder)), None)
+            found.append(CylinderForces(self.machine, cylinder, self.count, twin))
+        return tuple(found)
 
     @cached_property
     def stress(self) -> CrankshaftStrength:

@@ -11,6 +11,7 @@ from there to the first mass, or from the last mass there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -57,41 +58,32 @@ class Chain:
         """The matrix (segments, n) that turns angles of the masses into twists, that before less that behind."""
         first, last = self.held
         held = np.eye(len(self.inertias) + first + last)
-        return np.asarray((held[:-1] - held[1:])[:, int(first) : len(held) - last])
+        return (held[:-1] - held[1:])[:, int(first) : len(held) - last]
 
     @property
     def held(self) -> tuple[bool, bool]:
         """Whether the end before the first mass is fixed, and that behind the last one."""
         return self.ground in ("before", "both"), self.ground in ("after", "both")
 
-    def reversed(self) -> Chain:
-        """Return the same chain read from its other end."""
-        ground = {"before": "after", "after": "before"}.get(self.ground, self.ground)
-        inertias, against = self.inertias[::-1], self.mass_damping[::-1]
-        return Chain(inertias, self.stiffnesses[::-1], self.segment_damping[::-1], against, self.loss[::-1], ground)
+    @property
+    def around(self) -> Array:
+        """The stiffnesses (n + 1,) before the first mass, between the masses and behind the last, 0 at a free end."""
+        first, last = self.held
+        return np.concatenate(([0.0] * (not first), self.stiffnesses, [0.0] * (not last)))
 
     def springs(self, frequencies: Array) -> ComplexArray:
         """Return k (1 + iη) + iΩ d of the segments at angular frequencies Ω (…) in rad/s, (segments, …)."""
         still = (self.stiffnesses * (1 + 1j * self.loss)).reshape(-1, *(1,) * frequencies.ndim)
-        return np.asarray(still + 1j * np.multiply.outer(self.segment_damping, frequencies))
+        return still + 1j * np.multiply.outer(self.segment_damping, frequencies)
 
 
 # response to torques of one frequency
 
 
-class Response(NamedTuple):
-    """The complex amplitudes of the masses in rad, (n, …), and about how far rounding moves them.
-
-    A θ = M is solved for a chain and torques whose last digits are unsure: A δθ = δM − δA θ, all of it taken in phase
-    with the angles, as it is where they meet a natural vibration.
-    """
-
-    angles: ComplexArray
-    moved: ComplexArray
-
-
-def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0) -> Response:
-    """Return the vibration under torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
+def response(
+    chain: Chain, frequencies: Array, torques: ComplexArray, load_damping: Array | float = 0.0
+) -> ComplexArray:
+    """Return the complex amplitudes in rad (n, …) under torques (n, …) in N m at angular frequencies Ω (…) in rad/s.
 
     (K (1 + iη) + iΩ C − Ω² J) θ = M; load_damping: of the masses in addition to their own, (n, …) in N m s/rad. A
     resonance that nothing damps has no answer: it is not finite.
@@ -99,45 +91,22 @@ def response(chain: Chain, frequencies: Array, torques: ComplexArray, load_dampi
     omegas, sides = frequencies.ravel(), torques.reshape(len(torques), -1)
     damping = chain.mass_damping[:, None] + np.broadcast_to(load_damping, torques.shape).reshape(sides.shape)
     twists, springs = chain.twists, chain.springs(omegas)
-    own = 1j * damping * omegas - np.outer(chain.inertias, omegas**2)
     # a pivot of exactly zero is none: it ends as inf
-    diagonal = own + (twists.T**2) @ springs + np.finfo(float).tiny * 1j
-    beside = (twists[:, :-1] * twists[:, 1:]).T @ springs
-    (angles,) = _eliminated(diagonal, beside, sides)
+    own = 1j * (damping * omegas + np.finfo(float).tiny) - np.outer(chain.inertias, omegas**2)
+    matrices = (twists.T * springs.T[:, None]) @ twists + own.T[:, :, None] * np.eye(len(own))
+
+    def solved(sides: ComplexArray) -> ComplexArray:
+        return np.linalg.solve(matrices, sides.T[:, :, None])[:, :, 0].T
+
+    angles = solved(sides)
     # of soft masses on stiff springs the matrix has lost digits, what is left over by the masses and the twists has not
     left = sides - own * angles - twists.T @ (springs * (twists @ angles))
-    phases = angles / np.maximum(np.abs(angles), np.finfo(float).tiny)
-    sizes = np.abs(own) + 2 * np.abs(twists.T) @ np.abs(springs)
-    unsure = np.finfo(float).eps * (sizes * angles + np.abs(sides) * phases)
-    missed, moved = _eliminated(diagonal, beside, left, unsure)
-    return Response((angles + missed).reshape(torques.shape), moved.reshape(torques.shape))
-
-
-def _eliminated(diagonal: ComplexArray, beside: ComplexArray, *sides: ComplexArray) -> ComplexArray:
-    """Return x (q, n, m) with beside_{i−1} x_{i−1} + diagonal_i x_i + beside_i x_{i+1} = each of q sides_i.
-
-    diagonal, sides (n, m), beside (n − 1, m). Of two neighbouring rows the one with the larger pivot goes first.
-    """
-    count, nothing = len(diagonal), np.zeros_like(diagonal[:1])
-    before, after = np.concatenate((nothing, beside)), np.concatenate((beside, nothing))
-    # a row holds the factors of x_i, x_{i+1}, x_{i+2}, and its right sides
-    rows = np.stack((before, diagonal, after, *sides), axis=1).astype(complex)
-    row = np.stack((diagonal[0], after[0], nothing[0], *(one[0] for one in sides)))
-    for i in range(1, count):
-        swap = np.abs(rows[i, 0]) > np.abs(row[0])
-        rows[i - 1], below = np.where(swap, rows[i], row), np.where(swap, row, rows[i])
-        row = below - below[0] / rows[i - 1, 0] * rows[i - 1]
-        row[0], row[1], row[2] = row[1].copy(), row[2].copy(), 0.0
-    rows[-1] = row
-    found = np.zeros((count + 2, len(sides), diagonal.shape[1]), dtype=complex)
-    for i in range(count - 1, -1, -1):
-        found[i] = (rows[i, 3:] - rows[i, 1] * found[i + 1] - rows[i, 2] * found[i + 2]) / rows[i, 0]
-    return np.asarray(found[:-2].swapaxes(0, 1))
+    return (angles + solved(left)).reshape(torques.shape)
 
 
 def passing(chain: Chain, frequencies: Array, angles: ComplexArray) -> ComplexArray:
     """Return the torques (segments, …) in N m in springs and dampers of the segments; angles (n, …): see `response`."""
-    return np.asarray(chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1))
+    return chain.springs(frequencies) * np.tensordot(chain.twists, angles, 1)
 
 
 # natural vibrations
@@ -160,14 +129,13 @@ def holzer_at(chain: Chain, omega: float) -> Holzer:
     residual: the torque left behind the last mass in N m, or at a fixed end behind it the angle left in rad, both per
     radian of the first mass: at a natural frequency it is zero.
     """
-    first, last = chain.held
-    angles, torque, torques = [1.0], -chain.stiffnesses[0] if first else 0.0, []
-    for inertia, stiffness in zip(chain.inertias, [*chain.stiffnesses[int(first) :], np.inf]):
-        torque = torque + omega**2 * inertia * angles[-1]
-        torques.append(torque)
-        angles.append(angles[-1] - torque / stiffness)
-    held, far = [-chain.stiffnesses[0]] if first else [], angles.pop()
-    return Holzer(np.array(angles), np.array([*held, *torques][: len(chain.stiffnesses)]), far if last else torque)
+    springs, angles = chain.around, [1.0]
+    torques = [-springs[0]]
+    for inertia, stiffness in zip(chain.inertias, springs[1:]):
+        torques.append(torques[-1] + omega**2 * inertia * angles[-1])
+        angles.append(angles[-1] - torques[-1] / (stiffness or math.inf))
+    far = angles.pop()
+    return Holzer(np.array(angles), np.array(torques)[springs != 0], far if chain.held[1] else torques[-1])
 
 
 class Modes:
@@ -181,7 +149,8 @@ class Modes:
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
-        self._line = chain.reversed() if chain.ground == "before" else chain  # read toward the fixed end
+        self._onward = -1 if chain.ground == "before" else 1  # read toward the fixed end
+        self._inertias, self._springs = chain.inertias[:: self._onward], chain.around[:: self._onward]
 
     @cached_property
     def omegas(self) -> Array:
@@ -190,8 +159,8 @@ class Modes:
         Those of the elastic modes by bisection of the number of modes below, to the last digit.
         """
         elastic = len(self.chain.inertias) - (not self.chain.ground)
-        wanted, springs = np.arange(elastic), np.abs(self.chain.twists.T) @ self.chain.stiffnesses
-        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self.chain.inertias).max()))  # Gershgorin, J⁻¹ K
+        wanted, springs = np.arange(elastic), self._springs[:-1] + self._springs[1:]
+        high = np.full(len(wanted), 1.01 * np.sqrt(2 * (springs / self._inertias).max()))  # Gershgorin, J⁻¹ K
         low = high * 1e-3
         while self._below(low[:1])[0]:
             low = low * 1e-3
@@ -206,9 +175,8 @@ class Modes:
 
     def _below(self, omegas: Array) -> Array:
         """Return how many elastic modes are below each ω (m,)."""
-        stiffnesses, behind = self._line.stiffnesses[int(self._line.held[0]) :], _behind(self._line, omegas)
-        negative = (behind[: len(stiffnesses)] > stiffnesses[:, None]).sum(axis=0)
-        return np.asarray(negative if self.chain.ground else negative + (behind[-1] > 0) - 1)
+        negative = (_behind(self._inertias, self._springs, omegas) > self._springs[1:, None]).sum(axis=0)
+        return negative - (not self.chain.ground)
 
     def holzer(self, mode: int) -> Holzer:
         """Return the table of a mode, counted from 0.
@@ -216,24 +184,18 @@ class Modes:
         From the mass at which the tables from both ends meet best it is computed outward both ways, where no error
         grows.
         """
-        omega = self.omegas[mode : mode + 1]
-        inertias, first = self._line.inertias, int(self._line.held[0])
-        stiffnesses = self._line.stiffnesses[first:]  # behind the masses
-        behind, before = _behind(self._line, omega)[:, 0], _behind(self._line.reversed(), omega)[::-1, 0]
+        omega, inertias, springs = self.omegas[mode : mode + 1], self._inertias, self._springs
+        behind = _behind(inertias, springs, omega)[:, 0]
+        before = _behind(inertias[::-1], springs[::-1], omega)[::-1, 0]
         own = omega[0] ** 2 * inertias
         gap = behind + before - own
-        meet, count = int(np.argmin(np.abs(gap) / inertias)), len(inertias)
-        angles = np.ones(count)
-        for i in range(meet - 1, -1, -1):
-            angles[i] = angles[i + 1] / _not_zero(1 - behind[i] / stiffnesses[i])
-        for i in range(meet + 1, count):
-            angles[i] = angles[i - 1] / _not_zero(1 - before[i] / stiffnesses[i - 1])
-        torques = np.concatenate((behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]))
-        if self.chain.ground:
-            torques = np.append(torques, stiffnesses[-1] * angles[-1])
-        if first:
-            torques = np.append(-self._line.stiffnesses[0] * angles[0], torques)
-        if self.chain.ground == "before":
+        meet = int(np.argmin(np.abs(gap) / inertias))
+        up = 1 / _not_zero(1 - behind[:meet] / springs[1 : meet + 1])
+        down = 1 / _not_zero(1 - before[meet + 1 :] / springs[meet + 1 : -1])
+        angles = np.concatenate((np.cumprod(up[::-1])[::-1], [1.0], np.cumprod(down)))
+        inner = behind[:meet] * angles[:meet], -(before * angles)[meet + 1 :]
+        torques = np.concatenate(([-springs[0] * angles[0]], *inner, [springs[-1] * angles[-1]]))[springs != 0]
+        if self._onward < 0:
             angles, torques = angles[::-1], -torques[::-1]
         left = abs(float(gap[meet])) / max(float(np.abs(torques).max(initial=0.0)), float(own[meet]), 1e-300)
         unit = angles[0] if abs(angles[0]) > _STILL * np.abs(angles).max() else angles[np.argmax(np.abs(angles))]
@@ -245,14 +207,16 @@ class Modes:
         return tuple((mass, a / (a - b)) for mass, (a, b) in neighbours if a * b < 0 or a == 0 != b)
 
 
-def _behind(chain: Chain, omegas: Array) -> Array:
-    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along the chain at ω (m,)."""
-    first, found = int(chain.held[0]), np.empty((len(chain.inertias), len(omegas)))
-    carried = np.full(len(omegas), -chain.stiffnesses[0] if first else 0.0)
-    for i, inertia in enumerate(chain.inertias):
+def _behind(inertias: Array, springs: Array, omegas: Array) -> Array:
+    """Return r (n, m): the torque behind a mass over its angle, ω² J of it included, along a chain at ω (m,).
+
+    springs: those around the masses, see `Chain.around`.
+    """
+    found, carried = np.empty((len(inertias), len(omegas))), np.full(len(omegas), -springs[0])
+    for i, inertia in enumerate(inertias):
         found[i] = carried + omegas * omegas * inertia
         if i + 1 < len(found):
-            carried = found[i] / _not_zero(1 - found[i] / chain.stiffnesses[first + i])
+            carried = found[i] / _not_zero(1 - found[i] / springs[i + 1])
     return found
 
 
@@ -292,12 +256,10 @@ class ChainEquation:
         parts = np.ceil(2 * pieces.half * self._order[pieces.machine] / _SWING).clip(1, _MOST_PARTS)
         self.pieces = pieces.parted(parts.astype(int))
 
-        def by_machine(numbers: Array) -> Array:
-            return np.broadcast_to(numbers.reshape(len(numbers), -1), (len(numbers), pieces.count))
-
-        self._twists, inertias = chain.twists, by_machine(chain.inertias)
-        self._damping, self._against = by_machine(chain.segment_damping), by_machine(chain.mass_damping)
-        self._speeds, self._springs = 1 / (inertias * omega), by_machine(chain.stiffnesses) / (omega * self._order)
+        numbers = (chain.inertias, chain.stiffnesses, chain.segment_damping, chain.mass_damping)
+        inertias, stiffnesses, self._damping, self._against = (one.reshape(len(one), -1) for one in numbers)
+        self._twists, self._speeds = chain.twists, 1 / (inertias * omega)
+        self._springs = stiffnesses / (omega * self._order)
         self.unknowns = sum(chain.twists.shape)
         self.bounded = len(chain.stiffnesses) + loaded if law else None
         self._height = inertias[loaded] * omega**2

@@ -44,7 +44,7 @@ class Harmonic(NamedTuple):
 
 def natural_order(coupling: Coupling, own: Array, omega: Any) -> Array:
     """Return the natural order √(k (1/J₁ + 1/J₂))/ω_n of cranks and driven inertia, J₁ in kg m²."""
-    return np.asarray(np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega)
+    return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
 
 
 class ElasticCoupling(SpeedLine):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
 from kurbel.machine.cylinder import may_lock
@@ -36,9 +36,13 @@ class Where(NamedTuple):
 
 
 class SampledCylinder:
-    """A cylinder with its cycle in pieces, and the extremes and zeros of its columns."""
+    """A cylinder with its cycle in pieces, and the extremes and zeros of its columns.
+
+    twin: an equal cylinder elsewhere along the shaft, which has the same cycle.
+    """
 
     drive: Drive
+    twin: SampledCylinder | None
 
     def result(self, values: Array) -> Any:
         """Return values (machines,) as they are for many machines, and as a float for one."""
@@ -58,6 +62,8 @@ class SampledCylinder:
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, State]:
+        if self.twin:
+            return self.twin._cycle
         drive, (cut, state) = self.drive, self._cut
         _refuse_locking(state, cut)
         return _smoothed(drive, cut, state, _smooth)[:2]
@@ -65,6 +71,8 @@ class SampledCylinder:
     @cached_property
     def _cut(self) -> tuple[Pieces, State]:
         """The cycle cut at kinks, jumps and multiples of 45° only, and the state there."""
+        if self.twin:
+            return self.twin._cut
         drive, pieces = self.drive, self.drive.pieces
         state = State.on(drive, pieces)
         if drive.has_force and some(drive.ring_surface != 0):
@@ -175,7 +183,7 @@ def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, S
     return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)
 
 
-def _sense(state: State) -> Any:
+def _sense(state: State) -> Number:
     """Return the force in N whose sign decides which side of a guide, or of a Scotch yoke, is loaded."""
     return state.guide_sense if state.rod_angle else state.after_steady_friction
 

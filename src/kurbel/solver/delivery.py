@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from copy import copy
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +30,7 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.ideal_cards import Compressor
 from kurbel.machine.indicator import Card, Chamber, Rectangle
-from kurbel.machine.pumped import Pipe, Pump, Vessel
+from kurbel.machine.pumped import Gas, Pipe, Pump, Vessel
 from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
@@ -38,7 +38,6 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
 from kurbel.solver.figures import AtAngles, Results, Searched, result
-from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import PistonGas
 from kurbel.solver.state import State
 
@@ -66,7 +65,7 @@ def driven_pistons(drive: Drive) -> Iterator[Driven]:
         chambers = list(gas.piston.chambers.values())
         ideal = any(isinstance(one, Compressor) for one in chambers)
         if _agreed(gas.work < 0) or (ideal and not _agreed(gas.work > 0)):
-            number = next(number for number, one in enumerate(drive.cylinder.pistons) if one is gas.piston)
+            number = drive.cylinder.pistons.index(gas.piston)
             works = iter(gas.works)
             head, crank = (end is not None and _agreed(next(works) < 0) for end in (gas.head, gas.crank))
             pumps = not ideal and (drive.machine.pump is not None or all(map(_is_level, chambers)))
@@ -93,10 +92,10 @@ def _displaced(
 
     head, crank: whether that end counts.
     """
-    own = state.drive.cylinder.pistons[piston.number]
-    areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
+    head_area, crank_area = piston.gas.areas
+    areas = head_area * (piston.head and head), crank_area * (piston.crank and crank)
     # a piston that a lever moves against the crosshead draws in where another one delivers
-    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
+    outward, back = areas if draws != piston.gas.turned else areas[::-1]
     return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
 
 
@@ -132,37 +131,26 @@ class DeliveryState(AtAngles):
         self._delivery, self.phi, self._within = delivery, phi, within
 
     @cached_property
-    def answers(self) -> dict[str, Array | None]:
-        """The columns (n,) that `Delivery.sampled` has; None for what is left out."""
-        return {id: self._course(id) for id in self.rows if id != "phi"}
-
-    def _course(self, id: str) -> Array | None:
-        values, pieces = self._delivery.sampled(id), self._delivery.pieces
-        if values is None:
-            return None
-        found = pieces.at(values, np.zeros(len(self.phi), dtype=np.intp), self.phi, self._within)
-        return np.asarray(unless_cancelled(found, pieces.largest(values)[0], _CANCELLED))
+    def answers(self) -> dict[str, Array]:
+        """The columns (n,) that there are."""
+        pieces, machine = self._delivery.pieces, np.zeros(len(self.phi), dtype=np.intp)
+        found = dict[str, Array]()
+        for id, values in self._delivery.sampled.items():
+            at = pieces.at(values, machine, self.phi, self._within)
+            found[id] = np.asarray(unless_cancelled(at, pieces.largest(values)[0], _CANCELLED))
+        return found
 
 
 _PIPES = {"": ("", "delivery"), "suction_": ("s,", "suction")}
-_RATES: dict[str, dict[str, bool]] = {
-    "flow": {},
-    "flow_suction": {"draws": True},
-    "flow_head": {"crank": False},
-    "flow_crank": {"head": False},
-    "rise": {"rises": True},
-    "suction_rise": {"draws": True, "rises": True},
-}
-"""What is sampled of a flow -> the words of `_displaced`."""
 _WORKS = {"": ("R", "as they are"), "_bare": ("R,0", "without vessels"), "_steady": ("R,m", "with vessels at both")}
 
 
 class Delivery(Results):
     """What one pumping piston, or all of a machine, deliver; key values in SI, of many machines (machines,).
 
-    pieces: of the cycle in degrees; sampled: takes the words of `_displaced` and returns dV/dφ at their nodes; both:
-    whether both ends of one piston deliver; pump: its pipes, None for one piston of several. Raises UsageError for a
-    vessel that would empty.
+    pieces: of the cycle in degrees; rate: takes the words of `_displaced` and returns dV/dφ in m³ per radian at their
+    nodes; both: whether both ends of one piston deliver; pump: its pipes, None for one piston of several. Raises
+    UsageError for a vessel that would empty.
     """
 
     command, state = "delivery", DeliveryState
@@ -187,14 +175,14 @@ class Delivery(Results):
         machine: Machine,
         pieces: Pieces,
         count: int | None,
-        sampled: Callable[..., Array],
+        rate: Callable[..., Array],
         both: bool,
         pump: Pump | None = None,
     ) -> None:
         self.name, self.machine, self.pieces, self.pump = name, machine, pieces, pump
-        self._sampled, self._both = sampled, both
-        self._rates: dict[str, Array] = {}
-        self._swings: dict[str, Any] = {}
+        self._rate, self._both = cache(rate), both
+        both_pipes = ((pump.suction_pipe, True), (pump.delivery_pipe, False)) if pump else ()
+        self._pipes = [(pipe, draws) for pipe, draws in both_pipes if pipe]
         self._result = partial(result, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.breaks = np.append(pieces.low, pieces.cycle)
@@ -204,40 +192,36 @@ class Delivery(Results):
     def _columns(self, phi: Array, within: Array) -> DeliveryState:
         return DeliveryState(self, phi, within)
 
-    def rate(self, id: str) -> Array:
-        """Return one of `_RATES` in m³ per radian at the nodes of the pieces, sampled once."""
-        if id not in self._rates:
-            self._rates[id] = self._sampled(**_RATES[id])
-        return self._rates[id]
+    @cached_property
+    def sampled(self) -> dict[str, Array]:
+        """The columns that there are, at the nodes of the pieces; none without a speed."""
+        if self.omega is None:
+            return {}
+        omega, of = self.pieces.of(self.omega), self.pieces.of
+        found = {"flow": self._rate() * omega, "flow_suction": self._rate(draws=True) * omega}
+        if self._both:
+            found["flow_head"], found["flow_crank"] = self._rate(crank=False) * omega, self._rate(head=False) * omega
+        for pipe, draws in self._pipes:
+            name = "" if draws else "delivery_"
+            if pipe.vessel is None:
+                scale = of(pipe.length / (GRAVITY * _section(pipe)))
+                found[f"{name}acceleration_head"] = self._rate(draws=draws, rises=True) * omega**2 * scale
+            passed = of(self._mean(draws)) if pipe.vessel else self._rate(draws=draws)
+            heads = of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
+            found[f"{name}friction_head"] = np.broadcast_to(heads, self.pieces.degrees.shape)
+        return found
 
-    def sampled(self, column: str) -> Array | None:
-        """Return a column at the nodes of the pieces; None for one that is left out, and without a speed."""
-        omega = None if self.omega is None else self.pieces.of(self.omega)
-        if omega is None or (column in ("flow_head", "flow_crank") and not self._both):
-            return None
-        if column in _RATES:
-            return np.asarray(self.rate(column) * omega)
-        for pipe, flow, rise, prefix in self._pipes():
-            if column == f"{prefix}acceleration_head" and pipe.vessel is None:
-                scale = self.pieces.of(pipe.length / (GRAVITY * _section(pipe)))
-                return np.asarray(self.rate(rise) * omega**2 * scale)
-            if column == f"{prefix}friction_head":
-                passed = self.pieces.of(self.mean_of(flow)) if pipe.vessel else self.rate(flow)
-                heads = self.pieces.of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
-                return np.broadcast_to(heads, self.pieces.degrees.shape)
-        return None
-
-    def _pipes(self) -> Iterator[tuple[Pipe, str, str, str]]:
-        """Yield each pipe with the names of its flow, of that flow's rise, and what its columns begin with."""
-        if self.pump and self.pump.suction_pipe:
-            yield self.pump.suction_pipe, "flow_suction", "suction_rise", ""
-        if self.pump and self.pump.delivery_pipe:
-            yield self.pump.delivery_pipe, "flow", "rise", "delivery_"
-
-    def mean_of(self, flow: str, cubed: bool = False) -> Any:
+    def _mean(self, draws: bool = False, cubed: bool = False) -> Any:
         """Return the mean over the cycle of dV/dφ, or of its cube."""
-        rate = self.rate(flow)
+        rate = self._rate(draws=draws)
         return self._result(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
+
+    def _swing(self, draws: bool) -> Any:
+        """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
+        rate = self._rate(draws=draws)
+        above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
+        high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
+        return self._result((high - low)[0])
 
     def extremes_of(self, column: str) -> Extremes | None:
         """Return the extremes in SI of a column that is declared to have them; None for one that is left out."""
@@ -245,55 +229,45 @@ class Delivery(Results):
 
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
-        """Those of every column that is declared to have extremes, as far as there is one."""
-        declared = [id for id, row in self.rows.columns.items() if row.quantity.extremes]
-        found = {id: values for id in declared if (values := self.sampled(id)) is not None}
+        declared = {id for id, row in self.rows.columns.items() if row.quantity.extremes}
+        found = {id: values for id, values in self.sampled.items() if id in declared}
         return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result))) if found else {}
-
-    def swing(self, flow: str) -> Any:
-        """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
-        if flow not in self._swings:
-            rate = self.rate(flow)
-            above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
-            high, _, low, _ = self.pieces.extremes(above, self.pieces.integral(rate)[None])
-            self._swings[flow] = self._result((high - low)[0])
-        return self._swings[flow]
 
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values that are no extremes."""
-        found, mean = dict[str, Any](), self.mean_of("flow")
+        found, mean = dict[str, Any](), self._mean()
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
-        found["volume_fluctuation"] = self.swing("flow")
-        found["vessel_saving"] = 1 - mean**3 / self.mean_of("flow", cubed=True)
-        for pipe, flow, _, _ in self._pipes():
-            if pipe.vessel:
-                name = "" if flow == "flow" else "suction_"
-                sizes = _vessel(pipe.vessel, self.swing(flow), f"{name or 'delivery_'}pipe")
-                found[f"{name}vessel_volume"], found[f"{name}vessel_swing"] = sizes
+        found["volume_fluctuation"] = swing = self._swing(draws=False)
+        found["vessel_saving"] = 1 - mean**3 / self._mean(cubed=True)
+        for pipe, draws in self._pipes:
+            if pipe.vessel and draws:
+                sizes = _vessel(pipe.vessel, self._swing(draws=True), "suction")
+                found["suction_vessel_volume"], found["suction_vessel_swing"] = sizes
+            elif pipe.vessel:
+                found["vessel_volume"], found["vessel_swing"] = _vessel(pipe.vessel, swing, "delivery")
         if self.omega is None:
             return found
 
         found["flow_mean"] = mean * self.omega
-        works = [self._pipe_works(pipe, flow) for pipe, flow, *_ in self._pipes()]
+        works = [self._pipe_works(pipe, draws) for pipe, draws in self._pipes]
         for id, terms in zip(("pipe_work", "pipe_work_bare", "pipe_work_steady"), zip(*works)):
             found[id] = total(*terms)
         if self.pump and self.pump.suction_pipe:
-            liquid, friction = self.pump.liquid, self.sampled("friction_head")
-            inertia = self.sampled("acceleration_head")
-            assert friction is not None
-            heads = friction if inertia is None else friction + inertia
+            liquid, heads = self.pump.liquid, self.sampled["friction_head"]
+            if "acceleration_head" in self.sampled:
+                heads = heads + self.sampled["acceleration_head"]
             most = self._result(self.pieces.extremes(heads[None]).largest[0])
-            weight = liquid.density * GRAVITY
-            found["suction_lift_max"] = (self.machine.ambient - liquid.vapour_pressure) / weight - most
+            static = (self.machine.ambient - liquid.vapour_pressure) / (liquid.density * GRAVITY)
+            found["suction_lift_max"] = static - most
         return found
 
-    def _pipe_works(self, pipe: Pipe, flow: str) -> tuple[Number, Number, Number]:
+    def _pipe_works(self, pipe: Pipe, draws: bool) -> tuple[Number, Number, Number]:
         """Return the work in J per cycle against friction in a pipe as it is, without a vessel, and with one."""
         assert self.pump is not None
         scale = self.pump.liquid.density * _friction(pipe) * self.omega**2 * math.radians(self.pieces.cycle)
-        bare, steady = scale * self.mean_of(flow, cubed=True), scale * self.mean_of(flow) ** 3
+        bare, steady = scale * self._mean(draws, cubed=True), scale * self._mean(draws) ** 3
         return steady if pipe.vessel else bare, bare, steady
 
 
@@ -317,7 +291,7 @@ def _vessel(vessel: Vessel, swing: float, place: str) -> tuple[Number, Number]:
     empties = volume <= half
     if isinstance(empties, (bool, np.bool_)) and empties:
         least, given = show(half, "volume"), show(volume, "volume")
-        raise UsageError(f"pump.{place}.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}")
+        raise UsageError(f"pump.{place}_pipe.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}")
     ratio = where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half)) ** vessel.exponent
     return where(empties, math.nan, volume), 2 * (ratio - 1) / (ratio + 1)
 
@@ -326,52 +300,52 @@ def _vessel(vessel: Vessel, swing: float, place: str) -> tuple[Number, Number]:
 
 
 class CompressorEnd:
-    """One end of a compressor: its figures, None without card, speed or gas; of many machines (machines,).
+    """One end of a compressor; figures: its key values in SI by id, those that there are, of many machines (machines,).
 
-    volume: that it sweeps in m³; suction, delivery: absolute pressures in Pa, None with a drawn card or a trace.
+    suction, delivery: absolute pressures in Pa, None with a drawn card or a trace.
     """
 
     def __init__(self, drive: Drive, piston: Driven, end: str) -> None:
         self.suction: Any = None
         self.delivery: Any = None
-        self.efficiency: Any = None
-        self.capacity: Any = None
-        self.normal: Any = None
-        self.mass_flow: Any = None
-        self.temperature: Any = None
-        self.isentropic: Any = None
-        self.power: Any = None
-        machine, own = drive.machine, piston.gas.piston
+        own, gas = piston.gas.piston, piston.gas
         card, head = own.chambers[end], end == "head_end"
         self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
         self.end = end.replace("_", " ")
-        self.volume = piston.gas.areas[0 if head else 1] * piston.gas.stroke
         self.loaded = not (isinstance(card, Compressor) and card.unloaded)
-        if not isinstance(card, Compressor):
-            return
+        self.figures: dict[str, Any] = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
+        if isinstance(card, Compressor):
+            lift = 0.0 if gas.absolute else drive.machine.ambient
+            self.suction, self.delivery = card.suction + lift, card.delivery + lift
+            gases = [one for one in (own.gas, drive.machine.gas) if one]
+            work = gas.works[0 if head or gas.head is None else 1] / gas.repeats
+            self._add_figures(card, gases, drive.machine.speed, -work)
 
-        lift = 0.0 if piston.gas.absolute else machine.ambient
-        self.suction, self.delivery = card.suction + lift, card.delivery + lift
-        ratio, n, speed = self.delivery / self.suction, card.exponent, machine.speed
-        gases = [one for one in (own.gas, machine.gas) if one]
-        gas = gases[0] if gases else None
+    def _add_figures(self, card: Compressor, gases: Sequence[Gas], speed: Any, work: Any) -> None:
+        """Add what follows from the card, from the first gas that has what is needed, and from the speed."""
+        found, ratio, n = self.figures, self.delivery / self.suction, card.exponent
         if self.loaded:
-            self.efficiency = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
-            self.temperature = gas and gas.inlet_temperature * ratio ** ((n - 1) / n)
+            found["volumetric_efficiency"] = 1 - card.clearance * (ratio ** (1 / card.of_expansion) - 1)
+            if gases:
+                found["discharge_temperature"] = gases[0].inlet_temperature * ratio ** ((n - 1) / n)
         if speed is None:
             return
-        self.capacity = self.efficiency * self.volume * speed if self.loaded else 0.0 * self.volume * speed
-        work = piston.gas.works[0 if head or piston.gas.head is None else 1] / piston.gas.repeats
-        self.power = -work * speed
-        constant = next((one.gas_constant for one in gases if one.gas_constant is not None), None)
-        kappa = next((one.isentropic_exponent for one in gases if one.isentropic_exponent is not None), None)
-        if gas:
-            density = self.suction / gas.inlet_temperature
-            self.mass_flow = None if constant is None else density * self.capacity / constant
-            self.normal = density * self.capacity * (_NORMAL[1] / _NORMAL[0])
-        if kappa is not None:
-            rise = ratio ** ((kappa - 1) / kappa) - 1
-            self.isentropic = kappa / (kappa - 1) * self.suction * self.capacity * rise
+        capacity = found.get("volumetric_efficiency", 0.0) * found["stroke_volume"] * speed
+        found["capacity"], found["stage_power"] = capacity, work * speed
+        if gases:
+            density = self.suction / gases[0].inlet_temperature
+            found["capacity_normal"] = density * capacity * (_NORMAL[1] / _NORMAL[0])
+            constants = [one.gas_constant for one in gases if one.gas_constant is not None]
+            if constants:
+                found["mass_flow"] = density * capacity / constants[0]
+        kappas = [one.isentropic_exponent for one in gases if one.isentropic_exponent is not None]
+        if kappas:
+            power = (kappas[0] - 1) / kappas[0]
+            found["isentropic_power"] = self.suction * capacity * (ratio**power - 1) / power
+
+
+_OF_ALL_ENDS = ("stroke_volume", "capacity", "capacity_normal", "mass_flow", "stage_power", "isentropic_power")
+_OF_LOADED_ENDS = ("volumetric_efficiency", "discharge_temperature")
 
 
 class CompressorStage(Results):
@@ -398,25 +372,16 @@ class CompressorStage(Results):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values; a stage all of whose ends are unloaded delivers nothing."""
-        loaded = [one for one in self.ends if one.loaded]
-        found: dict[str, Any] = {"stroke_volume": sum(one.volume for one in self.ends)}
-        if loaded and self.suction is not None:
-            swept = sum(one.volume for one in loaded)
-            found["volumetric_efficiency"] = sum(one.efficiency * one.volume for one in loaded) / swept
-            if all(one.temperature is not None for one in loaded):  # of ends with gases of their own the mean
-                weighed = sum(one.temperature * one.volume for one in loaded)
-                found["discharge_temperature"] = weighed / swept
-        for id, each in (
-            ("capacity", [one.capacity for one in self.ends]),
-            ("capacity_normal", [one.normal for one in self.ends]),
-            ("mass_flow", [one.mass_flow for one in self.ends]),
-            ("stage_power", [one.power for one in self.ends]),
-            ("isentropic_power", [one.isentropic for one in self.ends]),
-        ):
-            found[id] = None if any(one is None for one in each) else sum(each)
-        ideal, taken = found["isentropic_power"], found["stage_power"]
-        if loaded and ideal is not None and some(taken > 0):
-            found["isentropic_efficiency"] = ideal / where(taken > 0, taken, math.nan)
+        every = [one.figures for one in self.ends]
+        loaded = [one.figures for one in self.ends if one.loaded]
+        found = {id: sum(one[id] for one in every) for id in _OF_ALL_ENDS if all(id in one for one in every)}
+        for id in _OF_LOADED_ENDS:  # means
+            if loaded and all(id in one for one in loaded):
+                swept = sum(one["stroke_volume"] for one in loaded)
+                found[id] = sum(one[id] * one["stroke_volume"] for one in loaded) / swept
+        if loaded and "isentropic_power" in found and some(found["stage_power"] > 0):
+            taken = where(found["stage_power"] > 0, found["stage_power"], math.nan)
+            found["isentropic_efficiency"] = found["isentropic_power"] / taken
         return found
 
 
@@ -453,40 +418,41 @@ class MachineDelivery:
         """What all pumping pistons deliver together, over the angle of crank 1."""
         if not self._pumps:
             return None
-        pump, pieces = self.machine.pump, self.effort.pieces
-        share = pieces.of(1 - (pump.slip if pump else 0.0))
+        pieces = self.effort.pieces
         states = {id(forces): State.on(forces.drive, pieces.by_crank(position(forces))) for forces, _ in self._pumps}
-
-        def summed(**how: bool) -> Array:
-            each = [share * _displaced(states[id(forces)], one, **how) for forces, one in self._pumps]
-            whole: Array = sum(each)
-            lasting = unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED) != 0
-            return np.where(pieces.of(lasting), whole, 0.0)
-
+        rate = self._rate_of(pieces, [(states[id(forces)], one) for forces, one in self._pumps])
         both = len(self._pumps) == 1 and self._pumps[0][1].head and self._pumps[0][1].crank
-        return Delivery("whole machine", self.machine, pieces, self._count, summed, both, pump)
+        return Delivery("whole machine", self.machine, pieces, self._count, rate, both, self.machine.pump)
 
     @cached_property
     def pistons(self) -> tuple[Delivery, ...]:
         """What each of several pumping pistons delivers, over the angle of its own crank; equal ones once."""
-        found, slip = list[Delivery](), self.machine.pump.slip if self.machine.pump else 0.0
+        found = list[Delivery]()
         firsts = {id(forces): group[0] for group in self.effort.groups for forces in group}
         known: dict[tuple[int, int], Delivery] = {}
         for forces, one in self._pumps if len(self._pumps) > 1 else ():
-            first = firsts[id(forces)]
-            if (id(first), one.number) not in known:
-
-                def own(first: CylinderForces = first, one: Driven = one, **how: bool) -> Array:
-                    values = np.broadcast_to(_displaced(first.samples, one, **how), first.pieces.degrees.shape)
-                    return np.asarray(values * first.pieces.of(1 - slip))
-
-                made = Delivery("", self.machine, first.pieces, self._count, own, one.head and one.crank)
+            first, name = firsts[id(forces)], forces.drive.name
+            alike = id(first), one.number
+            if alike not in known:
+                rate = self._rate_of(first.pieces, [(first.samples, one)])
+                made = Delivery("", self.machine, first.pieces, self._count, rate, one.head and one.crank)
                 _ = made.answers, made.extremes_of("flow")  # once for all copies
-                known[id(first), one.number] = made
-            found.append(copy(known[id(first), one.number]))
-            name = forces.drive.name
+                known[alike] = made
+            found.append(copy(known[alike]))
             found[-1].name = name if one.number == 0 else f"{name}, {one.gas.piston.name}"
         return tuple(found)
+
+    def _rate_of(self, pieces: Pieces, pistons: Sequence[tuple[State, Driven]]) -> Callable[..., Array]:
+        """Return what returns dV/dφ of these pistons together, less the slip; it takes the words of `_displaced`."""
+        share = 1 - (self.machine.pump.slip if self.machine.pump else 0.0)
+
+        def rate(**how: bool) -> Array:
+            each = [pieces.of(share) * _displaced(state, one, **how) for state, one in pistons]
+            whole = np.broadcast_to(sum(each), pieces.degrees.shape)
+            lasting = unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED) != 0
+            return np.where(pieces.of(lasting), whole, 0.0)
+
+        return rate
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:

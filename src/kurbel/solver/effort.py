@@ -18,12 +18,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Flags, Truth
 from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.cylinder import gathered, work_alike
+from kurbel.machine.cylinder import gathered
 from kurbel.machine.turning import Harmonics, Known, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
@@ -94,7 +94,7 @@ class TurningEffort:
         self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
         # cylinders in which a force acts, identical ones in one group
         acting = [forces for forces in cylinders if forces.drive.has_force]
-        self.groups = gathered(acting, lambda one, other: work_alike(one.drive.cylinder, other.drive.cylinder))
+        self.groups = gathered(acting, lambda one, other: other.twin is one)
         # groups with moving masses and a speed
         self._moving = [group for group in self.groups if moves(group)]
 
@@ -140,7 +140,7 @@ class TurningEffort:
         What is rounding of their largest value is 0.
         """
         found = pieces.at(values, np.zeros(len(degrees), dtype=np.intp), degrees, within)
-        return np.asarray(unless_cancelled(found, pieces.largest(values)[0], _CANCELLED))
+        return unless_cancelled(found, pieces.largest(values)[0], _CANCELLED)
 
     # the effort
 
@@ -150,7 +150,7 @@ class TurningEffort:
         return torque_on(self.machine.effort, self.pieces) if self.machine.effort else None
 
     @cached_property
-    def drives(self) -> Any:
+    def drives(self) -> Truth:
         """Whether any piston drives; for a given effort, whether its mean does."""
         if self.given is not None:
             return self.result(self.mean_of(self.given)) >= 0
@@ -196,7 +196,7 @@ class TurningEffort:
 
     def mean_of(self, torque: Array) -> Array:
         """Return means in N m (…, machines) of torques (…, nodes, pieces); 0 where nothing but rounding is left."""
-        return np.asarray(unless_cancelled(self.pieces.mean(torque), self.pieces.largest(torque), _ROUNDING))
+        return unless_cancelled(self.pieces.mean(torque), self.pieces.largest(torque), _ROUNDING)
 
     # the load
 
@@ -207,13 +207,13 @@ class TurningEffort:
         if self.diagram is None:
             return level
         given = torque_on(self.diagram, self.pieces)
-        return np.asarray(level + (given - self.pieces.of(self.pieces.mean(given))))
+        return level + (given - self.pieces.of(self.pieces.mean(given)))
 
     @property
     def deficit(self) -> Array:
         """Mean of M less that of a load by points in N m, (machines,); 0 where they agree, and for another load."""
         given = self.pieces.mean(torque_on(self.diagram, self.pieces)) if self.diagram else self.mean
-        return np.asarray(unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED))
+        return unless_cancelled(self.mean - given, np.maximum(np.abs(given), np.abs(self.mean)), _BALANCED)
 
     # the masses
 
@@ -296,7 +296,7 @@ class ExcessWork:
         following = np.roll(heights, -1)
         # the last crossing of each machine is followed by its own first one
         following[np.flatnonzero(np.diff(machine, append=-1))] = heights[np.flatnonzero(np.diff(machine, prepend=-1))]
-        return np.asarray(following - heights)
+        return following - heights
 
     @cached_property
     def summits(self) -> SampledExtremes:
@@ -309,8 +309,8 @@ class ExcessWork:
     def dE(self) -> Array:
         """ΔE in J, the largest swing of the excess work, (machines,)."""
         if self._effort.swing is not None:
-            return np.asarray(np.ones(self.pieces.count) * self._effort.swing * self._effort.share(None))
-        return np.asarray(np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0))
+            return np.ones(self.pieces.count) * self._effort.swing * self._effort.share(None)
+        return np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0)
 
 
 # torques that are known from elsewhere
@@ -323,7 +323,7 @@ def corners(given: Known, cycle: float) -> Array:
     if isinstance(given, Harmonics):
         highest = max(1.0, *(order for order, _, _ in given.terms))
         return np.linspace(0.0, cycle, math.ceil(cycle / 90 * highest) + 1)
-    return np.asarray(np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel())
+    return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
 
 
 def torque_on(given: Known, pieces: Pieces) -> Array:
@@ -338,9 +338,9 @@ def torque_on(given: Known, pieces: Pieces) -> Array:
     if isinstance(given, Harmonics):
         orders, cos, sin = np.array(given.terms).T
         waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)
-        return np.asarray(given.mean + waves.real)
+        return given.mean + waves.real
     angles, torques = np.array(given.angles), np.array(given.torques)
     turn = angles[-1] * np.floor(pieces.middle / angles[-1])
     line = np.searchsorted(angles, pieces.middle - turn, side="right") - 1
     rise = (torques[line + 1] - torques[line]) / (angles[line + 1] - angles[line])
-    return np.asarray(torques[line] + rise * (pieces.degrees - turn - angles[line]))
+    return torques[line] + rise * (pieces.degrees - turn - angles[line])

@@ -82,7 +82,7 @@ class TurningState(AtAngles):
     M_coupling = _over_the_angle("M_coupling", "M_K", "torque", "Torque in the elastic coupling")
 
     def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
-        self._turning, self.phi, self._within = turning, phi, within
+        self._turning, self.phi, self.within = turning, phi, within
 
     def __getitem__(self, id: str) -> Any:
         """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
@@ -91,7 +91,7 @@ class TurningState(AtAngles):
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
         found = self._turning.samples_of(id)
-        return None if found is None else self._turning.effort.at(*found, self.phi, self._within)
+        return None if found is None else self._turning.effort.at(*found, self.phi, self.within)
 
 
 class MachineTurning(Results):

@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.cylinder import may_lock
+from kurbel.machine.cylinder import may_lock, work_alike
 from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
@@ -108,11 +108,23 @@ class CylinderForces(SampledCylinder, Results):
     """
 
     command, state = "forces", State
+    twin: CylinderForces | None
 
-    def __init__(self, machine: Machine, cylinder: Cylinder, count: int | None = None) -> None:
-        self.drive = Drive(machine, cylinder, count)
+    def __init__(
+        self, machine: Machine, cylinder: Cylinder, count: int | None = None, twin: CylinderForces | None = None
+    ) -> None:
+        self.drive, self.twin = Drive(machine, cylinder, count), twin
         self.mechanism: Mechanism = cylinder.mechanism
         self.omega = self.drive.omega
+
+    def is_like(self, other: Cylinder) -> bool:
+        """Return whether another cylinder of the machine has the same motion and forces, wherever it is on the shaft.
+
+        Where journals rub, each carries what its own throw carries.
+        """
+        friction = self.drive.pin_friction
+        by_throw = friction is not None and friction.line is not None and some(friction.journals != 0)
+        return not by_throw and work_alike(self.drive.cylinder, other)
 
     @property
     def rows(self) -> Rows:
@@ -137,7 +149,7 @@ class CylinderForces(SampledCylinder, Results):
     @part(Motion)
     def motion(self) -> Motion:
         """What the mechanism does."""
-        return Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+        return self.twin.motion if self.twin else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")
@@ -296,6 +308,8 @@ class CylinderForces(SampledCylinder, Results):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The key values that follow from dimensions and pressures alone, without samples of forces."""
+        if self.twin:
+            return self.twin.answers
         drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, Any]()
         found["m"] = drive.mass if drive.cylinder.masses else None
         found["resistance_work"] = drive.resistance_work
@@ -353,6 +367,8 @@ class CylinderForces(SampledCylinder, Results):
     @cached_property
     def _extremes(self) -> dict[str, Extremes]:
         """Extremes of the columns that are declared to have them, by id."""
+        if self.twin:
+            return self.twin._extremes
         declared = column_rows(State, self.mechanism.OFFERS)
         return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
 
@@ -368,6 +384,8 @@ class CylinderForces(SampledCylinder, Results):
         Changes that are noise of a trace count once, at the middle one; with them, how many of them are not listed. For
         many machines one tuple each.
         """
+        if self.twin:
+            return self.twin.changes_of_force
         P = self.sampled("P") if self.drive.has_force else None
         if P is None:
             return None, 0
@@ -426,11 +444,13 @@ class CylinderForces(SampledCylinder, Results):
 
         Constant forces act over the whole path.
         """
+        if self.twin:
+            return self.twin.friction_works
         drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
         if friction is None:
             return found
 
-        def over_cycle(values: Number) -> Any:
+        def over_cycle(values: Number) -> Number:
             return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
 
         if friction.crosshead is not None and drive.has_force:

@@ -1,46 +1,7 @@
-"""Friction of a crosshead and of piston rings, after Redtenbacher 1862 (D) and with signs for every quadrant."""
-
-import math
-
-import numpy as np
+"""The inclined plane with friction, after Redtenbacher 1862 (D)."""
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
-from kurbel.numerics.lobatto import rule
-
-
-def redtenbacher_loss(lam: float, friction: float) -> float:
-    """Return ½ λ f, the share of the work lost at the crosshead by Redtenbacher's mean over the rod angle, D 7.
-
-    >>> round(1 / redtenbacher_loss(1 / 6, 1 / 10))
-    120
-    """
-    return lam * friction / 2
-
-
-def redtenbacher_logarithm(lam: float, friction: float) -> float:
-    """Return 1 − ln(1 + fλ)/(fλ), the same mean before D 6 breaks off the series of the logarithm; any f, λ ≥ 0."""
-    product = friction * lam
-    if product < 1e-2:  # the difference cancels: the series itself
-        return math.fsum((-1) ** (n + 1) * product**n / (n + 1) for n in range(1, 12))
-    return 1 - math.log1p(product) / product
-
-
-def mean_friction_over_rod_angle(gamma: float, friction: float) -> float:
-    """Return F_m/P, the mean of f sin β/(cos β + f sin β) over the rod angle β from 0 to γ (radians), D 5.
-
-    The closed form f/(1+f²) [f − ln(cos γ + f sin γ)/γ] cancels for small γ; there a rule of 16 points is exact.
-
-    >>> round(mean_friction_over_rod_angle(0.2, 0.1), 8)
-    0.00993391
-    """
-    if gamma < 0.2:
-        beta = gamma / 2 * (1 + rule(16).nodes)
-        share = friction * np.sin(beta) / (np.cos(beta) + friction * np.sin(beta))
-        return float(rule(16).weights @ share) / 2
-    change = friction * math.sin(gamma) - 2 * math.sin(gamma / 2) ** 2
-    logarithm = math.log1p(change) if -0.5 < change < 1 else math.log(math.cos(gamma) + friction * math.sin(gamma))
-    return friction / (1 + friction * friction) * (friction - logarithm / gamma)
 
 
 def holding_force(incline: float, friction: float, direction: float = 0.0) -> float:

@@ -40,7 +40,7 @@ _IN_PHASE = 1e-9
 def every_order(cycle: float, highest: int = HIGHEST) -> Array:
     """Return the orders up to the highest: halves of a cycle of 720 degrees, whole ones of 360."""
     step = 360.0 / cycle
-    return np.asarray(step * np.arange(1, round(highest / step) + 1), dtype=float)
+    return step * np.arange(1.0, round(highest / step) + 1)
 
 
 def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
@@ -72,7 +72,8 @@ def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
                 waves = shares * unit_vector(-order * degrees)
             before = order
             found[:, index, part] = waves.sum(axis=1)
-    return np.asarray(np.add.reduceat(found, pieces.first, axis=2) * (2 / pieces.cycle), dtype=complex)
+    whole = np.add.reduceat(found, pieces.first, axis=2)
+    return np.asarray(whole * (2 / pieces.cycle), dtype=complex)
 
 
 class Spectrum(NamedTuple):
@@ -81,10 +82,6 @@ class Spectrum(NamedTuple):
     mean: Any
     orders: Array
     amplitudes: ComplexArray
-
-    def at(self, degrees: Array) -> Array:
-        """Return the sum of the mean and these orders in N m at crank angles (m,) in degrees, of one machine."""
-        return np.asarray(self.mean + (unit_vector(np.multiply.outer(degrees, self.orders)) @ self.amplitudes).real)
 
 
 class Orders(NamedTuple):

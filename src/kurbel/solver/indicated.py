@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity, value
@@ -17,8 +17,8 @@ from kurbel.traces.correct import COMPRESSION, EXPANSION, exponent
 
 
 class Cycles(NamedTuple):
-    """The measured cycles, each (m,): p_i in Pa, largest pressure in Pa, gauge or
-    absolute as the file says, with its angle in degrees, its rise."""
+    """The measured cycles, each (m,): p_i in Pa, largest pressure in Pa, gauge or absolute as the file says, with its
+    angle in degrees, and the largest rise of pressure in Pa per degree."""
 
     mean_pressure: Array
     p_max: Array
@@ -66,33 +66,36 @@ class Indicated(Results):
         if not self._traces:
             return found
 
-        weighed = [(self._share(one) * one.pressures, one.exchange_weights) for one in self._traces]
-        parts = [
-            part for pressures, weights in weighed if weights is not None for part in (weights * pressures).tolist()
-        ]
-        if parts:
-            exchange = float(unless_cancelled(math.fsum(parts), math.fsum(map(abs, parts))))
-            found["mean_pressure_exchange"] = exchange
-            found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - exchange
+        parts = [(one.exchange_weights, self._share(one) * one.pressures) for one in self._traces]
+        exchange = [weights * pressures for weights, pressures in parts if weights is not None]
+        if exchange:
+            terms = np.concatenate(exchange)
+            found["mean_pressure_exchange"] = lost = float(unless_cancelled(terms.sum(), np.abs(terms).sum()))
+            found["mean_pressure_gross"] = float(self.gas.work / self.gas.swept_volume) - lost
         found["p_rise_max"] = max(one.steepest for one in self._traces)
         if len(self._traces) == 1:
             (one,) = self._traces
-            trace, absolute = one.trace, one.pressures + one.setting.lift
+            after, absolute = one.setting.from_dead_centre(one.trace), one.pressures + one.setting.lift
             for id, stretch in (("n_compression", COMPRESSION), ("n_expansion", EXPANSION)):
-                after = one.setting.from_dead_centre(trace)
-                fitted = exponent(one.setting, trace.clearance, after, absolute, stretch)
+                fitted = exponent(one.setting, one.trace.clearance, after, absolute, stretch)
                 found[id] = fitted.value if fitted else None
+        return found | self._scatter()
 
-        if self.cycles:
-            mean_pressures, highest = self.cycles.mean_pressure, self.cycles.p_max
-            mean, deviation = abs(float(mean_pressures.mean())), float(mean_pressures.std(ddof=1))
-            top = int(np.argmax(highest))
-            found["cycles_measured"], found["mean_pressure_std"] = len(highest), deviation
-            found["mean_pressure_cov"] = deviation / mean if mean else None
-            found["p_max_mean"], found["p_max_std"] = float(highest.mean()), float(highest.std(ddof=1))
-            found["p_max_most"] = Extreme(float(highest[top]), float(self.cycles.phi_p_max[top]))
-            found["cycle_worst"] = int(np.argmin(mean_pressures)) + 1
-        return found
+    def _scatter(self) -> dict[str, Any]:
+        """Return the key values of several cycles."""
+        if not self.cycles:
+            return {}
+        p_i, highest, at, _ = self.cycles
+        mean, deviation, top = abs(float(p_i.mean())), float(p_i.std(ddof=1)), int(np.argmax(highest))
+        return {
+            "cycles_measured": len(highest),
+            "mean_pressure_std": deviation,
+            "mean_pressure_cov": deviation / mean if mean else None,
+            "p_max_mean": float(highest.mean()),
+            "p_max_std": float(highest.std(ddof=1)),
+            "p_max_most": Extreme(float(highest[top]), float(at[top])),
+            "cycle_worst": int(np.argmin(p_i)) + 1,
+        }
 
     def _share(self, pressure: TracePressure) -> float:
         """Return the share of a chamber in the swept volume."""
@@ -105,19 +108,14 @@ class Indicated(Results):
         counts = {len(one.each) for one in self._traces} - {1}
         if len(counts) != 1:
             return None
-        shares, ends = [self._share(one) for one in self._traces], []
+        (count,) = counts
+        ends = []
         for one in self._traces:
-            at = np.mod(one.trace.angles + one.shift, one.setting.cycle)
-            own = (one.each @ one.weights, one.each.max(axis=1), at[np.argmax(one.each, axis=1)])
-            whole = np.broadcast_arrays(*own, one.rises(one.each)[0].max(axis=1), np.empty(max(counts)))
-            ends.append(Cycles(*whole[:4]))
-        traced = math.fsum(share * one.area for one, share in zip(self._traces, shares))
+            at, rises = np.mod(one.angles, one.setting.cycle), one.rises(one.each)[0]
+            own = (self._share(one) * (one.each @ one.weights), one.each.max(axis=1), at[one.each.argmax(axis=1)])
+            ends.append([np.broadcast_to(values, count) for values in (*own, rises.max(axis=1))])
+        p_i, p_max, phi_p_max, p_rise_max = np.array(ends).transpose(1, 0, 2)
+        traced = sum(self._share(one) * one.area for one in self._traces)
         others = self.gas.work / self.gas.swept_volume - traced  # of an end that has a card, say
-        highest: Indices = np.argmax([end.p_max for end in ends], axis=0)
-        each = np.arange(max(counts))
-        return Cycles(
-            others + np.sum([share * end.mean_pressure for share, end in zip(shares, ends)], axis=0),
-            np.stack([end.p_max for end in ends])[highest, each],
-            np.stack([end.phi_p_max for end in ends])[highest, each],
-            np.max([end.p_rise_max for end in ends], axis=0),
-        )
+        highest = np.argmax(p_max, axis=0), np.arange(count)
+        return Cycles(others + p_i.sum(axis=0), p_max[highest], phi_p_max[highest], p_rise_max.max(axis=0))

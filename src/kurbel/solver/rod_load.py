@@ -88,16 +88,12 @@ class RodLoads(Results):
 
         All of them, and the longest stretch; 0 where the load does not reverse. changes: of each machine, in degrees.
         """
-        machine = np.repeat(np.arange(len(changes)), [len(one) for one in changes])
-        start = np.array([angle for one in changes for angle in one])
-        first, last = np.flatnonzero(np.diff(machine, prepend=-1)), np.flatnonzero(np.diff(machine, append=-1))
-        end = np.append(start[1:], 0.0)[: len(start)]
-        end[last] = start[first] + self.drive.cycle
-        presses = self.pieces.at(self.loads["P_rod"], machine, (start + end) / 2) > 0
-
-        stretches = np.zeros((2, 2, len(changes)))  # pressed, pulled; sum, longest; machines
-        for of, sense in zip(stretches, (presses, ~presses)):
-            np.add.at(of[0], machine[sense], (end - start)[sense])
-            np.maximum.at(of[1], machine[sense], (end - start)[sense])
-        pressed, pulled = stretches
-        return np.where(pulled[0] < pressed[0], pulled, pressed)
+        counts = [len(one) for one in changes]
+        widths = [np.diff([*one, *(first + self.drive.cycle for first in one[:1])]) for one in changes]
+        middles = np.concatenate([*map(np.array, changes)]) + np.concatenate(widths) / 2
+        presses = self.pieces.at(self.loads["P_rod"], np.repeat(np.arange(len(changes)), counts), middles) > 0
+        found = np.zeros((2, len(changes)))
+        for number, own in enumerate(np.split(presses, np.cumsum(counts)[:-1])):
+            less = min(widths[number][own], widths[number][~own], key=np.sum)
+            found[:, number] = less.sum(), less.max(initial=0.0)
+        return found

@@ -8,10 +8,10 @@
     ──A─────────────┘           └─────────────B──────── G    flywheel, f outside of B
       |←────── a ──────→|←─────── b ─────────→|←── f ──→|
 
-Components are in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation; u is
-the coordinate along the shaft from the middle of the pin. A and B are the forces of the shaft on the bearings, so that
-a load D on a pin between them gives A_D and B_D of the same sign. In an overhung crank bearing A is at u = +a, between
-its only web and bearing B.
+A force is D + iT in the frame that turns with the throw: D from the pin toward the shaft, T in the sense of rotation.
+u is the coordinate along the shaft from the middle of the pin. A and B are the forces of the shaft on the bearings, so
+that a load D on a pin between them gives A_D and B_D of the same sign. In an overhung crank bearing A is at u = +a,
+between its only web and bearing B.
 
     between bearings    1──┐ ┌──2──┐ ┌──3            a, b from every pin to its bearings; the flywheel by the last one
                            └─┘     └─┘
@@ -25,13 +25,13 @@ of both. A real shaft is continuous over its bearings; their loads then depend o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Number, Truth
+from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -45,16 +45,21 @@ _ALIKE = 1e-9
 
 
 class Vector(NamedTuple):
-    """A force in N along D and along T, or the moments in N m of forces along them."""
+    """A force in N along D and along T."""
 
     D: Number
     T: Number
+
+    @property
+    def complex(self) -> Any:
+        """D + iT."""
+        return self.D + 1j * self.T
 
 
 # one throw
 
 
-def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vector:
+def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Any:
     """Return a weight on the shaft in the frame of the throw: D = G sin(φ + i), T = −G cos(φ + i).
 
     weight: G in N; angle: crank angles φ (n,); inclination: i of the stroke line in degrees, 0 horizontal, 90 cylinder
@@ -62,18 +67,15 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Vec
     line the pin rises on the outstroke, and in the inner dead centre the weight is square to the throw (G).
 
     >>> weight_in_throw(100.0, CrankAngle.of(0.0), 0.0)
-    Vector(D=0.0, T=-100.0)
-    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 90.0).D
+    -100j
+    >>> weight_in_throw(100.0, CrankAngle.of(0.0), 90.0).real
     100.0
     """
     incline = CrankAngle.of(inclination)
-    return Vector(
-        weight * (angle.sin * incline.cos + angle.cos * incline.sin),
-        weight * (angle.sin * incline.sin - angle.cos * incline.cos),
-    )
+    return -1j * weight * (angle.cos + 1j * angle.sin) * (incline.cos + 1j * incline.sin)
 
 
-def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Vector:
+def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Any:
     """Return the weight of the flywheel in the frame of a cylinder's throw; nothing where its direction is not known.
 
     angle: crank angles φ (n,) of that cylinder; the inclination given is that of the stroke line of cylinder 1.
@@ -81,7 +83,7 @@ def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> 
     shaft, first = machine.crankshaft, machine.cylinders[0]
     lean = machine.inclination_of(first)
     if shaft is None or lean is None or not some(shaft.flywheel_mass != 0):
-        return Vector(0.0, 0.0)
+        return 0.0
     inclination = lean + cylinder.bank_angle - first.bank_angle
     return weight_in_throw(shaft.flywheel_mass * GRAVITY, angle, inclination)
 
@@ -98,22 +100,22 @@ class FreeBody:
     D in the web of an overhung crank.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: Number, pin: Vector, weight: Vector) -> None:
+    def __init__(self, shaft: Crankshaft, crank: Number, pin: Any, weight: Any) -> None:
         self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
-        b, f, span, both = shaft.b, shaft.flywheel_position, shaft.span, list(zip(pin, weight))
-        self.A = Vector(*((F * b - G * f) / span for F, G in both))
-        self.B = Vector(*((G * (span + f) - F * shaft.place_A) / span for F, G in both))
-        self.before_pin = Vector(self.A.D * 0.0, self.A.T * 0.0) if shaft.overhung else self.A
-        self.along_web, self.torque = pin.D - self.before_pin.D, pin.T * crank
+        b, f, span = shaft.b, shaft.flywheel_position, shaft.span
+        self.A = (pin * b - weight * f) / span
+        self.B = (weight * (span + f) - pin * shaft.place_A) / span
+        self.before_pin = 0 * self.A if shaft.overhung else self.A
+        self.along_web, self.torque = (pin - self.before_pin).real, pin.imag * crank
 
-    def moments_at(self, u: Number) -> Vector:
-        """Return the bending moments in N m at the section u, of the forces before it.
+    def moments_at(self, u: Number) -> Any:
+        """Return the bending moments in N m at the section u, of the forces before it: D and T of each times its arm.
 
         A (u − u_A) from bearing A on, less F u from the pin on; valid up to B, or to a flywheel before B. The opposite
         sign of G, P e − A_p (a + e).
         """
         from_A, from_pin = (where(arm > 0, arm, 0.0) for arm in (u - self.shaft.place_A, u))
-        return Vector(*(A * from_A - F * from_pin for A, F in zip(self.A, self.pin)))
+        return self.A * from_A - self.pin * from_pin
 
     def equilibrium_residual(self, torque: Array) -> Array:
         """Return the relative residual of the equilibrium of forces and of moments, the larger of both.
@@ -121,21 +123,14 @@ class FreeBody:
         torque: M on the shaft in N m, shaped as the forces (…), from the work of the piston force and not from T.
         Moments are about the middle of the pin, of the forces where they act; the formulas above are not used.
         """
-        shaft = self.shaft
-        acting = (
-            (self.pin, 1.0, 0.0),
-            (self.A, -1.0, shaft.place_A),
-            (self.B, -1.0, shaft.b),
-            (self.weight, 1.0, shaft.b + shaft.flywheel_position),
-        )
-        forces = np.stack([sign * (force.D + 1j * force.T) + 0 * torque for force, sign, _ in acting])
-        bends = np.stack([force * place for force, (_, _, place) in zip(forces, acting)])
-        twists = np.stack([torque, *(force.imag * self.crank for force in forces[1:])])  # the pin's has no arm
-        turning = np.hypot(np.abs(bends.sum(axis=0)), twists.sum(axis=0))
-        left = np.stack((np.abs(forces.sum(axis=0)), turning))
-        sizes = np.stack((np.abs(forces).sum(axis=0), np.abs(bends).sum(axis=0) + np.abs(twists).sum(axis=0)))
-        shares = np.divide(left, sizes, out=np.zeros_like(sizes), where=sizes > 0)
-        return np.asarray(shares.max(axis=0))
+        shaft, forces = self.shaft, [self.pin, -self.A, -self.B, self.weight + 0 * self.A]
+        arms = (0.0, shaft.place_A, shaft.b, shaft.b + shaft.flywheel_position)
+        bends = [force * arm for force, arm in zip(forces, arms)]
+        twists = [torque, *(force.imag * self.crank for force in forces[1:])]  # the pin's has no arm
+        sizes = [sum(np.abs(one) for one in terms) for terms in (forces, [*bends, *twists])]
+        left = np.abs(sum(forces)), np.hypot(np.abs(sum(bends)), sum(twists))
+        shares = [np.where(size > 0, one / np.where(size > 0, size, 1.0), 0.0) for one, size in zip(left, sizes)]
+        return np.maximum(*shares)
 
 
 # the throws along a shaft
@@ -159,62 +154,31 @@ class Throw(NamedTuple):
     at_B: Any = 0.0
 
 
-Turned = tuple[Any, Number]
-"""Mass times radius in kg m of what turns with the shaft, complex, and its place u in m from a pin."""
-
-
-def _of_first(condition: Any) -> Any:
-    """Return a condition as it holds for the first of many machines."""
-    return np.ravel(condition)[0]
-
-
 class SupportedShaft:
     """The crankshaft of a machine. throws: in order along the shaft; bearings: how many main bearings there are.
 
-    Of many machines the throws are those of the first; the forces of one that has others are nan.
+    Raises UsageError for many machines whose throws are not alike.
     """
 
     def __init__(self, machine: Machine) -> None:
         assert machine.crankshaft is not None
         self.machine, self.shaft = machine, machine.crankshaft
-        like_first: Truth = True
+        throws = sorted(throws_of(machine.cylinders), key=lambda throw: float(np.ravel(throw.place)[0]))
+        for one, following in pairwise(throws):
+            _decided(one.place <= following.place)
+        overhung, last = self.shaft.overhung, len(throws) - 1
+        # the second throw of an overhung shaft is at its other end
+        bearings = [(0, 1), (1, 0)] if overhung else [(number, number + 1) for number in range(len(throws))]
+        for number, (A, B) in enumerate(bearings[: len(throws)]):
+            throws[number] = throws[number]._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
+        for number, product, u in self._turning(throws):
+            one = throws[number]
+            along, to_B = product * unit_vector(-one.angle), where(one.A < one.B, u, -u) - self.shaft.place_A
+            at_B = along * to_B / self.shaft.span
+            throws[number] = one._replace(at_A=one.at_A + along - at_B, at_B=one.at_B + at_B)
+        self.throws, self.bearings = tuple(throws), 2 if overhung else len(throws) + 1
 
-        def decided(condition: Any) -> Any:
-            """Return what holds for the first machine; others for which something else does have other throws."""
-            nonlocal like_first
-            like_first = like_first & (condition == _of_first(condition))
-            return _of_first(condition)
-
-        found = throws_of(machine.cylinders, decided)
-        found.sort(key=lambda throw: float(_of_first(throw.place)))
-        for one, following in pairwise(found):
-            decided(one.place <= following.place)
-
-        between: list[list[Turned]] = [[] for _ in found]
-        for number, product, u in self._turning(found, decided):
-            between[number].append((product * unit_vector(-found[number].angle), u))
-        known = where(like_first, 0.0, math.nan)
-        self.throws = tuple(self._supported(found, number, own, known) for number, own in enumerate(between))
-        self.bearings = 2 if self.shaft.overhung else len(found) + 1
-
-    def _supported(self, throws: Sequence[Throw], number: int, own: Sequence[Turned], known: Number) -> Throw:
-        """Return a throw with its bearings and the weights that turn between them.
-
-        own: mass times radius in kg m, complex, and u in m from the pin, of each weight.
-
-        known: nan for machines with other throws. The second throw of an overhung shaft is at its other end.
-        """
-        shaft, mirrored = self.shaft, self.shaft.overhung and number > 0
-        sign = -1.0 if mirrored else 1.0
-        return throws[number]._replace(
-            A=1 if mirrored else number,
-            B=0 if mirrored else number + 1,
-            flywheel=number == (0 if shaft.overhung else len(throws) - 1),
-            at_A=known + sum(product * (shaft.b - sign * u) / shaft.span for product, u in own),
-            at_B=known + sum(product * (sign * u - shaft.place_A) / shaft.span for product, u in own),
-        )
-
-    def _turning(self, throws: Sequence[Throw], decided: Callable[[Any], Any]) -> Iterator[tuple[int, Any, Any]]:
+    def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Any, Any]]:
         """Yield of each rotating weight the index of the throw whose bearings carry it, mass times radius, and u in m.
 
         The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
@@ -222,32 +186,31 @@ class SupportedShaft:
         a rod is not included: its force acts on the pin.
         """
         cranks = throws_with_masses(self.machine)
-        of_cylinders = {cylinder: number for number, throw in enumerate(throws) for cylinder in throw.cylinders}
         weights = (*(crank.weight(crank.unbalanced) for crank in cranks), *counterweights_of(self.machine, cranks))
         for one in weights:
             own = cranks[one.owner].place
-            if one.place is None or one.place is own or (own is not None and decided(one.place == own)):
-                yield of_cylinders[one.owner], one.product, 0.0
+            if one.place is None or one.place is own or (own is not None and _decided(one.place == own)):
+                number = next(number for number, throw in enumerate(throws) if one.owner in throw.cylinders)
+                yield number, one.product, 0.0
             else:
                 distances = [np.asarray(abs(throw.place - one.place)) for throw in throws]
-                nearest = int(decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
+                nearest = int(_decided(np.argmin(np.broadcast_arrays(*distances), axis=0)))
                 yield nearest, one.product, one.place - throws[nearest].place
 
     def throw_of(self, cylinder: int) -> Throw:
         """Return the throw on whose pin a cylinder is, by its number from 0."""
         return next(throw for throw in self.throws if cylinder in throw.cylinders)
 
-    def carried(self, throw: Throw, pin: Vector, own: Cylinder, angle: CrankAngle) -> tuple[Vector, Vector]:
+    def carried(self, throw: Throw, pin: Any, own: Cylinder, angle: CrankAngle) -> tuple[Any, Any]:
         """Return the forces in N of a throw on its bearings A and B, in its own frame.
 
         pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.
         """
-        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else Vector(0.0, 0.0)
+        weight = flywheel_weight(self.machine, own, angle) if throw.flywheel else 0.0
         body = FreeBody(self.shaft, own.mechanism.crank, pin, weight)
         omega = 0.0 if self.machine.speed is None else 2 * math.pi * self.machine.speed
-        pulls = throw.at_A * omega * omega, throw.at_B * omega * omega
-        at_A, at_B = (Vector(one.D - pull.real, one.T + pull.imag) for one, pull in zip((body.A, body.B), pulls))
-        return at_A, at_B
+        # what turns pulls outward, against D
+        return body.A - np.conj(throw.at_A) * omega * omega, body.B - np.conj(throw.at_B) * omega * omega
 
 
 def shaft_obstacle(machine: Machine) -> str:
@@ -269,27 +232,33 @@ def shaft_obstacle(machine: Machine) -> str:
     return ""
 
 
-def throws_of(cylinders: Sequence[Cylinder], decided: Callable[[Any], Any] = _of_first) -> list[Throw]:
+def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
     """Return the throws of these cylinders, not yet on their bearings, as the cylinders follow one another.
 
     Cylinders share a pin where their throws have one angle, γ − β, and one place, and their stroke lines differ.
-    decided: says of many machines which condition counts.
     """
     found: list[Throw] = []
     for number, one in enumerate(cylinders):
-        angle, place = _remainder(one.bank_angle - one.crank_position), one.axial_position
-        place = 0.0 if place is None else place
+        angle = _remainder(one.bank_angle - one.crank_position)
+        place = 0.0 if one.axial_position is None else one.axial_position
         for index, throw in enumerate(found):
-            lines = [cylinders[other].bank_angle - one.bank_angle for other in throw.cylinders]
             same = (magnitude(_remainder(throw.angle - angle)) <= _ALIKE) & (magnitude(throw.place - place) <= _ALIKE)
-            for line in lines:
-                same = same & (magnitude(_remainder(line)) > _ALIKE)
-            if decided(same):
+            for other in throw.cylinders:
+                same = same & (magnitude(_remainder(cylinders[other].bank_angle - one.bank_angle)) > _ALIKE)
+            if _decided(same):
                 found[index] = throw._replace(cylinders=(*throw.cylinders, number))
                 break
         else:
             found.append(Throw((number,), angle, place))
     return found
+
+
+def _decided(condition: Any) -> Any:
+    """Return what is so in every machine. Raises UsageError where it differs: such machines are computed one by one."""
+    every = np.ravel(condition)
+    if (every != every[0]).any():
+        raise UsageError("the throws of these machines are not alike")
+    return every[0]
 
 
 def _remainder(degrees: Number) -> Number:

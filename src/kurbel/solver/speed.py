@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags
+from kurbel.arrays import Array, Flags, Number
 from kurbel.errors import UsageError
 from kurbel.numerics.arithmetic import every
 from kurbel.numerics.collocation import Unsettled, periodic
@@ -60,7 +60,7 @@ class SpeedLaw(NamedTuple):
     @property
     def steepness(self) -> Array:
         """ω_n dM_load/dω at the nominal speed in N m, (n,)."""
-        return np.asarray(self.mean * self.power if self.slip is None else np.abs(self.mean) / self.slip)
+        return self.mean * self.power if self.slip is None else np.abs(self.mean) / self.slip
 
     def rise(self, ratio: Array, pieces: Pieces) -> tuple[Array, Array]:
         """Return the load beyond that at the nominal speed in N m, and its derivative by r, at r (…, pieces)."""
@@ -110,7 +110,7 @@ class SpeedLine(Results):
         return self.effort.result(np.where(self.failed, np.nan, values))
 
     @property
-    def fluctuation(self) -> Any:
+    def fluctuation(self) -> Number:
         """δ, from the extremes of u; for a heavy flywheel the difference of those of ω would lose all digits."""
         return self.result((self._ends[0] - self._ends[2]) / self.mean)
 
@@ -145,7 +145,7 @@ class SwingLine(SpeedLine):
             raise Unsettled()
 
     @property
-    def fluctuation(self) -> Any:
+    def fluctuation(self) -> Number:
         """δ."""
         return self.result(self._delta)
 
@@ -267,7 +267,7 @@ class RigidLine(SpeedLine):
             u, (excess, energy) = pieces.carried(self.u, self.pieces), self._equation.known(pieces)
             ratio, torque = u * (2 + u), pieces.carried(effort.inertia_torque, effort.pieces)
             rise = self.law.rise(ratio, pieces)[0] if self.law else 0.0
-            return np.asarray((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[None]
+            return ((excess - rise + ratio * torque) / energy * pieces.of(effort.omega**2 / 2))[None]
 
         pieces, (values,) = refined(self.pieces, sample)
         return pieces, np.where(pieces.of(self.failed), 0.0, values)

@@ -229,7 +229,7 @@ class State(Chambers):
         return self.T * (sin * cos_psi + cos * sin_psi) + self.D * (cos * cos_psi - sin * sin_psi)
 
     @cached_property
-    def rod_couple(self) -> Any:
+    def rod_couple(self) -> Number:
         """Couple of an exact rod in N m, (I_r − m_r a (L − a)) ψ̈ at uniform rotation; 0 without one."""
         rod, (sin_psi, cos_psi) = self.drive.rod, self.rod_angle or (0.0, 1.0)
         if rod is None or self.omega is None:
@@ -237,7 +237,7 @@ class State(Chambers):
         bend = formulas.rod_curvature(self.angle.sin, sin_psi, cos_psi, self.rod_slope, self.mechanism.lam)
         return bend * (rod.excess_inertia * self.omega * self.omega)
 
-    def _side(self, couple: Number) -> Any:
+    def _side(self, couple: Number) -> Number:
         """Return the reduction of the guide force in N by a couple in N m on the rod: couple/(L cos ψ)."""
         return couple / (self.rod_angle[1] * self.mechanism.rod_length)
 
@@ -277,8 +277,8 @@ class State(Chambers):
             names = [one.name for one in drive.machine.cylinders]
             throw = friction.line.throw_of(names.index(drive.name))
             count = len(throw.cylinders)
-            carried = friction.line.carried(throw, Vector(pin.D * count, pin.T * count), drive.cylinder, self.angle)
-            bearings = sum(np.hypot(*force) for force in carried) / count
+            carried = friction.line.carried(throw, pin.complex * count, drive.cylinder, self.angle)
+            bearings = sum(np.abs(force) for force in carried) / count
         at_crosshead: Number = 0.0
         if self.rod_angle is not None:  # the rod turns by −dψ, which friction opposes
             at_crosshead = np.hypot(*on_crosshead_pin(self.without_pin_friction)) * (
@@ -303,13 +303,13 @@ class State(Chambers):
         return drive.steady_friction + by_gas
 
     @cached_property
-    def after_steady_friction(self) -> Any:
+    def after_steady_friction(self) -> Number:
         """Piston force P in N less the steady friction; acts on the crosshead."""
         steady = self.steady_friction
         return self.P - self.direction * steady if some(steady != 0) else self.P
 
     @cached_property
-    def guide_sense(self) -> Any:
+    def guide_sense(self) -> Number:
         """Numerator of N: P sin ψ + G cos ψ in N, G: weight on the guide less side forces of couples."""
         sin_psi, cos_psi = self.rod_angle or (0.0, 1.0)
         return self.after_steady_friction * sin_psi + (self.drive.guide_weight - self._rod_side) * cos_psi
@@ -325,18 +325,19 @@ class State(Chambers):
         return np.where(sense >= 0, 1.0, -1.0)
 
     @cached_property
-    def guide_denominator(self) -> Any:
+    def guide_denominator(self) -> Array:
         """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
         return cos_psi + sin_psi * (self.guide_side * self.direction * self.drive.crosshead_friction)
 
     @cached_property
-    def drag_of_guides(self) -> Any:
+    def drag_of_guides(self) -> Number:
         """Friction 2 f_g |P R sin φ|/l_g in N of the guides of a Scotch yoke, magnitude; 0 for another mechanism."""
         yoke, (_, f) = self.mechanism, self.drive.yoke_friction
         if not isinstance(yoke, ScotchYoke) or not some(f != 0):
             return 0.0
         pair = yoke.guide_pair_factor(self.angle)
+        assert pair is not None
         return np.abs(self.after_steady_friction * pair) * (2 * f)
 
     @column("N", "force", extremes=("forces",), called="guide force", peak=True)
@@ -411,7 +412,7 @@ class State(Chambers):
         return self.along_rod if self.mechanism.slides else self.M_out
 
     @cached_property
-    def _rod_tangential(self) -> Any:
+    def _rod_tangential(self) -> Number:
         """Contribution to T in N of the couple and the weight at the crank pin of an exact rod; 0 for another."""
         if self.drive.rod is None:
             return 0.0
@@ -441,17 +442,17 @@ class State(Chambers):
     )
 
     @cached_property
-    def along_rod(self) -> Any:
+    def along_rod(self) -> Number:
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
         return _sum(self.P, self.F_friction)
 
     @cached_property
-    def _free_torque(self) -> Any:
+    def _free_torque(self) -> Number:
         """Torque in N m before friction in pins, journals and yoke block, by virtual work of the output force."""
         return self._output * self.slope + self._rod_tangential * self.mechanism.crank
 
     @property
-    def torque(self) -> Any:
+    def torque(self) -> Number:
         """Torque T R in N m at the crank pin: M before the friction in crank pin and journals."""
         return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
 

@@ -43,7 +43,7 @@ from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.quantity import Heading, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import FreeBody, Vector, flywheel_weight
+from kurbel.solver.shaft import FreeBody, flywheel_weight
 from kurbel.solver.state import State, on_pin
 
 PARTS = {
@@ -110,9 +110,9 @@ def places(body: FreeBody) -> Iterator[Place]:
 
     α₀ is 1 for what is round (G, for the pin), and that of the allowable stresses for the webs.
     """
-    shaft, weight, diameter = body.shaft, body.weight, body.shaft.journal_diameter
+    shaft, f, diameter = body.shaft, body.shaft.flywheel_position, body.shaft.journal_diameter
     inner, outer = (shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1))  # faces of a web
-    before = body.before_pin.T * body.crank
+    before = body.before_pin.imag * body.crank
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
     sections = {"at web A": inner} if shaft.overhung else {"middle": 0.0, "at web A": -inner, "at web B": inner}
     for name, u in sections.items():
@@ -120,12 +120,10 @@ def places(body: FreeBody) -> Iterator[Place]:
 
     at_pin, at_shaft = magnitude(before), magnitude(body.torque)
     worse = where(at_pin >= at_shaft, at_pin, at_shaft)  # of the ends of the web between pin and shaft
-    beyond = (shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
-    if shaft.overhung:
-        yield from _web("web_A", *beyond)
-    else:
-        yield from _web("web_A", shaft, body.before_pin.D, body.moments_at(-shaft.web_distance), at_pin)
-        yield from _web("web_B", *beyond)
+    if not shaft.overhung:
+        yield from _web("web_A", shaft, body.before_pin.real, body.moments_at(-shaft.web_distance), at_pin)
+    last_web = "web_A" if shaft.overhung else "web_B"
+    yield from _web(last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
 
     if diameter is None:
         return
@@ -135,28 +133,20 @@ def places(body: FreeBody) -> Iterator[Place]:
     else:
         yield _round("journal_A", "at web", body.moments_at(-outer), None, diameter)
         yield _round("journal_B", "at web", body.moments_at(outer), body.torque, diameter)
-    if _flywheel_beyond(shaft):
-        outside = where(shaft.flywheel_position > 0, shaft.flywheel_position, 0.0)
-        bending = Vector(weight.D * outside, weight.T * outside)  # G f in the middle of bearing B
-        yield _round("journal_B", "in bearing", bending, body.torque, diameter)
-    else:
-        bending = body.moments_at(shaft.b + shaft.flywheel_position)
-        yield _round("journal_B", "at flywheel", bending, body.torque, diameter)
+    beyond = f >= 0  # of bearing B, in whose middle the bending is G f
+    bending = where(beyond, body.weight * f, body.moments_at(shaft.b + f))
+    name = "in bearing" if every(beyond) else "at flywheel"
+    yield _round("journal_B", name, bending, body.torque, diameter)
 
 
-def _flywheel_beyond(shaft: Crankshaft) -> bool:
-    """Return whether the flywheel is in bearing B or beyond, by the first of the machines."""
-    return bool(np.ravel(shaft.b + shaft.flywheel_position >= shaft.b)[0])
-
-
-def _round(part: str, name: str, moments: Vector, torque: Number | None, diameter: Number) -> Place:
+def _round(part: str, name: str, moments: Any, torque: Number | None, diameter: Number) -> Place:
     """Stresses at the surface of a round section, whose bendings add up as vectors."""
-    in_plane, out_of_plane = (magnitude(round_bending(moment, diameter)) for moment in moments)
+    in_plane, out_of_plane = (magnitude(round_bending(one, diameter)) for one in (moments.real, moments.imag))
     torsion = None if torque is None else magnitude(round_torsion(torque, diameter))
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
-def _web(part: str, shaft: Crankshaft, force: Number, moments: Vector, out_of_plane: Number) -> Iterator[Place]:
+def _web(part: str, shaft: Crankshaft, force: Number, moments: Any, out_of_plane: Number) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
 
     force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
@@ -167,9 +157,8 @@ def _web(part: str, shaft: Crankshaft, force: Number, moments: Vector, out_of_pl
     """
     t, w, allowed, twisting = shaft.web_thickness, shaft.web_width, shaft.allowable_bending, shaft.allowable_torsion
     alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
-    direct = force / t / w
-    wide, narrow = magnitude(6 * moments.D / w / t / t), 6 * out_of_plane / t / w / w
-    twist = 4.5 * magnitude(moments.T)
+    direct, twist = force / t / w, 4.5 * magnitude(moments.imag)
+    wide, narrow = magnitude(6 * moments.real / w / t / t), 6 * out_of_plane / t / w / w
     yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide)
     yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, magnitude(direct) + narrow)
     yield Place(part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow)
@@ -194,31 +183,19 @@ class StressColumns(AtAngles):
     @cached_property
     def answers(self) -> dict[str, Any]:
         """The columns by id; of the stresses those of the parts that are examined."""
-        (A_D, A_T), (B_D, B_T) = self._body.A, self._body.B
-        found = {"D": self._state.D, "T": self._state.T, "A_D": A_D, "A_T": A_T, "B_D": B_D, "B_T": B_T}
+        A, B = self._body.A, self._body.B
+        found = {"D": self._state.D, "T": self._state.T, "A_D": A.real, "A_T": A.imag, "B_D": B.real, "B_T": B.imag}
         for place in places(self._body):
             for id, stress in ((f"sigma_{place.part}", place.combined), (f"mises_{place.part}", place.von_mises)):
                 found[id] = np.maximum(found.get(id, 0.0), stress)
         return found
 
 
-class _Cycle(NamedTuple):
-    """The cycle on pieces on which the loads are polynomials, and no stress has a kink.
-
-    pin: D and T of the whole force on the pin in N, and what the rod itself adds to D; loads: magnitudes in N of the
-    forces on the pin, A and B, and of the rod force. Each (…, nodes, pieces).
-    """
-
-    pieces: Pieces
-    pin: Array
-    loads: Array
-
-
 class CrankshaftStrength(Results):
     """What `kurbel stress` computes: statics and stresses of the only crank throw of a machine.
 
     Raises UsageError where the machine has no crankshaft, more than one cylinder, or no pressure that loads it. Of many
-    machines the key values are arrays (machines,), nan where the flywheel is not on the same side of B as the first.
+    machines the key values are arrays (machines,).
     """
 
     command = "stress"
@@ -230,21 +207,36 @@ class CrankshaftStrength(Results):
     )
     C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
     _stresses = Heading("Stresses")
-    _dead_centre = "Combined stress of * in the dead centre under full force (Bach)"
-    sigma_dc = values_for(PARTS, "sigma_*_dc", "σ_*,dc", "stress", _dead_centre, group=str)
-    _bach, _mises = (
-        "Largest combined stress of * over the cycle (Bach)",
-        "Largest equivalent stress of * over the cycle",
+    sigma_dc = values_for(
+        PARTS,
+        "sigma_*_dc",
+        "σ_*,dc",
+        "stress",
+        "Combined stress of * in the dead centre under full force (Bach)",
+        group=str,
     )
-    sigma_max = values_for(PARTS, "sigma_*_max", "σ_*,max", "stress", _bach, group=str)
-    mises_max = values_for(PARTS, "mises_*_max", "σ_v,*,max", "stress", f"{_mises} (von Mises)", group=str)
-    _safety = "Smallest safety of *: k_b over its combined stress, dead centre and cycle"
-    safety = values_for(PARTS, "safety_*_min", "S_*", "ratio", _safety, group=str)
+    sigma_max = values_for(
+        PARTS, "sigma_*_max", "σ_*,max", "stress", "Largest combined stress of * over the cycle (Bach)", group=str
+    )
+    mises_max = values_for(
+        PARTS,
+        "mises_*_max",
+        "σ_v,*,max",
+        "stress",
+        "Largest equivalent stress of * over the cycle (von Mises)",
+        group=str,
+    )
+    safety = values_for(
+        PARTS,
+        "safety_*_min",
+        "S_*",
+        "ratio",
+        "Smallest safety of *: k_b over its combined stress, dead centre and cycle",
+        group=str,
+    )
     _bearings = Heading("Bearings")
-    A_max = value("A_max", "force", "Largest force on bearing A", lambda one: one.pressures["A_max"])
-    B_max = value(
-        "B_max", "force", "Largest force on bearing B, next to the flywheel", lambda one: one.pressures["B_max"]
-    )
+    A_max = value("A_max", "force", "Largest force on bearing A")
+    B_max = value("B_max", "force", "Largest force on bearing B, next to the flywheel")
     p_pin_dc = value("p_pin,dc", "pressure", "Pressure on the crank pin under full force, P/(d l)")
     pressure_max = values_for(
         _BEARINGS,
@@ -252,7 +244,6 @@ class CrankshaftStrength(Results):
         "p_*,max",
         "pressure",
         "Largest pressure on * over the cycle, force over d l",
-        of=lambda one, part: one.pressures.get(f"p_{part}_max"),
         group=str,
     )
     pressure_mean = values_for(
@@ -261,7 +252,6 @@ class CrankshaftStrength(Results):
         "p_*,m",
         "pressure",
         "Mean pressure on * over the time of a cycle",
-        of=lambda one, part: one.pressures.get(f"p_{part}_mean"),
         after="p_*_max",
         group=str,
     )
@@ -271,7 +261,6 @@ class CrankshaftStrength(Results):
         "k_*",
         "pressure_velocity",
         "Mean pressure times surface speed, p_m v, of *",
-        of=lambda one, part: one.pressures.get(f"k_{part}"),
         after="p_*_mean",
         group=str,
     )
@@ -294,7 +283,7 @@ class CrankshaftStrength(Results):
         self.forces = cylinders[0]
         self.count = self.forces.drive.count
 
-    def _body(self, pin: Vector, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
+    def _body(self, pin: Any, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
         several = pieces is not None and self.count is not None
         machine = taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
@@ -304,82 +293,78 @@ class CrankshaftStrength(Results):
 
     def _columns(self, phi: Array, within: Array) -> StressColumns:
         state = State.at(self.forces.drive, phi, within)
-        return StressColumns(phi, state, self._body(on_pin(state), state.angle))
+        return StressColumns(phi, state, self._body(on_pin(state).complex, state.angle))
 
     # the cycle
 
     @cached_property
-    def _cycle(self) -> _Cycle:
-        """The cycle cut where the force or moment of a stress is zero, so that its magnitude has a kink there.
+    def _cycle(self) -> tuple[Pieces, Array, Array]:
+        """The cycle on pieces on which the loads are polynomials and no stress has a kink, cut where one is zero.
 
-        Raises UsageError where the stresses of the only machine are no finite numbers.
+        Besides the pieces D and T of the whole force on the pin in N, and what the rod itself adds to D; magnitudes in
+        N of the forces on pin, A and B, and of the rod force. Each (…, nodes, pieces). Raises UsageError where the
+        stresses of the only machine are no finite numbers.
         """
         pieces, state = self.forces.pieces, self.forces.samples
         pin = on_pin(state)
-        parts = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (*pin, state.D - pin.D)])
-        body = self._body(Vector(*parts[:2]), state.angle, pieces)
-        if self.count is None and not all(
-            np.isfinite(stress).all() for place in places(body) for stress in (place.combined, place.von_mises)
-        ):
+        body = self._body(pin.complex, state.angle, pieces)
+        if self.count is None and not all(np.isfinite(one.combined + one.von_mises).all() for one in places(body)):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
+        bends, at_pin, at_shaft = body.moments_at(body.shaft.web_distance), body.before_pin.imag, body.pin.imag
+        both = [part for one in (body.pin, body.A, bends) for part in (one.real, one.imag)]
         # the web beyond the pin is bent out of plane as much at the pin as at the shaft
-        ends = (body.before_pin.T - body.pin.T, body.before_pin.T + body.pin.T)
-        kinked = (*body.pin, *body.A, body.along_web, *body.moments_at(body.shaft.web_distance), *ends, state.D)
+        kinked = (*both, body.along_web, at_pin - at_shaft, at_pin + at_shaft, state.D)
         kinks = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in kinked])
+        parts = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (*pin, state.D - pin.D)])
 
         def magnitudes(some: Pieces, found: Array) -> Array:
-            body = self._body(Vector(*found[:2]), CrankAngle.at_nodes(some), some)
-            loads = (found[:2], body.A, body.B, (found[0] + found[2], found[1]))
-            return np.stack([np.hypot(*load) for load in loads])
+            D, T, own = found
+            body = self._body(D + 1j * T, CrankAngle.at_nodes(some), some)
+            return np.abs(np.stack((body.pin, body.A, body.B, D + own + 1j * T)))
 
         fine, loads, found = resolved(pieces, parts, kinks, pieces.largest(kinks), magnitudes)
-        return _Cycle(fine, found, np.asarray(loads))
+        return fine, found, np.asarray(loads)
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle.pieces.low, self._cycle.pieces.cycle)
+        return np.append(self._cycle[0].low, self._cycle[0].cycle)
 
     @cached_property
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
         def stresses(some: Pieces, pin: Array) -> Array:
-            found = tuple(places(self._body(Vector(*pin[:2]), CrankAngle.at_nodes(some), some)))
+            found = [*places(self._body(pin[0] + 1j * pin[1], CrankAngle.at_nodes(some), some))]
             return np.stack([*(one.combined for one in found), *(one.von_mises for one in found)])
 
-        found, degrees = highest(self._cycle.pieces, self._cycle.pin, stresses)
-        if self.count is not None:
-            alike = (self.shaft.b + self.shaft.flywheel_position >= self.shaft.b) == _flywheel_beyond(self.shaft)
-            found = np.where(np.broadcast_to(alike, self.count), found, math.nan)
-        return [Extreme(*map(self.forces.result, pair)) for pair in zip(found, degrees)]
+        return [Extreme(*map(self.forces.result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
 
     @cached_property
     def answers(self) -> dict[str, Any]:
-        """The key values of the stresses by id, of the parts that are examined; the safety where k_b is given."""
+        """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
         shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
-        found: dict[str, Any] = {
-            "C_rod": pull if some(pull != 0) else None,
-            "p_pin_dc": abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length,  # G: P_max/(d_z l_z)
-        }
-        at, count = self.at_dead_centre, len(self.at_dead_centre)
-        of_cycle = list(zip(at, self._largest[:count], self._largest[count:]))
+        found = self._of_loads()
+        found["C_rod"] = pull if some(pull != 0) else None
+        found["p_pin_dc"] = abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length  # G: P_max/(d_z l_z)
+        at = self.at_dead_centre
+        rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
         for part in dict.fromkeys(place.part for place in at):
-            resting = largest(*(Extreme(place.combined, place.degrees) for place in at if place.part == part))
-            turning = largest(*(bach for place, bach, _ in of_cycle if place.part == part))
-            found[f"mises_{part}_max"] = largest(*(mises for place, _, mises in of_cycle if place.part == part))
+            own = [row for row in rows if row[0].part == part]
+            resting = largest(*(Extreme(place.combined, place.degrees) for place, _, _ in own))
+            turning = largest(*(bach for _, bach, _ in own))
             found[f"sigma_{part}_dc"], found[f"sigma_{part}_max"] = resting.value, turning
+            found[f"mises_{part}_max"] = largest(*(mises for _, _, mises in own))
             worst = largest(resting, turning)
             if allowable is not None and not every(worst.value == 0):
                 safety = allowable / where(worst.value == 0, math.nan, worst.value)
                 found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return found
 
-    @cached_property
-    def pressures(self) -> dict[str, Any]:
+    def _of_loads(self) -> dict[str, Any]:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
@@ -402,7 +387,7 @@ class CrankshaftStrength(Results):
     def unbalanced(self) -> Any:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
         pieces, state = self.forces.pieces, self.forces.samples
-        body = self._body(on_pin(state), state.angle, pieces)
+        body = self._body(on_pin(state).complex, state.angle, pieces)
         return self.forces.result(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
 
     # the two positions of the book, and the worst of the cycle
@@ -436,31 +421,29 @@ class CrankshaftStrength(Results):
         force, degrees = self.full_force
         angle = CrankAngle.of(degrees)
         radial: Any = self.forces.drive.mechanism.radial(angle)
-        body = self._body(Vector(force * radial, 0.0), angle)
+        body = self._body(force * radial + 0j, angle)
         return tuple(place._replace(degrees=degrees) for place in places(body))
 
     @property
     def at_largest_torque(self) -> tuple[Place, ...]:
         """Every place in the position of the largest torque, of the only machine."""
-        torque, degrees = self.largest_torque
-        body, _ = self._beside([degrees])
-        nearest = np.abs(body.pin.T - torque).argmin()
-        return tuple(place.one_of(nearest, degrees) for place in places(body))
+        degrees = self.largest_torque.degrees
+        body = self._beside([degrees])
+        side = int(np.abs(body.pin.imag).argmax())
+        return tuple(place.one_of(side, degrees) for place in places(body))
 
     @property
     def at_worst(self) -> tuple[Place, ...]:
         """Every place at the crank angle of the running machine at which its own combined stress is largest."""
-        worst = self._largest[: len(self.at_dead_centre)]
-        body, side = self._beside([one.degrees for one in worst])
+        angles = [worst.degrees for worst in self._largest[: len(self.at_dead_centre)]]
         found = []
-        for number, (place, one) in enumerate(zip(places(body), worst)):
-            nearest = np.where(side == number, np.abs(place.combined - one.value), math.inf).argmin()
-            found.append(place.one_of(nearest, one.degrees))
+        for number, (place, degrees) in enumerate(zip(places(self._beside(angles)), angles)):
+            side = 2 * number + int(place.combined[2 * number : 2 * number + 2].argmax())
+            found.append(place.one_of(side, degrees))
         return tuple(found)
 
-    def _beside(self, degrees: Sequence[float]) -> tuple[FreeBody, Array]:
-        """Return the throw on both sides of angles in degrees of the only machine, and to which angle each belongs."""
-        pieces, each = self._cycle.pieces, np.repeat(np.asarray(degrees), 2)
-        rows = pieces.holding(np.zeros(len(each), dtype=np.intp), each + np.tile((-1e-9, 1e-9), len(degrees)))
-        state = State(self.forces.drive, CrankAngle.of(each), pieces.middle[rows])
-        return self._body(on_pin(state), state.angle), np.repeat(np.arange(len(degrees)), 2)
+    def _beside(self, degrees: Sequence[float]) -> FreeBody:
+        """Return the throw just before and just after each angle in degrees of the only machine, since T may jump."""
+        each = np.repeat(np.asarray(degrees), 2)
+        state = State.at(self.forces.drive, each, each + np.tile((-1e-9, 1e-9), len(degrees)))
+        return self._body(on_pin(state).complex, state.angle)

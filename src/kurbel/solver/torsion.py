@@ -14,9 +14,9 @@ angle, with every jump and thus with all orders; else it is the sum of many orde
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cached_property, partial
-from typing import NamedTuple
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,17 +25,15 @@ from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.machine.turning import MOST_TURNS
-from kurbel.numerics.arithmetic import every, is_whole, unless_cancelled
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
-from kurbel.numerics.pieces import Pieces, refined
-from kurbel.numerics.waves import crests
+from kurbel.numerics.pieces import NOWHERE, Pieces, refined
 from kurbel.quantity import value
 from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.harmonics import HIGHEST, Spectrum, amplitudes, every_order
+from kurbel.solver.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
 
@@ -51,8 +49,10 @@ _ROUNDING = 1e-14
 """Of the largest torque on a mass: an order that is smaller is zero."""
 _MOST_WORK, _FEWEST = 3.75e4, 40
 """Pieces, at least the second number, times the cube of the unknowns: what a solution of about a second takes."""
-_LOST = 1e-4
-"""By what rounding moves a torque, over the largest one, beyond which its fourth digit is none: tables print four."""
+_WAVE = 240.0
+"""Degrees of the shortest wave that are a polynomial of 16 nodes to 1e-13."""
+_ENDLESS = 1e9
+"""Torques over those that drive, above which a resonance counts as undamped, since only rounding limits it."""
 
 
 def shaft_line_of(machine: Machine) -> ShaftLine:
@@ -81,13 +81,14 @@ def stress(line: ShaftLine, segment: int) -> float | None:
 
 
 class Excitation(NamedTuple):
-    """The torques on n masses in N m, by orders (k,).
+    """The torques on n masses in N m, by orders (k,), over their common period of `cycle` degrees.
 
     gas, inertia: amplitudes (n, k) of what is independent of the speed, and of the inertia forces at ω_n = omega in
     rad/s; means (n,), with the load on the mass that takes it; load_slope: dL/dω of each mass at ω_n in N m s/rad (n,).
     """
 
     omega: float
+    cycle: float
     orders: Array
     gas: ComplexArray
     inertia: ComplexArray
@@ -129,7 +130,7 @@ def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitat
     omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
     if law:
         slopes[line.load] = law.steepness[0] / omega
-    return Excitation(omega, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
+    return Excitation(omega, effort.cycle, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
 
 
 # forced vibration
@@ -149,39 +150,40 @@ class Vibration:
         self._frequencies = np.multiply.outer(omegas, acting.orders)
         # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
         self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
-        self.angles, moved = response(chain, self._frequencies, self.driving, self._load_damping)
+        self.angles = response(chain, self._frequencies, self.driving, self._load_damping)
         self.ratios = np.array([piece.ratio for piece in line.pieces])
-        self.torques, unsure = (
-            passing(chain, self._frequencies, angles) / self.ratios[:, None, None] for angles in (self.angles, moved)
-        )
-        largest, unsure = (np.abs(one).max(axis=(0, 2)) for one in (self.torques, unsure))
-        self.endless: Flags = np.isfinite(self.driving).all(axis=(0, 2)) & ~(unsure <= _LOST * largest)
+        passed = passing(chain, self._frequencies, self.angles)
+        self.torques = passed / self.ratios[:, None, None]
+        largest, driving = (np.abs(one).max(axis=(0, 2)) for one in (passed, self.driving))
+        self.endless: Flags = np.isfinite(driving) & ~(largest <= _ENDLESS * driving)
 
     @cached_property
     def means(self) -> Array:
         """Mean torques in the segments in N m."""
-        reached = np.cumsum(self.acting.means)
-        if self.chain.held[0]:
-            reached = np.append(0.0, reached)
-            # of two fixed ends the twists add up to nothing, of one the torque behind the last mass is nothing
-            soft = 1 / self.chain.stiffnesses
-            reached -= (reached @ soft) / soft.sum() if self.chain.held[1] else reached[-1]
-        return np.asarray(reached[: len(self.ratios)] / self.ratios)
+        chain, reached = self.chain, np.append(0.0, np.cumsum(self.acting.means))
+        # a free end has no torque; between two fixed ones the twists add up to nothing
+        free = np.eye(len(reached))[-1 if chain.held[0] else 0]
+        counted = 1 / chain.stiffnesses if all(chain.held) else free
+        reached -= reached @ counted / counted.sum()
+        return reached[chain.around != 0] / self.ratios
 
     @cached_property
-    def crests(self) -> tuple[Array, Array]:
-        """Largest and smallest torque in the segments less their mean in N m, (segments, s) each."""
-        orders = self.acting.orders
-        # turns in which all of them are whole waves
-        cycle = next(turns for turns in range(1, 2 * MOST_TURNS + 1) if every(is_whole(turns * orders)))
-        high, low = crests([round(cycle * order) for order in orders.tolist()], self.torques.reshape(-1, len(orders)))
-        return high.reshape(self.torques.shape[:2]), low.reshape(self.torques.shape[:2])
+    def swings(self) -> tuple[Pieces, Array]:
+        """The torques in the segments less their mean in N m over the turn, (segments, s, nodes, pieces)."""
+        orders, pieces = self.acting.orders, Pieces.between(NOWHERE, 1, self.acting.cycle)
+        parts = math.ceil(2 * pieces.half.max() * orders.max() / _WAVE)
+        pieces = pieces.parted(np.full(len(pieces.half), parts))
+        # at a node the waves are those at the beginning of its piece times those of a piece from there on
+        inside = unit_vector(np.multiply.outer(pieces.half[0] * (1 + pieces.rule.nodes), orders))
+        begin = unit_vector(np.multiply.outer(orders, pieces.low))
+        return pieces, ((self.torques[:, :, None] * inside) @ begin).real
 
     @property
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        high, low = self.crests
-        return np.asarray((high - low) / 2)
+        pieces, torques = self.swings
+        ends = pieces.extremes(torques.reshape(-1, *pieces.degrees.shape))
+        return ((ends.largest - ends.smallest) / 2).reshape(torques.shape[:2])
 
     @property
     def loss(self) -> Array:
@@ -190,7 +192,7 @@ class Vibration:
         twists = np.abs(np.tensordot(chain.twists, self.angles, 1)) ** 2
         of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
         of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
-        return np.asarray((of_masses + of_segments) / 2)
+        return (of_masses + of_segments) / 2
 
 
 def _mean_inertia(drive: Drive) -> float:
@@ -200,21 +202,41 @@ def _mean_inertia(drive: Drive) -> float:
 
 
 class SegmentTorque(NamedTuple):
-    """The torque in one segment of the shaft line at the working speed in N m, and the stress in Pa, None if not known.
+    """The torque in one segment of the shaft line at the working speed in N m.
 
-    M_vibratory, tau_vibratory: half of what they swing; over: the torque at crank angles (n,) in degrees; factor: the
-    stress in Pa per N m.
+    swing: samples of what swings about the mean, (nodes, pieces); factor: the stress in Pa per N m, None if not known.
     """
 
     name: str
     M_shaft_mean: float
     M_shaft_max: float
     M_shaft_min: float
-    M_vibratory: float
-    tau_mean: float | None
-    tau_vibratory: float | None
-    over: Callable[[Array], Array]
+    pieces: Pieces
+    swing: Array
     factor: float | None
+
+    @property
+    def M_vibratory(self) -> float:
+        """Half of what it swings."""
+        return (self.M_shaft_max - self.M_shaft_min) / 2
+
+    def stress_of(self, torque: Any) -> Any:
+        """Return the stress in Pa of torques in N m, None if not known."""
+        return None if self.factor is None else self.factor * torque
+
+    @property
+    def tau_mean(self) -> float | None:
+        """The stress of the mean torque in Pa."""
+        return self.stress_of(self.M_shaft_mean)
+
+    @property
+    def tau_vibratory(self) -> float | None:
+        """The stress of half of what the torque swings in Pa."""
+        return self.stress_of(self.M_vibratory)
+
+    def torque_at(self, degrees: Array) -> Array:
+        """Return the torque in N m at crank angles (n,) in degrees."""
+        return self.M_shaft_mean + self.pieces.at(self.swing, np.zeros(len(degrees), dtype=np.intp), degrees)
 
     def at(self, degrees: Array) -> SegmentState:
         """Return torque and stress at crank angles (n,) in degrees."""
@@ -222,23 +244,23 @@ class SegmentTorque(NamedTuple):
 
 
 class SegmentState(AtAngles):
-    """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
+    """The columns of a segment at crank angles φ (n,) in degrees."""
 
     commands = ("torsion",)
     M_shaft = value(
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.segment.over(one.phi) if one.segment else None,
+        lambda one: one.segment.torque_at(one.phi),
     )
     tau = value(
         "τ",
         "stress",
         "Torsional stress at the smallest section of the segment",
-        lambda one: one.segment.factor * one.M_shaft if one.segment and one.segment.factor else None,
+        lambda one: one.segment.stress_of(one.M_shaft),
     )
 
-    def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
+    def __init__(self, segment: SegmentTorque, phi: Array) -> None:
         self.segment, self.phi = segment, phi
 
 
@@ -305,7 +327,7 @@ class ShaftVibration(Results):
         "τ_a",
         "stress",
         "Largest vibratory stress amplitude of any shaft segment",
-        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.factor is not None), default=None),
+        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.tau_vibratory is not None), default=None),
     )
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
@@ -336,7 +358,7 @@ class ShaftVibration(Results):
         self.obstacle = self._unexcited or undamped
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
-        return SegmentState(None, phi)
+        raise UsageError("each segment of a shaft line has its own columns: ask one of case.torsion.pieces")
 
     def piece_name(self, segment: int) -> str:
         """Return what a segment is between."""
@@ -400,7 +422,7 @@ class ShaftVibration(Results):
     def steady(self) -> tuple[Pieces, Array] | None:
         """The motion at the working speed with all orders: torques in the segments less their means, in N m.
 
-        (segments, nodes, pieces), as chains of one shaft have them. None where certain orders are requested, where a
+        (segments, nodes, pieces). None where certain orders are requested, where a
         loss factor is given, and where no motion is found, or none that is worth its time.
         """
         # the springs of a chain between two fixed ends are more unknowns than equations
@@ -413,7 +435,9 @@ class ShaftVibration(Results):
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
         found = periodic(equation, equation.pieces)
-        return None if found.failed[0] else (found.pieces, equation.torques(found.samples, found.pieces))
+        if found.failed[0]:
+            return None
+        return found.pieces, equation.torques(found.samples, found.pieces) / self.vibration.ratios[:, None, None]
 
     @cached_property
     def _summed(self) -> Vibration | None:
@@ -445,27 +469,14 @@ class ShaftVibration(Results):
         """The torque in every segment at the working speed; none where no forced vibration can be computed."""
         if self.vibration is None:
             return ()
-        means = self.vibration.means.tolist()
         if self._summed:
-            orders, (high, low) = self._summed.acting.orders, (one[:, 0] for one in self._summed.crests)
-            waves = [Spectrum(mean, orders, one).at for mean, one in zip(means, self._summed.torques[:, 0])]
+            pieces, torques = self._summed.swings[0], self._summed.swings[1][:, 0]
         else:
             assert self.steady
-            pieces, torques = self.steady[0], self.steady[1] / self.vibration.ratios[:, None, None]
-            waves = [partial(_torque_at, pieces, mean, torque) for mean, torque in zip(means, torques)]
-            ends = pieces.extremes(torques)
-            high, low = ends.largest[:, 0], ends.smallest[:, 0]
-
-        found = []
-        for segment, (mean, up, down, wave) in enumerate(zip(means, high.tolist(), low.tolist(), waves)):
-            factor, top, bottom = stress(self.line, segment), mean + up, mean + down
-            swing = (top - bottom) / 2
-            tau_mean, tau = (None, None) if factor is None else (factor * mean, factor * swing)
-            name = self.piece_name(segment)
-            found.append(SegmentTorque(name, mean, top, bottom, swing, tau_mean, tau, wave, factor))
+            pieces, torques = self.steady
+        ends, found = pieces.extremes(torques), []
+        rows = zip(self.vibration.means.tolist(), ends.largest[:, 0].tolist(), ends.smallest[:, 0].tolist(), torques)
+        for segment, (mean, high, low, swing) in enumerate(rows):
+            factor = stress(self.line, segment)
+            found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
         return tuple(found)
-
-
-def _torque_at(pieces: Pieces, mean: float, torque: Array, degrees: Array) -> Array:
-    """Return a mean and samples of what swings about it, together, at crank angles (n,) in degrees."""
-    return mean + pieces.at(torque, np.zeros(len(degrees), dtype=np.intp), degrees)

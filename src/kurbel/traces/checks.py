@@ -11,12 +11,10 @@ from collections.abc import Callable
 import numpy as np
 
 from kurbel.arrays import Array
-from kurbel.crank_angle import CrankAngle
-from kurbel.numerics.lobatto import rule
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.traces.correct import (
     COMPRESSION,
     EXPANSION,
-    LAST,
     Exponent,
     Setting,
     Trace,
@@ -25,8 +23,10 @@ from kurbel.traces.correct import (
     joined_in_pairs,
     noise_of,
     parabola_peak,
+    sides_of,
     without_drift,
 )
+from kurbel.traces.work import work_weights
 
 _LOW = 0.15
 """Share of the cycle that is below the low level, so that a few noisy samples do not define it."""
@@ -36,81 +36,69 @@ _ENGINE = 8.0
 """Peak over low level, absolute, from which on something is compressed, or burns, in a small space."""
 _NARROW = 90.0
 """Degrees for which the upper half of such a peak lasts at most; what lasts longer is an admission or a delivery."""
-_FEW_SAMPLES = 600
-"""Below, the straight lines between samples are so long that more nodes are needed along each."""
-
-
+_MOTORED_RATIO = 0.6, 1.1
+"""Pressure after the peak over that before, if nothing burns: what heat loss and leakage take, and noise."""
+_MOTORED_RISE = 3.0
+"""Least pressure of such a peak over that at its feet; what is flat has no peak."""
 _CANCELLED = 1e-13
 """Share of the terms of a sum below which the sum is only rounding error."""
 
 
 class TraceReading:
-    """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees after the dead centre.
+    """A trace in its chamber: what checks judge it by, pressures in Pa, angles in degrees.
 
-    each: pressures (m, n) of every cycle, corrected; after (n,): rising angles from the chamber's own (firing) dead
-    centre; place (n,): the same within ± half a cycle; low: level below which the cycle lies for 15 % of it; ratio: of
-    the peak over it, absolute; engine: whether something is compressed, or burns, in a small space; usual: whether the
-    peak is where such a cycle has it; motored: whether nothing burns, since both sides of the peak are alike. (The sign
-    of the work does not show that: a motored trace that is too late does work.)
+    each: pressures (m, n) of every cycle, corrected; angles (n,): crank angles; place (n,): degrees after the chamber's
+    own (firing) dead centre, within ± half a cycle; low: level below which the cycle lies for 15 % of it; ratio: of the
+    peak over it, absolute; engine: whether something is compressed, or burns, in a small space; usual: where such a
+    peak is; motored: whether nothing burns, since both sides of the peak are alike. (The sign of the work does not show
+    that: a motored trace that is too late does work.)
     """
 
     def __init__(self, trace: Trace, setting: Setting, each: Array) -> None:
         self.trace, self.setting, self.each = trace, setting, each
         self.p: Array = each.mean(axis=0)
+        self.angles: Array = trace.angles + setting.shift(trace)
         self.place = setting.from_dead_centre(trace)
-        self.after = trace.angles - trace.angles[0] + self.place[0]
         self.step = trace.period / (len(self.p) - 1)
         widths = np.convolve(np.diff(trace.angles), [1.0, 1.0])
         order = np.argsort(self.p)
         share = np.cumsum(widths[order]) / (2 * trace.period)
         self.low = float(self.p[order[np.searchsorted(share, _LOW)]])
-        self.top = int(np.argmax(self.p))
-        self.peak = float(self.p[self.top])
+        top = int(np.argmax(self.p))
+        self.peak, self.top_at = float(self.p[top]), float(self.place[top])
         # a single top sample may be noise; the closing one would count twice
-        self.vertex = parabola_peak(self.place[:-1], self.p[:-1], float(self.place[self.top]), _PARABOLA)
-        self.peak_at = self.vertex.place if self.vertex else float(self.place[self.top])
+        self.vertex = parabola_peak(self.place[:-1], self.p[:-1], self.top_at, _PARABOLA)
+        self.peak_at = self.vertex.place if self.vertex else self.top_at
         half_width = float(widths[self.p > (self.peak + self.low) / 2].sum()) / 2
         # of a trace that goes down to the vacuum, the ratio as over a good vacuum
         self.ratio = (self.peak + setting.lift) / max(self.low + setting.lift, 0.2 * setting.ambient, 1.0)
         self.engine = half_width <= _NARROW and self.ratio > _ENGINE
         self.usual = _FIRED if setting.cycle == 720 else _TWO_STROKE
-
-        around = trace.angles[self.top] + np.linspace(-_AROUND, _AROUND, 21)
-        places = np.multiply.outer([-1.0, 1.0], _MOTORED_SIDES)[..., np.newaxis] + around
-        sides = np.interp(places, trace.angles, self.p + setting.lift, period=trace.period).mean(axis=-1)
-        alike = (_MOTORED_RATIO[0] * sides[0] <= sides[1]) & (sides[1] <= _MOTORED_RATIO[1] * sides[0])
-        self.motored = bool(alike.all() and self.peak + setting.lift > _MOTORED_RISE * max(sides[:, -1]))
+        before, after = sides_of(float(trace.angles[top]), trace.angles, self.p + setting.lift, trace.period)
+        alike = (_MOTORED_RATIO[0] * before <= after) & (after <= _MOTORED_RATIO[1] * before)
+        self.motored = bool(alike.all() and self.peak + setting.lift > _MOTORED_RISE * max(before[-1], after[-1]))
 
     def exponent(self, stretch: tuple[float, float], later: float = 0.0, raised: float = 0.0) -> Exponent | None:
         """Return the exponent of a stretch if the trace were so many degrees later, and raised by Pa."""
         absolute = self.p + self.setting.lift + raised
         return exponent(self.setting, self.trace.clearance, self.place + later, absolute, stretch)
 
-    def p_i(self, after: Array | None = None, pressures: Array | None = None) -> float:
-        """Return ∮ p dz in Pa of other angles, or other pressures, than those of the trace.
+    def p_i(self, angles: Array | None = None, pressures: Array | None = None) -> float:
+        """Return ∮ p dz in Pa of other crank angles, or other pressures, than those of the trace."""
+        weights = work_weights(self.setting, self.angles if angles is None else angles)
+        terms = weights * (self.p if pressures is None else pressures)
+        return float(unless_cancelled(terms.sum(), np.abs(terms).sum(), _CANCELLED))
 
-        At equal angles the trapezoid rule of p dz/dφ, at others the integral of the straight lines in between.
-        """
-        angles, p = self.after if after is None else after, self.p if pressures is None else pressures
-        mechanism, along = self.setting.mechanism, rule(2 if self.trace.even else 10 if len(p) < _FEW_SAMPLES else 4)
-        share = (1 + along.nodes[:, np.newaxis]) / 2
-        at = angles[:-1] + share * np.diff(angles)
-        slope = mechanism.slope(CrankAngle.of(at + self.setting.own_dead_centre)) / mechanism.stroke
-        pieces = along.weights @ ((p[:-1] + share * np.diff(p)) * slope)
-        terms = pieces * np.radians(np.diff(angles)) / (2 if self.setting.head_end else -2)
-        total = float(terms.sum())
-        return total if abs(total) > _CANCELLED * float(np.abs(terms).sum()) else 0.0
-
-    def then(self, after: Array | None = None, pressures: Array | None = None, times: float = 1.0) -> str:
+    def then(self, angles: Array | None = None, pressures: Array | None = None, times: float = 1.0) -> str:
         """Return p_i of other angles, or other pressures, or multiplied, and as it is."""
-        now, then = in_bar(self.p_i()), in_bar(times * self.p_i(after, pressures))
+        now, then = in_bar(self.p_i()), in_bar(times * self.p_i(angles, pressures))
         return f"p_i is then {then} instead of {now}" if now != then else f"p_i stays {now}"
 
     def put_later(self, degrees: float) -> tuple[str, str]:
         """Return the key that puts the dead centre so many degrees later, and what it does to p_i."""
         zero, period = self.trace.as_written(self.trace.angle_zero + degrees), self.trace.period
         shown = round((zero + 180) % period - 180, 3)
-        return f"'angle_zero: {shown:g} deg'", self.then(self.after - degrees)
+        return f"'angle_zero: {shown:g} deg'", self.then(self.angles - degrees)
 
 
 def in_bar(pressure: float) -> str:
@@ -126,15 +114,10 @@ def doubt(trace: Trace, setting: Setting, each: Array) -> str:
 
 # the samples
 
-_PULSE = 0.02, 0.9
-"""Share of the swing, and of the samples that are within it of one level if there are only pulses."""
-_FEWEST = 36
 _TURNS_DIFFER = 0.2
 """Share of the range by which the turns of a two-stroke cycle never differ in pairs."""
 _WANDERED = 10.0
 """Degrees by which the cycles of one engine never move from the first to the last."""
-_LAPPED = 0.05
-"""Share of a cycle by which each may wander against the one before; beyond, others lie over it."""
 _TWICE = 0.25
 """Share of samples at the angle of the one before, from which on angles are rounded."""
 _RANGE = 0.06
@@ -147,104 +130,69 @@ _SURE_OF_NOISE = 6.0
 """Standard deviations of the noise that a drift must exceed."""
 
 
-def _column_of_pulses(reading: TraceReading) -> str:
-    """A signal that is flat but for pulses with upright sides is that of an injector or a mark, no pressure."""
-    p, trace = reading.p, reading.trace
-    swing = float(np.ptp(p))
-    flat = float(np.mean(np.abs(p - np.median(p)) <= _PULSE[0] * swing))
-    upright = np.count_nonzero(np.abs(np.diff(p)) > swing / 2) >= 2
-    if not trace.column or len(p) < _FEWEST or flat < _PULSE[1] or not upright:
-        return ""
-    return (
-        f"column {trace.column} is flat over {flat:.0%} of the cycle, but for a pulse with upright sides: the signal "
-        "of an injector or a mark? name the column of the pressures by 'pressure_column'"
-    )
-
-
 def _turns_in_pairs(reading: TraceReading) -> str:
     """Laps that differ in pairs are the turns of a four-stroke cycle, taken for two strokes, or each for a cycle."""
     each, trace = reading.each, reading.trace
-    if len(each) < 2 or len(each) % 2:
+    if len(each) % 2:
         return ""
     odd, even = each[0::2].mean(axis=0), each[1::2].mean(axis=0)
     if np.abs(odd - even).max() <= _TURNS_DIFFER * max(np.ptp(odd), np.ptp(even)):
         return ""
-    peaks = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
+    seen = f"differ in pairs, with peaks of {in_bar(odd.max())} and {in_bar(even.max())}"
     if reading.setting.cycle == 360:
-        return (
-            f"its turns {peaks}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {reading.then(times=2.0)}"
-        )
+        return f"its turns {seen}: a four-stroke cycle? write 'cycle: four-stroke' at the top; {reading.then(times=2)}"
     joined = joined_in_pairs(trace.samples).mean(axis=0)
     step = trace.period / (len(joined) - 1)
-    after = reading.after[0] - trace.angles[0] + step * np.arange(len(joined))
-    return (
-        f"its cycles {peaks}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; "
-        f"{reading.then(after, joined)}"
-    )
+    then = reading.then(reading.angles[0] - trace.angles[0] + step * np.arange(len(joined)), joined)
+    return f"its cycles {seen}: does the angle number the samples of one turn? write 'angle_step: {step:g} deg'; {then}"
 
 
 def _wandering_cycles(reading: TraceReading) -> str:
     """Cycles of one engine do not wander against each other; those by time and a wrong speed do."""
     each, trace = reading.each, reading.trace
-    if len(each) < 3:
-        return ""
     wave = np.exp(-2j * np.pi * trace.angles / trace.period) * np.gradient(trace.angles)
     phases = np.unwrap(np.angle(each[:, :-1] @ wave[:-1]))
     wandered = float(phases[0] - phases[-1]) * trace.period / (2 * np.pi)
-    if abs(wandered) <= _WANDERED:
+    if len(each) < 3 or abs(wandered) <= _WANDERED:
         return ""
     off = wandered / (trace.period * (len(each) - 1))
-    change = f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'}"
-    remedy = f" If the file counts time: a 'recorded_speed' about {change} brings both together"
-    first, last = (in_bar(reading.p_i(pressures=one)) for one in (each[0], each[-1]))
     return (
-        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last, "
-        f"and p_i goes from {first} to {last}: was the speed another, or not constant?"
-        f"{remedy if abs(off) < _LAPPED else ''}"
+        f"the cycles wander {abs(wandered):.3g} deg {'later' if off > 0 else 'earlier'} from the first to the last: "
+        "was the speed another, or not constant? If the file counts time: a 'recorded_speed' about "
+        f"{abs(1 / (1 + off) - 1):.2%} {'lower' if off > 0 else 'higher'} brings both together"
     )
 
 
 def _rounded_angles(reading: TraceReading) -> str:
-    trace = reading.trace
-    twins = int(np.count_nonzero(np.diff(trace.angles) == 0))
-    if twins < _TWICE * len(trace.angles):
+    trace, angles = reading.trace, reading.angles
+    twins = int(np.count_nonzero(np.diff(angles) == 0))
+    if twins < _TWICE * len(angles):
         return ""
     zero = trace.as_written(trace.angle_zero) - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
-    key = f"write 'angle_step: {reading.step:g} deg'{moved}" if trace.files else "give each point an angle of its own"
-    even = reading.after[0] + reading.step * np.arange(len(trace.angles))
-    return f"{twins} samples have the angle of the one before: rounded angles? {key}; {reading.then(even)}"
+    return (
+        f"{twins} samples have the angle of the one before: rounded angles? write 'angle_step: {reading.step:g} deg'"
+        f"{moved}; {reading.then(angles[0] + reading.step * np.arange(len(angles)))}"
+    )
 
 
 def _drift(reading: TraceReading) -> str:
-    """Judge the jump where the cycle closes: of the closing sample alone, or of a drift over the cycle."""
+    """Judge the jump where the cycle closes."""
     p, trace = reading.p, reading.trace
     jump = float(drift_of(trace, p[np.newaxis])[0])
-    closes = abs(float(p[0]) - reading.low)
-    least = max(_RANGE * closes, _LEAST * reading.setting.ambient)
+    least = max(_RANGE * abs(float(p[0]) - reading.low), _LEAST * reading.setting.ambient)
     if trace.even:
         least = max(least, _SURE_OF_NOISE * noise_of(p[:-1]))
     if trace.completed:  # what resolution, and the bend of the pressure, may do to a jump between lines
         bends = np.abs(np.concatenate((np.diff(p[-5:-1], 2), np.diff(p[:4], 2))))
         steps = np.abs(np.diff(p))
-        resolution = 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0
-        least = max(least, resolution, 3.0 * float(bends.max()))
-    if abs(jump) <= least:
-        return ""
-    dense = len(p) >= _FEWEST and trace.angles[-1] - trace.angles[-4] <= 3 * LAST and not trace.completed
-    if dense and 3 * abs(float(drift_of(trace, p[np.newaxis], extrapolated=True)[0])) < abs(jump):
-        angle = trace.as_written(float(trace.angles[0 if trace.against else -1]))
-        return (
-            f"the closing sample at {angle:.10g} deg is {in_bar(p[-1])}, though the cycle begins with {in_bar(p[0])} "
-            f"and comes back to it just before: leave that sample out; "
-            f"{reading.then(pressures=np.append(p[:-1], p[0]))}"
-        )
+        least = max(least, 1.5 * float(np.median(steps[steps > 0])) if steps.any() else 0.0, 3.0 * float(bends.max()))
     (levelled,) = without_drift(trace, p[np.newaxis])
-    if abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
+    if abs(jump) <= least or abs(reading.p_i(pressures=levelled - p)) <= _WORTH_IT * abs(reading.p_i()):
         return ""
     return (
-        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write "
-        f"'drift: linear'; {reading.then(pressures=levelled)}"
+        f"the pressure jumps by {in_bar(jump)} where the cycle closes: does the sensor drift? write 'drift: linear', "
+        f"or leave the closing sample out if it is another cycle's; {reading.then(pressures=levelled)}"
     )
 
 
@@ -260,68 +208,59 @@ _AIR = 1.32
 _NEAR_VACUUM = 0.1
 """Share of the ambient below which a low level cannot be an absolute pressure."""
 _UNITS = {"Pa": 1.0, "mbar": 1e2, "kPa": 1e3, "psi": 6894.757293168, "at": 98066.5, "bar": 1e5, "MPa": 1e6}
-_POWERS = (0.001, 0.01, 0.1, 10.0, 100.0, 1000.0)
+_POWERS = [(10.0**power, "", 0.5) for power in (-3, -2, -1, 1, 2, 3)]
+"""Factors that convert no unit into another, with how much better, in logarithms, such a one must fit."""
 _SAME_UNIT = 0.05
 """Largest relative difference of units that cannot be distinguished, such as at and bar."""
-_NO_UNIT = 0.5
-"""How much better, in logarithms, a power of ten must fit that does not convert one unit into another."""
-_ROUNDED = 1e-6
 
 
 def _inverted(reading: TraceReading) -> str:
     """An inverted trace, as of a charge amplifier with the wrong polarity."""
-    p = reading.p
-    middle = float(np.median(p))
-    if middle - float(p.min()) < _ENGINE * max(float(p.max()) - middle, _LEAST_SWING):
+    lowest, middle, highest = np.quantile(reading.p, (0.0, 0.5, 1.0)).tolist()
+    if middle - lowest < _ENGINE * max(highest - middle, _LEAST_SWING):
         return ""
     return (
-        f"its swing from {in_bar(middle)} goes down to {in_bar(float(p.min()))}: is it inverted? write "
+        f"its swing from {in_bar(middle)} goes down to {in_bar(lowest)}: is it inverted? write "
         f"'scale: {-reading.trace.scale:g}'; {reading.then(times=-1.0)}"
     )
 
 
 def _unit(reading: TraceReading) -> str:
-    """Judge the peak by what this clearance can compress to, or else by what cylinders withstand."""
+    """Judge the peak by what this clearance can compress to, or else by what cylinders withstand.
+
+    Four strokes compress more than a little, whatever the clearance.
+    """
     trace, setting, ambient = reading.trace, reading.setting, reading.setting.ambient
-    peak, low = reading.peak + setting.lift, reading.low + setting.lift
+    compressed, most, can = _USUAL_PEAK / 2, _LARGEST_PEAK, "cylinders peak at 1 to 300 bar"
+    least = _SMALLEST_PEAK + ambient if setting.cycle == 720 and setting.head_end else 0.0
     if trace.clearance:
         compressed = ambient * (1 + 1 / trace.clearance) ** _AIR
         least, most = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
         can = f"compression gives about {in_bar(compressed)}"
-    else:
-        compressed, most = _USUAL_PEAK / 2, _LARGEST_PEAK
-        least = _SMALLEST_PEAK + ambient if setting.cycle == 720 and setting.head_end else 0.0
-        can = "cylinders peak at 1 to 300 bar"
-    flat = least <= peak <= most
-    if flat:
-        # four strokes that hardly compress, or only against a vacuum
-        as_gauge = (reading.peak + ambient) / max(reading.low + ambient, 1.0)
-        against_vacuum = 0 < low < _NEAR_VACUUM * ambient and as_gauge <= _ENGINE
-        if setting.cycle == 360 or not (against_vacuum if setting.absolute else reading.ratio <= _ENGINE):
-            return ""
-        can = f"four strokes compress more than from {in_bar(low)}"
-    # every unit and power of ten, by how far the peak, in logarithms, then is from the expected one
-    factors = [(size / trace.unit, f" (unit: {name} fits)", 0.0) for name, size in _UNITS.items()]
-    factors += [(factor, "", _NO_UNIT) for factor in _POWERS]
-    fits = []
-    for factor, unit, extra in factors:
-        then, base = reading.peak * factor + setting.lift, max(reading.low * factor + setting.lift, 0.2 * ambient)
-        plausible = least <= then <= max(most, ambient) and (not flat or then > _ENGINE * base)
-        if plausible and abs(factor - 1) > _SAME_UNIT:
-            # an absolute trace also begins near the ambient
-            lowest = 1.0 if setting.lift else max(reading.low * factor / max(ambient, 1.0), 1e-3)
-            away = abs(math.log(then / max(2 * compressed, 1.0))) + abs(math.log(lowest)) + extra
-            fits.append((away, factor, unit))
-    if not fits:
+
+    def fits(factor: float) -> bool:
+        peak, low = (factor * one + setting.lift for one in (reading.peak, reading.low))
+        base = ambient if 0 < low < _NEAR_VACUUM * ambient else low
+        return least <= peak <= max(most, ambient) and (setting.cycle == 360 or peak > _ENGINE * base)
+
+    def away(factor: float) -> float:
+        """Return by how much, in logarithms, the peak then is not the usual one, and a level not the ambient."""
+        level = 1.0 if setting.lift else max(reading.low * factor / max(ambient, 1.0), 1e-3)
+        peak = (factor * reading.peak + setting.lift) / max(2 * compressed, 1.0)
+        return abs(math.log(peak)) + abs(math.log(level))
+
+    units = [(size / trace.unit, f" (unit: {name} fits)", 0.0) for name, size in _UNITS.items()]
+    others = [one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and fits(one[0])]
+    if fits(1.0) or not others:
         return ""
-    _, factor, unit = min(fits)
-    times, size = max(factor, 1 / factor), "large" if factor < 1 else "small"
-    shown = f"{times:.3g}" if times < 1000 else f"{times:.0f}"
-    power = math.log10(factor)
-    scaled = f", or write 'scale: {trace.scale * factor:g}'" if abs(power - round(power)) < _ROUNDED else ""
+    factor, unit, _ = min(others, key=lambda one: away(one[0]) + one[2])
+    peak = reading.peak + setting.lift
+    if least <= peak <= most:
+        can = f"four strokes compress more than from {in_bar(reading.low + setting.lift)}"
     return (
-        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {shown} times too {size}? mend 'unit'"
-        f"{unit}{scaled}; {reading.then(times=factor)}"
+        f"the peak is {in_bar(peak)} absolute, where {can}: pressures {max(factor, 1 / factor):.4g} times too "
+        f"{'large' if factor < 1 else 'small'}? mend 'unit'{unit}, or write 'scale: {trace.scale * factor:g}'; "
+        f"{reading.then(times=factor)}"
     )
 
 
@@ -336,25 +275,17 @@ _AIMED = -2.0, 30.0
 _USUAL = 8.0
 """Degrees after the dead centre at which fired engines peak, more or less."""
 _MOTORED_LEAD = 1.5  # deg; heat loss and leakage put a motored peak up to about 1° before the dead centre
-_MOTORED_SEARCH = 10.0, 30.0  # deg before and after the dead centre; what peaks elsewhere is a compressor or pump
+_MOTORED_SEARCH = -10.0, 30.0  # deg after the dead centre; what peaks elsewhere is a compressor or pump
 _SURE = 3.0  # standard errors of the place of the peak, and what a crooked peak may be off
 _OFF = 0.1  # deg
 
 
-_MOTORED_SIDES = np.array([10.0, 20.0, 30.0, 45.0, 60.0, 75.0, 90.0])  # deg from the peak; both sides are compared
-_AROUND = 2.5  # deg on either side of such a place over which the pressures are a mean: one sample is noise
-_MOTORED_RATIO = 0.6, 1.1  # of the pressures after and before the peak: what heat loss and leakage take, and noise
-_MOTORED_RISE = 3.0  # least pressure of the peak over that at its feet; what is flat has no peak
-
-
 def _backward(reading: TraceReading) -> str:
-    peak_at = reading.peak_at
+    peak_at, dead_centre = reading.peak_at, reading.setting.own_dead_centre
     judged = reading.engine and (reading.setting.cycle == 720 or reading.trace.clearance is not None)
     early = -60.0 < peak_at < -_MOTORED_LEAD - reading.step and reading.usual[0] <= -peak_at <= reading.usual[1]
-    if not judged or not early or reading.motored or reading.p_i() >= 0:
-        return ""
-    turned = -reading.after[::-1], reading.p[::-1]
-    if reading.p_i(*turned) <= 0:
+    turned = 2 * dead_centre - reading.angles[::-1], reading.p[::-1]
+    if not judged or not early or reading.motored or reading.p_i() >= 0 or reading.p_i(*turned) <= 0:
         return ""
     return (
         f"the peak is {-peak_at:.3g} deg before the dead centre and the cycle takes work: does its angle "
@@ -376,15 +307,13 @@ def _peak_elsewhere(reading: TraceReading) -> str:
     key, effect = reading.put_later(later)
     where = "firing dead centre" if cycle == 720 else "dead centre"
     gas_exchange = ", in the gas exchange" if abs(peak_at) > 180 else ""
-    return (
-        f"the peak is {abs(reading.place[reading.top]):.4g} deg {'after' if peak_at > 0 else 'before'} the {where}"
-        f"{gas_exchange}: write {key}; {effect}"
-    )
+    side = "after" if peak_at > 0 else "before"
+    return f"the peak is {abs(reading.top_at):.4g} deg {side} the {where}{gas_exchange}: write {key}; {effect}"
 
 
 def _motored_peak(reading: TraceReading) -> str:
     peak, after = reading.vertex, reading.peak_at
-    if peak is None or not reading.motored or not -_MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
+    if peak is None or not reading.motored or not _MOTORED_SEARCH[0] <= after <= _MOTORED_SEARCH[1]:
         return ""
     sure = _OFF + _SURE * peak.error
     if -_MOTORED_LEAD - sure <= after <= sure:
@@ -451,36 +380,22 @@ def _exponents(reading: TraceReading) -> str:
         return ""
     else:
         seen += ", where air has 1.2 to 1.4"
-    later = _common_exponent(reading)
+    now, next_to = _apart(reading, 0.0), _apart(reading, 1.0)
+    later = now / (now - next_to or math.nan)  # where both exponents would be one
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
         key, effect = reading.put_later(-later)
         return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
-    if sensible:
-        return ""
-    swapped = reading.setting.ambient if reading.setting.absolute else -reading.setting.ambient
-    if _is_sensible(reading.exponent(COMPRESSION, raised=swapped)):
-        word = "absolute" if swapped < 0 else "gauge"
-        return f"{seen}: as {word} pressures it would; write 'pressures: {word}'; p_i stays"
-    inside = (COMPRESSION[0] <= reading.place) & (reading.place <= COMPRESSION[1])
-    volumes = reading.setting.stroke_fraction(reading.place[inside]) + (reading.trace.clearance or 0.0)
-    pressures = reading.p[inside] + reading.setting.lift
-    raised = -float(np.polyfit(volumes**-_AIR, pressures, 1)[1])  # p = C V^−n − Δp
-    level = f"write 'offset: {in_bar(reading.trace.offset + raised)}' or 'pegging' (p_i stays), or "
-    return f"{seen}: {level if abs(raised) <= 2 * reading.setting.ambient else ''}mend the clearance"
+    return "" if sensible else f"{seen}: mend the level ('pegging', 'offset'; p_i stays), or the clearance"
 
 
-def _common_exponent(reading: TraceReading) -> float:
-    """Return by how many degrees later compression and expansion have one exponent, by secants; nan where not."""
-    now, later = math.nan, 0.0
-    for step in range(4):
-        compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
-        apart = compression.value - expansion.value if compression and expansion else math.nan
-        now, later = (now, later * now / (now - apart or math.nan)) if step else (apart, 1.0)
-    return later
+def _apart(reading: TraceReading, later: float) -> float:
+    """Return the exponent of the compression less that of the expansion, so many degrees later; nan without one."""
+    compression, expansion = reading.exponent(COMPRESSION, later), reading.exponent(EXPANSION, later)
+    return compression.value - expansion.value if compression and expansion else math.nan
 
 
 CHECKS: tuple[Callable[[TraceReading], str], ...] = (
-    *(_column_of_pulses, _turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
+    *(_turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
     *(_inverted, _unit),
     *(_backward, _peak_elsewhere, _motored_peak),
     *(_level, _exponents),

@@ -15,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Indivisible, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.keys import Rule
+from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
 from kurbel.mechanisms import Mechanism
 
@@ -31,16 +31,17 @@ def period_of(span: float) -> float:
     return next((period for period in PERIODS if span <= period * (1 + _ROUNDING)), 0.0)
 
 
-@dataclass(frozen=True)
-class KnownLevel:
-    """Where the level of a trace is known: angle in degrees from the (firing) dead centre, pressure in Pa.
+def at_equal_steps(angles: Array) -> bool:
+    """Return whether angles (n,) that rise over a cycle do so in equal steps, but for their rounding."""
+    steps = np.diff(angles)
+    return bool(np.abs(steps - steps.mean()).max() <= _EVEN * steps.mean())
 
-    Piezoelectric sensors measure changes of pressure only. None for both: the ambient, at the dead centre where the
-    compression begins.
-    """
 
-    angle: float | None = None
-    pressure: float | None = None
+class KnownLevel(Record):
+    """Where the level of a trace is known, in degrees and Pa: piezoelectric sensors measure changes only."""
+
+    angle: float = field("angle", "Crank angle from the (firing) dead centre", required=True)
+    pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +52,12 @@ class Trace(Indivisible):
     the other, each over these angles; two samples at one angle are a jump. Laps of 360 deg are cycles of two strokes,
     or in pairs of four. angle_zero: the angle, as the trace counts, of the firing or inner dead centre, in degrees.
     Both ends of a cylinder count from the same dead centre, as one encoder on the shaft does; a mirrored trace follows
-    one stroke later. files: where the samples came from, if not from the machine file, in this column; notes: what was
-    tidied up in them; completed: the last sample is the first one again; clearance: smallest volume over that of the
-    stroke, None where it is not known; level: a line over the cycle is taken off so that it closes; against: the file
-    counts its angles against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the
-    figures of the file were multiplied by, and offset: the Pa that were added then.
+    one stroke later. files: where the samples came from, if not from the machine file; notes: what was tidied up in
+    them; completed: the last sample is the first one again; clearance: smallest volume over that of the stroke, None
+    where it is not known; level: a line over the cycle is taken off so that it closes; pegging: where the level is
+    known, as a text at the dead centre where the compression begins, the ambient; against: the file counts its angles
+    against the rotation, those here are their negatives; unit: Pa for 1 of the unit, scale: what the figures of the
+    file were multiplied by.
     Raises RuleError for samples that are no such cycle.
     """
 
@@ -67,19 +69,16 @@ class Trace(Indivisible):
     completed: bool = False
     clearance: float | None = None
     level: bool = False
-    pegging: KnownLevel | None = None
+    pegging: KnownLevel | str | None = None
     against: bool = False
     unit: float = 1.0
     scale: float = 1.0
-    offset: float = 0.0
-    column: int = 0
 
     def __post_init__(self) -> None:
-        if self.angles.ndim != 1 or len(self.angles) < 2 or self.samples.shape[1:] != self.angles.shape:
-            refused("a trace needs as many pressures as angles, two or more")
-        rising = (np.diff(self.angles) >= 0).all() and self.period  # nan is not
+        alike = self.angles.ndim == 1 and len(self.angles) > 1 and self.samples.shape[1:] == self.angles.shape
+        rising = alike and (np.diff(self.angles) >= 0).all() and self.period  # nan is not
         if not rising or not np.isfinite(self.samples).all():
-            refused("a trace has finite samples at angles that rise over one whole cycle, 360 or 720 deg")
+            refused("a trace has as many finite pressures as angles, which rise over one whole cycle, 360 or 720 deg")
 
     @cached_property
     def pressures(self) -> Array:
@@ -100,9 +99,7 @@ class Trace(Indivisible):
     @property
     def even(self) -> bool:
         """Whether the samples are at equal angles."""
-        steps = np.diff(self.angles)
-        step = self.period / len(steps)
-        return bool(np.abs(steps - step).max() <= _EVEN * step)
+        return at_equal_steps(self.angles)
 
     @property
     def cycles(self) -> tuple[str, ...]:
@@ -200,9 +197,10 @@ def corrected(trace: Trace, setting: Setting) -> Array:
     if pegging is None:
         return samples
     inner, outer = setting.mechanism.dead_centres()
-    angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
-    if pegging.angle is not None and pegging.pressure is not None:
+    if isinstance(pegging, KnownLevel):
         angle, pressure = inner + pegging.angle, pegging.pressure
+    else:
+        angle, pressure = (outer if setting.head_end else inner) + setting.cycle - 360.0, setting.base
     turned = trace.angles + setting.shift(trace) - angle
     away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
     near = away <= max(_AROUND, float(away.min()))
@@ -216,12 +214,12 @@ def without_drift(trace: Trace, samples: Array) -> Array:
     return np.concatenate((levelled[:, :-1], levelled[:, :1]), axis=1) if trace.completed else levelled
 
 
-def drift_of(trace: Trace, samples: Array, extrapolated: bool = False) -> Array:
+def drift_of(trace: Trace, samples: Array) -> Array:
     """Return by how much Pa each cycle (m,) ends too low to go on as it has begun.
 
-    extrapolated: by lines through both ends, as where the closing sample is missing, since it is not trusted.
+    By lines through both ends where the closing sample is missing.
     """
-    if not extrapolated and not trace.completed:
+    if not trace.completed:
         return np.asarray(samples[:, 0] - samples[:, -1])
     to_end, from_begin = trace.angles[:-1] - trace.angles[-1], trace.angles - trace.angles[0]
     last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
@@ -239,13 +237,13 @@ _ENOUGH = 72
 def noise_of(pressures: Array) -> float:
     """Return the standard deviation in Pa of the noise of samples (n,) at equal angles over one cycle.
 
-    From the medians of the second and of the fourth differences, √6 and √70 times as large if noise is all they have;
-    the lesser of both, since of a smooth pressure the fourth ones are less.
+    From the median of the fourth differences, √70 times as large if noise is all they have; of a smooth pressure they
+    are small.
     """
-    around = np.append(pressures, pressures[:4])
-    orders = ((2, 6.0), (4, 70.0)) if len(pressures) >= _ENOUGH else ()
-    spreads = [float(np.median(np.abs(np.diff(around, order)))) / math.sqrt(gain) for order, gain in orders]
-    return _OF_MEDIAN * min(spreads, default=0.0)
+    if len(pressures) < _ENOUGH:
+        return 0.0
+    differences = np.diff(np.append(pressures, pressures[:4]), 4)
+    return _OF_MEDIAN * float(np.median(np.abs(differences))) / math.sqrt(70.0)
 
 
 # exponents
@@ -287,8 +285,8 @@ def exponent(
 
 _HALF = 6.0
 """Degrees on either side of the peak through which the parabola goes."""
-_SIDES = (20.0, 50.0), (50.0, 80.0)
-"""Degrees from the peak between which both its sides are compared: where something burnt, they are not alike."""
+_SIDES = np.array([np.linspace(near, near + 30.0, 61) for near in (10.0, 30.0, 60.0)])
+"""Degrees from the peak at which both its sides are compared: where something burnt, they are not alike."""
 _LOW = 0.15
 """Share of the cycle below the level from which pressures are compared."""
 _ALIKE = 0.5, 1.15
@@ -321,6 +319,12 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
     return Peak(float(top), math.sqrt(max(0.0, by_parameters @ covariance @ by_parameters)), len(along))
 
 
+def sides_of(top: float, angles: Array, pressures: Array, period: float) -> Array:
+    """Return the mean pressures before and after a peak at an angle, on three stretches from near to far, (2, 3)."""
+    places = np.multiply.outer([-1.0, 1.0], _SIDES) + top
+    return np.asarray(np.interp(places, angles, pressures, period=period).mean(axis=-1))
+
+
 def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     """Return the peak of a motored trace, and by how many degrees it is uncertain; raises RuleError.
 
@@ -337,13 +341,9 @@ def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:
     if whole is None:
         refused("is no motored trace: it has no peak that a parabola could be laid through")
     low = float(np.quantile(pressures, _LOW))
-    for near, far in _SIDES:
-        away = np.multiply.outer([-1.0, 1.0], np.linspace(near, far, 301)) + whole.place
-        before, after = np.interp(away, places, pressures, period=period).mean(axis=1) - low
-        if not _ALIKE[0] * before <= after <= _ALIKE[1] * before:
-            times = f"{after / before:.2g} times that" if before > 0 else "not that"
-            rise = f"{near:g} to {far:g} deg after its peak the pressure rises to {times} before"
-            refused(f"is no motored trace: {rise}; name one without combustion")
+    before, after = sides_of(whole.place, places, pressures, period) - low
+    if not ((_ALIKE[0] * before <= after) & (after <= _ALIKE[1] * before)).all():
+        refused("is no motored trace: before and after its peak the pressures differ; name one without combustion")
     half = parabola_peak(places, pressures, whole.place, _HALF / 2)
     # of a peak that is no parabola the half of the samples gives another place; where their noise hides it, its
     # standard error, √8 times that of all, is the bound

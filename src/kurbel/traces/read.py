@@ -10,7 +10,7 @@ import math
 import os
 import re
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import lru_cache
 from typing import NamedTuple
@@ -38,9 +38,7 @@ SECONDS = {"s": 1.0, "ms": 1e-3}
 _FIGURES = re.compile(r"[-+.,;:%0-9eE \t]*[0-9][-+.,;:%0-9eE \t]*")
 """A possible figure: messages show nothing else of a file, since it may be a different file with secrets."""
 _NUMBER = re.compile(r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?|inf|infinity|nan)", re.IGNORECASE | re.ASCII)
-_THOUSANDS = re.compile(r"[-+]?[0-9]{1,3}([.,][0-9]{3})+([.,][0-9]+)?")
 _SPLIT_DECIMALS = re.compile(r"^[^#\n]*,[0-9]+,0[0-9][^#\n]*", re.MULTILINE)
-_UNIT = re.compile(r"[\[(]([^\])]+)[\])]")
 _QUOTED = re.compile(r'"([^"\n]*)"')
 
 
@@ -92,15 +90,11 @@ class Layout(NamedTuple):
 
 
 class Table(NamedTuple):
-    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample.
-
-    headed: the unit in the heading of the first of these columns, as in `p [bar]`, or ''.
-    """
+    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample."""
 
     angles: Array
     figures: Array
     line: Callable[[int], str]
-    headed: str = ""
 
 
 def read_table(file: str, layout: Layout) -> Table:
@@ -127,10 +121,7 @@ def read_table(file: str, layout: Layout) -> Table:
         number, _ = next(itertools.islice(_figure_lines(text, layout), index, None))
         return f"line {number}"
 
-    heads = [one for one in text.split("\n", layout.skip_rows)[: layout.skip_rows] if one.strip()]
-    cells = heads[-1].split(layout.between) if heads else []
-    unit = _UNIT.search(cells[layout.columns[0] - 1]) if len(cells) >= layout.columns[0] else None
-    return Table(angles, numbers[:, -len(layout.columns) :].T, line, unit[1].strip() if unit else "")
+    return Table(angles, numbers[:, -len(layout.columns) :].T, line)
 
 
 @lru_cache(maxsize=4)
@@ -177,19 +168,18 @@ def _figure_lines(text: str, layout: Layout) -> Iterator[tuple[int, str]]:
 # the bytes of a file
 
 _LONGEST_LINE = 10_000
-_WORKBOOK = "save its sheet as CSV"
 _FOREIGN = {
-    b"PK\x03\x04": ("an Excel or other workbook, or a zip archive", _WORKBOOK),
-    b"\xd0\xcf\x11\xe0": ("an old Excel workbook (xls)", _WORKBOOK),
-    b"TDSm": ("a TDMS file of LabVIEW", "export its channels as CSV"),
-    b"MDF ": ("an MDF file of a measuring system", "export its channels as CSV"),
-    b"\x89HDF": ("an HDF5 file", "export its data set as CSV"),
-    b"MATLAB 5.0 MAT": ("a MAT file of MATLAB", "write its matrix as CSV (writematrix)"),
-    b"\x1f\x8b": ("compressed by gzip", "unpack it"),
-    b"PAR1": ("a Parquet file", "export its columns as CSV"),
-    b"%PDF": ("a PDF", "name the file of figures itself"),
+    b"PK\x03\x04": "an Excel or other workbook, or a zip archive",
+    b"\xd0\xcf\x11\xe0": "an old Excel workbook (xls)",
+    b"TDSm": "a TDMS file of LabVIEW",
+    b"MDF ": "an MDF file of a measuring system",
+    b"\x89HDF": "an HDF5 file",
+    b"MATLAB 5.0 MAT": "a MAT file of MATLAB",
+    b"\x1f\x8b": "compressed by gzip",
+    b"PAR1": "a Parquet file",
+    b"%PDF": "a PDF",
 }
-"""First bytes of files that are mistaken for tables -> what they are, and the fix."""
+"""First bytes of files that are mistaken for tables -> what they are."""
 
 
 def text_of(file: str) -> str:
@@ -205,27 +195,25 @@ def text_of(file: str) -> str:
             raw = stream.read()
     except OSError as error:
         refused(f"cannot be read: {error.strerror or error}", "file")
-    for begin, (what, advice) in _FOREIGN.items():
+    for begin, what in _FOREIGN.items():
         if raw.startswith(begin):
-            refused(f"{os.path.basename(file)} is {what}, no text; {advice}", "file")
+            refused(f"{os.path.basename(file)} is {what}, no text; export its table of figures as CSV", "file")
 
-    by_zeros = {"utf-16-le": raw[1:400:2], "utf-16-be": raw[:400:2]}
-    encodings = ["utf-16"] if raw.startswith((b"\xff\xfe", b"\xfe\xff")) else []
-    encodings += [name for name, half in by_zeros.items() if half.count(0) > len(raw[:400]) // 4]
-    text = raw.decode([*encodings, "utf-8-sig"][0], errors="replace").replace("\r\n", "\n").replace("\r", "\n")
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encoding = "utf-16"
+    else:
+        encoding = "utf-16-le" if raw[1:400:2].count(0) > len(raw[:400]) // 4 else "utf-8-sig"
+    text = raw.decode(encoding, errors="replace").replace("\r\n", "\n").replace("\r", "\n")
     if "\0" in text:
         refused("is no text: it has zero bytes; export the samples as CSV", "file")
-    start = 0
-    while len(text) - start > _LONGEST_LINE:  # by leaps: less is between two line feeds
-        start = text.rfind("\n", start, start + _LONGEST_LINE + 1) + 1
-        if not start:
-            refused(f"has a line of more than {_LONGEST_LINE} characters", "file")
+    if max(map(len, text.split("\n"))) > _LONGEST_LINE:
+        refused(f"has a line of more than {_LONGEST_LINE} characters", "file")
     return text
 
 
 # what to write instead
 
-_PLAIN = "; figures are plain numbers, such as 1013.25 or 1.01325e3: export them so"
+_PLAIN = "; figures are plain numbers, such as 1013.25 or 1.01325e3, without signs between thousands: export them so"
 _NO_FIGURES = "; is it a file of figures?"
 _TRIED = 200
 """Lines that are examined; no heading is longer."""
@@ -235,17 +223,16 @@ def _first_fault(text: str, layout: Layout) -> Fault:
     """Return the fault of the first line that is no row of figures, and what to write so that it could be read."""
     for number, line in _figure_lines(text, layout):
         cells, column = layout.read(line)
-        last = max(layout.wanted)
-        if len(cells) < last:
-            shown = _shown(line)
-            row = f": {shown}" if shown else ""
-            return Fault(("file",), f"line {number} has no column {last}{row}{_advice(text, number, line, layout)}")
-        if column:
-            as_written = line.split(layout.between)
-            shown = _shown(as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1])
-            wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
-            advice = _advice(text, number, line, layout, cells[column - 1])
-            return Fault(("file",), f"line {number}: {wrong}{advice}")
+        if not column:
+            continue
+        advice = _advice(text, number, cells, column, layout)
+        if len(cells) < max(layout.wanted):
+            row = f": {_shown(line)}" if _shown(line) else ""
+            return Fault(("file",), f"line {number} has no column {max(layout.wanted)}{row}{advice}")
+        as_written = line.split(layout.between)
+        shown = _shown(as_written[column - 1].strip() if len(as_written) == len(cells) else cells[column - 1])
+        wrong = f"'{shown}' is no number" if shown else f"column {column} holds no number"
+        return Fault(("file",), f"line {number}: {wrong}{advice}")
     return Fault(("file",), "its rows cannot be read as numbers")
 
 
@@ -256,52 +243,38 @@ def _shown(text: str) -> str:
     return " ".join(text.split()) if len(text) <= 40 else f"{' '.join(text[:40].split())}…"
 
 
-def _advice(text: str, number: int, line: str, layout: Layout, cell: str = "") -> str:
-    """Return what to write so that a file could be read: keys under which its first lines are rows, or a guess.
+def _advice(text: str, number: int, cells: list[str], column: int, layout: Layout) -> str:
+    """Return what to write so that a file could be read: the keys by which most of its first lines are rows, or a hint.
 
-    number, line, cell: the line, and the cell in it, that could not be.
+    number, cells: of the first line that is no row; column: the first that it lacks, or that holds no number.
     """
-    lines = text.split("\n", _TRIED)[:_TRIED]
-    quoted = any('"' in one for one in lines)
+    lines = [line.partition("#")[0].strip() for line in text.split("\n", _TRIED)[:_TRIED]]
+    quoted = any('"' in line for line in lines)
     delimiters = dict.fromkeys((layout.delimiter, "semicolon", "tab", "comma", "space"))
     signs = itertools.product(delimiters, dict.fromkeys((layout.decimal, *DECIMALS)))
     tried = [layout._replace(delimiter=one, decimal=other) for one, other in signs if quoted or one != other]
-    counted = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
-    found = min(_readable(lines, counted if layout.angle_step else tried), key=lambda one: one.skip_rows, default=None)
-    written = _differing_keys(found or layout, layout)
-    only_headings = len(written) == 1 and "skip_rows" in written[0]
-    if written and not (only_headings and _FIGURES.fullmatch(cell)):  # of headings no cell is one of figures
-        return f"; write {' and '.join(written)}{' if it is a heading' if only_headings else ''}"
-
-    # no layout reads all lines: what the first bad one hints at, signs by which it is a row, or what is in the way
-    by_signs = next((one for one in tried if not one.read(line)[1]), None)
-    if by_signs:
-        return f"; write {' and '.join(_differing_keys(by_signs, layout))}"
-    below = enumerate(lines[layout.skip_rows :], layout.skip_rows + 1)
-    first_row = next((index for index, one in below if not layout.read(one)[1]), 0)
-    if number < first_row and not _FIGURES.fullmatch(cell):
-        return f"; write 'skip_rows: {first_row - 1}' if it is a heading"
-    if 0 < first_row < number:
+    if layout.angle_step:
+        tried = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
+    rows = [[i for i, line in enumerate(lines) if line and not one.read(line)[1]] for one in tried]
+    found = max(range(len(tried)), key=lambda i: len(rows[i]))
+    begin = rows[found][0] if len(rows[found]) > 1 else 0
+    best = tried[found]._replace(skip_rows=begin if number <= begin else layout.skip_rows)
+    cell = cells[column - 1] if column <= len(cells) else ""
+    if len(rows[found]) > 1 and best != layout:
+        written = f"; write {' and '.join(_differing_keys(best, layout))}"
+        if best._replace(skip_rows=layout.skip_rows) != layout:
+            return written
+        if not _FIGURES.fullmatch(cell):  # of headings no cell is one of figures
+            return f"{written} if it is a heading"
+    if rows[0] and rows[0][0] < number - 1:
         return "; leave such lines out, or mend them"
-    cells, _ = layout.read(line)
-    if len(cells) >= max(layout.wanted):
-        thousands = ", without signs between thousands" if _THOUSANDS.fullmatch(cell) else ""
-        return f"{_PLAIN}{thousands}" if any(one.isdigit() for one in cell) else _NO_FIGURES
+    if cell:
+        return _PLAIN if any(one.isdigit() for one in cell) else _NO_FIGURES
     if not any(map(_NUMBER.fullmatch, cells)):
         return _NO_FIGURES
     if len(cells) > 1 or layout.angle_step:
         return f"; it has {len(cells)} only"
     return "; if it has no angles, write 'pressure_column: 1' and 'angle_step: 0.5 deg', say"
-
-
-def _readable(lines: Sequence[str], layouts: Sequence[Layout]) -> Iterator[Layout]:
-    """Yield the layouts by which all lines from the first row on are rows, at least two, and the lines above it."""
-    for one in layouts:
-        rows = {i: not one.read(line)[1] for i, line in enumerate(lines) if line.partition("#")[0].strip()}
-        begin = next((index for index, row in rows.items() if row), len(lines))
-        below = [row for index, row in rows.items() if index >= begin]
-        if len(below) > 1 and all(below):
-            yield one._replace(skip_rows=begin if any(index < begin for index in rows) else 0)
 
 
 def _differing_keys(found: Layout, given: Layout) -> list[str]:

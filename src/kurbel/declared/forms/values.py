@@ -233,7 +233,7 @@ class NumberForm(Form):
                 continue
             if np.any(wrong(value, bound) & ((value != 0) | (not self.zero))):
                 return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
-        return ""
+        return "must be finite" if known and not self.words and np.any(np.isinf(value)) else ""
 
 
 class Choice(Form):
