@@ -146,9 +146,6 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-NOT_A_NUMBER = "nan is no number"
-
-
 def _in_order(record: "type[Record]") -> list[Field[Any]]:
     """Return the attributes in the order of positional arguments: first those without a default."""
     return sorted(fields(record), key=lambda one: one.default is not MISSING)
@@ -233,7 +230,11 @@ class Record:
         return (
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)
-            or [Fault((name,), NOT_A_NUMBER) for name, one in given.items() if isinstance(one, float) and one != one]
+            or [
+                Fault((name,), "nan is no number")
+                for name, one in given.items()
+                if isinstance(one, float) and one != one
+            ]
         )
 
     @classmethod

@@ -6,6 +6,7 @@ then `Maker` makes records of these.
 
 import functools
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -14,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import NOT_A_NUMBER, TOO_EXTREME, Key, Keys, Record, required
+from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
@@ -247,7 +248,11 @@ class Maker:
             try:
                 form.record.from_keys(**(values | stand_ins))
             except RuleError as error:
-                raise RuleError(*(one for one in error.faults if one.message != NOT_A_NUMBER)) from None
+                # what speaks of nan is wrong with a stand-in only
+                known = [one for one in error.faults if not re.search(r"\bnan\b", one.message)]
+                raise RuleError(*known) from None
+            except (ArithmeticError, ValueError):  # a formula that takes no nan
+                pass
             return REFUSED
         record = form.record.from_keys(**values)
         extreme = too_extreme(record, values)
