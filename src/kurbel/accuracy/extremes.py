@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.methods import Number, extremes, mp, mpf
+from kurbel.accuracy.methods import Number, largest_and_smallest, mp, mpf
 from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMotion, reference
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
@@ -108,6 +108,6 @@ def exact(machine: Machine, asked: str) -> Number:
         return motion.stroke
     if name == "c_max":
         slopes = np.frompyfunc(lambda phi, _: motion.at(phi).slope, 2, 1)
-        return extremes(slopes, motion.ends[:2], STEPS)[0] * omega
+        return largest_and_smallest(slopes, motion.ends[:2], STEPS)[0] * omega
     order = "xcb".index(name)
     return motion.at(mpf(float(at)))[order] * omega**order

@@ -92,7 +92,7 @@ def integrals(function: Function, edges: Array, count: int) -> Array:
 def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Found:
     """Return a quantity by Gauss's rule on each piece, and roots looked for at as many steps."""
     if quantity[0] == "T":
-        return extremes(function, edges, count)
+        return largest_and_smallest(function, edges, count)
     radians = mp.radians if edges.dtype == object else math.radians
     whole = integrals(function, edges, count).sum()
     if quantity[0] == "A":
@@ -104,7 +104,7 @@ def by_gauss(quantity: str, function: Function, edges: Array, count: int) -> Fou
     return radians(heights.max() - heights.min())
 
 
-def extremes(function: Function, edges: Array, count: int) -> tuple[Number, Number]:
+def largest_and_smallest(function: Function, edges: Array, count: int) -> tuple[Number, Number]:
     """Return the largest and the smallest value, at the ends of the pieces or at a root of the derivative."""
     low, high, step = edges[:-1], edges[1:], mpf("1e-10") if edges.dtype == object else 1e-4
 

@@ -174,12 +174,13 @@ def rows_of(quantity: str, truth: Array, methods: Iterator[Method], quick: bool)
 def errors(values: Array, truth: Array) -> tuple[float | None, float | None]:
     """Return the largest relative error, and the same in units of the last place where it is below 1e-12.
 
-    Where an exact value is zero, relative to the largest one. None for what is not finite.
+    Where an exact value is zero, or is so but for the rounding of the lengths, relative to the largest one. None for
+    what is not finite.
     """
     if not np.isfinite(values).all():
         return None, None
     sizes, missed = np.abs(truth), np.abs(truth - values)
-    sizes = np.where(sizes > 1e-30 * sizes.max(), sizes, sizes.max())
+    sizes = np.where(sizes > 2**-52 * sizes.max(), sizes, sizes.max())
     error = float((missed / sizes).max())
     return error, float((missed / np.spacing(sizes.astype(float))).max()) if error < 1e-12 else None
 

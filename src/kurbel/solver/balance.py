@@ -534,7 +534,7 @@ class MachineBalance(Results):
         return sum(near.product for near, _ in pairs), sum(far.product for _, far in pairs)
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, object]:
         """Key values of a locomotive by id; {} for another machine.
 
         The counterweights balance all rotating masses. Their excess, for a share of the reciprocating
@@ -543,7 +543,7 @@ class MachineBalance(Results):
         given, omega = self.machine.locomotive, self.omega
         if given is None:
             return {}
-        found: dict[str, Any] = {
+        found: dict[str, object] = {
             "traction_variation": self.largest("force", along=True),
             "swaying_couple": self.largest("moment", along=True),
         }

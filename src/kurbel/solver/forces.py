@@ -57,9 +57,9 @@ class Brake(Results):
         self.indicated: Any = _sum_of_all([one.power for one in cylinders])
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, object]:
         """The key values."""
-        found, power, indicated = dict[str, Any](), self.machine.brake_power, self.indicated
+        found, power, indicated = dict[str, object](), self.machine.brake_power, self.indicated
         if power is None:
             return found
         # each cylinder sweeps once in a turn, in a cycle of two turns in every other one
@@ -306,11 +306,11 @@ class CylinderForces(SampledCylinder, Results):
         return RodLoads(self.drive, self.pieces, loads) if loads else None
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, object]:
         """The key values that follow from dimensions and pressures alone, without samples of forces."""
         if self.twin:
             return self.twin.answers
-        drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, Any]()
+        drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, object]()
         found["m"] = drive.mass if drive.cylinder.masses else None
         found["resistance_work"] = drive.resistance_work
         if pistons:
@@ -410,9 +410,9 @@ class CylinderForces(SampledCylinder, Results):
         return tuple(stretch for stretch, force in zip(stretches, pressing) if force < 0)
 
     @cached_property
-    def on_guide(self) -> dict[str, Any]:
+    def on_guide(self) -> dict[str, object]:
         """The key values of the shoe; the means over its path there and back, or over time, only with friction."""
-        drive, found = self.drive, dict[str, Any]()
+        drive, found = self.drive, dict[str, object]()
         side = None if drive.guide_area is None else self.extremes_of("N")
         if side is not None:
             most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))

@@ -57,9 +57,9 @@ class Indicated(Results):
         self._traces = [end for end in (gas.head, gas.crank) if isinstance(end, TracePressure)]
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, object]:
         """The key values; standard deviations are those of a sample, with m − 1."""
-        found = dict[str, Any]()
+        found = dict[str, object]()
         volume = self.gas.clearance_volumes[0] if self.gas.head else 0.0
         if some(volume != 0):  # of many machines nan where it is not known
             found["V_clearance"] = where(volume == 0, math.nan, volume)
@@ -81,7 +81,7 @@ class Indicated(Results):
                 found[id] = fitted.value if fitted else None
         return found | self._scatter()
 
-    def _scatter(self) -> dict[str, Any]:
+    def _scatter(self) -> dict[str, object]:
         """Return the key values of several cycles."""
         if not self.cycles:
             return {}

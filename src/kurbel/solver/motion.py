@@ -212,9 +212,9 @@ class Motion(Results):
         return rows_of(Motion, self.mechanism.OFFERS, self.mechanism.KEY_OFFERS)
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> dict[str, object]:
         """The key values; None where there is none."""
-        one, found = self.mechanism, dict[str, Any](phi_work=self.mechanism.phi_work)
+        one, found = self.mechanism, dict[str, object](phi_work=self.mechanism.phi_work)
         found["phi_return"] = one.phi_return
         if one.has_dead_centres:
             found["phi_idc"], found["phi_odc"] = map(_within_turn, one.dead_centres())
