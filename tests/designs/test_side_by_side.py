@@ -63,6 +63,7 @@ OTHER_COMMANDS = [
     ("locomotive-two-cylinders", "speed", SPEEDS, "hammer_blow swaying_couple traction_variation F_free_best"),
     ("generator-coupling", "speed", SPEEDS, "delta M_coupling_max amplification natural_order"),
     ("triplex-pump", "speed", ["50 rpm", "60 rpm", "70 rpm", "80 rpm", "90 rpm"], FLOWS),
+    ("triplex-pump", "cylinders.each.bore", [f"{bore} mm" for bore in (76, 78, 80, 82, 84)], f"{FLOWS} work dE"),
     ("compressor-two-stage", "gas.isentropic_exponent", ["1.3", "1.35", "1.4", "1.45", "1.5"], GAS),
     ("compressor-two-stage", "gas.molar_mass", [f"{mass} g/mol" for mass in (28, 28.5, 29, 29.5, 30)], GAS),
     ("compressor-two-stage", "gas.inlet_temperature", [f"{warm} °C" for warm in (10, 15, 20, 25, 30)], GAS),

@@ -27,7 +27,7 @@ def test_the_list_names_what_this_machine_has(name: str) -> None:
     assert "motion" in listed
     assert ("throw-stress" in listed) == (name == "gas-engine")
     unknown = run("plot", str(CONFIGS[name]), "crd").stderr
-    assert unknown.partition(" has ")[2].strip() == ", ".join(listed)
+    assert unknown.partition(" has ")[2].strip() == f"{', '.join(listed)})"
 
 
 def test_without_a_file_the_list_names_every_picture() -> None:

@@ -11,7 +11,7 @@ from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Rule, Values, alternative, field
-from kurbel.mechanisms import PIN, Mechanism, Offer, Sketch, Turning, requested_column
+from kurbel.mechanisms import PIN, TURNING, Mechanism, Offer, Sketch, Turning, requested_column
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
 _INFINITE = {"infinite": math.inf}
@@ -36,28 +36,20 @@ def _book(id: str, kind: str, text: str, formula: Callable[[Number, Number, Numb
     return requested_column(f"{id}_book", f"{id}_0", kind, f"{text}, first order in λ", factor, id, omega)
 
 
+def _rod_turn(order: int) -> Offer:
+    end, mark, kind, name = TURNING[order]
+    text = f"{name} of the rod"
+    return requested_column(
+        f"psi{end}", f"ψ{mark}", kind, text, lambda one, angle: -one.coupler_at(angle)[order], "b", order
+    )
+
+
 ROD_OFFERS: tuple[Offer, ...] = (
     _book("x", "length", "Displacement R (1 − cos φ + ½ λ sin²φ) (R 286)", formulas.first_order_displacement),
     _book("c", "velocity", "Velocity v (sin φ + ½ λ sin 2φ) (R 289, B 25)", formulas.first_order_velocity, omega=1),
     _book("b", "acceleration", "Acceleration v²/R (cos φ + λ cos 2φ) (R 291)", formulas.first_order_acceleration, 2),
-    requested_column(
-        "psi_dot",
-        "ψ̇",
-        "angular_velocity",
-        "Angular velocity of the rod, dψ/dt",
-        lambda one, angle: -one.coupler_at(angle).slope,
-        "b",
-        omega=1,
-    ),
-    requested_column(
-        "psi_ddot",
-        "ψ̈",
-        "angular_acceleration",
-        "Angular acceleration of the rod",
-        lambda one, angle: -one.coupler_at(angle).curvature,
-        "b",
-        omega=2,
-    ),
+    _rod_turn(1),
+    _rod_turn(2),
 )
 
 
@@ -108,9 +100,7 @@ class SliderCrank(Mechanism):
         stroke, offset = given.get("stroke"), given.get("offset")
         if not (stroke is None or offset is None or rod is None):
             crank, known = _crank_of_stroke(given), stroke + offset + rod
-            remedy = (
-                "no crank has this stroke with {offset:length} and so short a rod; give a longer one, or less offset"
-            )
+            remedy = "no crank has this stroke with {offset:length} and such a rod; give a longer one, or less offset"
             yield Rule("offset", (crank != crank) & (known == known), remedy, given)
 
     def rules(self) -> Iterator[Rule]:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kurbel.arrays import Number
 from kurbel.crank_angle import CrankAngle
@@ -149,10 +149,6 @@ class SlottedLever(Mechanism):
         """R_l in m, where there is a ram."""
         return self.lever or 0.0
 
-    @property
-    def _gap(self) -> float:
-        return self.frame - self.crank
-
     @cached_property
     def _kappa(self) -> tuple[float, float]:
         """κ, the shorter of r and e over the longer, and √(1 − κ²)."""
@@ -172,7 +168,7 @@ class SlottedLever(Mechanism):
 
         Sums that may cancel are those of e − r, as they were given, and 1 + cos φ.
         """
-        crank, frame, gap = self.crank, self.frame, self._gap
+        crank, frame, gap = self.crank, self.frame, self.frame - self.crank
         reach = sqrt(gap * gap + 2 * crank * frame * angle.vercosine)
         along_crank = (frame * angle.vercosine - gap) / reach  # (r + e cos φ)/ρ
         bend = -crank * frame * (gap * (crank + frame)) * angle.sin / (reach * reach * reach * reach)
@@ -215,7 +211,7 @@ class SlottedLever(Mechanism):
         With a link on the rotating lever they are where link and lever lie in line: φ = θ + arcsin(κ sin θ).
         """
         kappa, root = self._kappa
-        if math.isinf(self.link) or not self.rotates:
+        if not self.rotates:
             end = 180.0 - bearing(root, kappa)
             return -end, end
         inner, outer = (
@@ -299,25 +295,16 @@ class SlottedLever(Mechanism):
         """Return the crank with its block on the lever, and the ram on its line, which is upright where φ = 0 lies."""
         lever, pivot = self._lever_at(angle), (-self.frame, 0.0)
         length = 1.1 * (self.crank + self.frame) if self.lever is None else self.lever
-        joints = {"pivot": pivot, "end": on_circle(length, lever.cos, lever.sin, pivot)}
-        blocks = ((PIN, ("pivot", "end")),)
-        if not self.slides:
-            return Sketch.of_crank(self.crank, angle, joints, ("pivot", "end"), fixed=("pivot",), blocks=blocks)
-        forked = math.isinf(self.link)
-        line = pivot[0] + (length if forked else self._height)
-        middle = 0.0 if forked else length * sum(self._places) / 2 + self.link
-        return Sketch.of_crank(
-            self.crank,
-            angle,
-            {**joints, "ram": (line, middle + self.coordinate(angle))},
-            ("pivot", "end"),
-            ("end", "ram"),
-            fixed=("pivot",),
-            blocks=blocks,
-            guides=(((line, middle - self.stroke / 2), (line, middle + self.stroke / 2)),),
-            output="ram",
-            toward=(0.0, 1.0),
-        )
+        joints, links = {"pivot": pivot, "end": on_circle(length, lever.cos, lever.sin, pivot)}, [("pivot", "end")]
+        more: dict[str, Any] = {"fixed": ("pivot",), "blocks": ((PIN, ("pivot", "end")),)}
+        if self.slides:
+            forked, half = math.isinf(self.link), self.stroke / 2
+            line = pivot[0] + (length if forked else self._height)
+            middle = 0.0 if forked else length * sum(self._places) / 2 + self.link
+            joints["ram"] = (line, middle + self.coordinate(angle))
+            links.append(("end", "ram"))
+            more |= {"guides": (((line, middle - half), (line, middle + half)),), "output": "ram", "toward": (0.0, 1.0)}
+        return Sketch.of_crank(self.crank, angle, joints, *links, **more)
 
     @property
     def lacks(self) -> tuple[tuple[str, str], ...]:

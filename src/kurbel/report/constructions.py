@@ -4,7 +4,7 @@ Where it is drawn in velocities, v of the crank pin is as long as the crank, and
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -65,16 +65,15 @@ def polar_force(source: Source) -> Iterator[Panel]:
         pin, cut = radius * outward, 1j * force * (outward.imag + outward.real * sin / cos)
         rod = min(mechanism.rod_length / mechanism.crank, 1 / _SMALL) * radius * complex(cos, -sin)
         heights = np.append(panel.curves[0].y, [0.0, cut.imag])
-        curves = (
-            curve("faint", *(radius * AROUND)),
-            curve("faint", 1.1j * float(np.nanmin(heights)), 1.1j * float(np.nanmax(heights))),
-            curve("member", 0j, pin, pin + rod),
-            curve("line", 0j, end, look=1),
-            curve("faint", end, cut),
-            curve("line", 0j, cut, look=2),
+        found = _panel(
+            "force",
+            {symbol.symbol: end, "T": cut},
+            {symbol.symbol: force, "T": cut.imag},
+            faint=(radius * AROUND, (1.1j * np.nanmin(heights), 1.1j * np.nanmax(heights)), (end, cut)),
+            member=[(0j, pin, pin + rod)],
+            line=[(0j, end), (0j, cut)],
         )
-        marks = _mark(symbol.symbol, end, force), _mark("T", cut, cut.imag)
-        yield panel._replace(curves=(*panel.curves, *curves), marks=marks, plain=True, title=_at(degrees))
+        yield found._replace(curves=(*panel.curves, *found.curves), title=_at(degrees))
 
 
 def _at(degrees: float) -> str:
@@ -87,40 +86,34 @@ def _displacement(mechanism: SliderCrank, angle: CrankAngle) -> Panel:
     length, way, psi = mechanism.rod, float(mechanism.coordinate(angle)), math.atan2(sin, cos)
     arc = length * np.exp(1j * np.linspace(math.pi - psi, math.pi, 25))
     dead = head + way  # the crosshead at its inner dead centre
-    curves = (
-        curve("faint", *(mechanism.crank * AROUND)),
-        curve("faint", complex(-mechanism.crank, mechanism.offset), dead),
-        curve("faint", *(head + arc)),
-        curve("faint", *(dead + arc)),
-        curve("member", 0j, pin, head),
-        curve("line", dead - length, head - length, look=1),
-        curve("line", pin, dead + complex(arc[0]), look=1),
-        curve("joint", 0j, pin, head),
+    start, above = complex(-mechanism.crank, mechanism.offset), dead + complex(arc[0])
+    return _panel(
+        "length",
+        {"A": dead - length, "C": pin, "E": above, "x": head - length},
+        {"x": way},
+        faint=(mechanism.crank * AROUND, (start, dead), head + arc, dead + arc),
+        member=[(0j, pin, head)],
+        line=[(dead - length, head - length), (pin, above)],
+        joint=[(0j, pin, head)],
     )
-    places = {"A": dead - length, "C": pin, "E": dead + complex(arc[0])}
-    marks = *(_mark(name, place) for name, place in places.items()), _mark("x", head - length, way)
-    return _panel("length", curves, marks)
 
 
 def _components(mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
     """Return v of the pin with its component v_s along the rod, which is that of c of the crosshead, too."""
     pin, head, sin, cos = _straight(mechanism, angle)
     pin, head = omega * pin, omega * head
-    along, around = complex(-cos, sin), 1j * pin
-    share = (around * along.conjugate()).real
-    c = share / cos
-    curves = (
-        curve("faint", *(omega * mechanism.crank * AROUND)),
-        curve("faint", complex(pin.real, head.imag), head),
-        curve("member", 0j, pin, head),
-        curve("faint", pin + around, pin + share * along),
-        curve("faint", head - c, head + share * along),
-        *(curve("arrow", pin, pin + one) for one in (around, share * along)),
-        *(curve("arrow", head, head + one) for one in (share * along, -c)),
-        curve("joint", 0j, pin, head),
+    along, v = complex(-cos, sin), 1j * pin
+    share = (v * along.conjugate()).real
+    c, v_s, below = share / cos, share * along, complex(pin.real, head.imag)
+    return _panel(
+        "velocity",
+        {"v": pin + v, "v_s": pin + v_s, "c": head - c},
+        {"v": abs(v), "v_s": share, "c": c},
+        faint=[omega * mechanism.crank * AROUND, (below, head), (pin + v, pin + v_s), (head - c, head + v_s)],
+        member=[(0j, pin, head)],
+        arrow=[(pin, pin + v), (pin, pin + v_s), (head, head + v_s), (head, head - c)],
+        joint=[(0j, pin, head)],
     )
-    at_pin = _mark("v", pin + around, abs(around)), _mark("v_s", pin + share * along, share)
-    return _panel("velocity", curves, (*at_pin, _mark("c", head - c, c)))
 
 
 def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, omega: float) -> Panel:
@@ -130,20 +123,18 @@ def _on_the_vertical(source: Source, mechanism: SliderCrank, angle: CrankAngle, 
     cut = 1j * (pin.imag + pin.real * sin / cos)
     foot = complex(sin, cos) * (pin.real * sin + pin.imag * cos)
     x, c = source.samples("c", [source.line("x"), source.line("c")]).values
-    over = complex(v - omega * float(mechanism.coordinate(angle)), cut.imag)
-    curves = (
-        Curve(Words("c"), v - omega * x, c, look=0),
-        curve("line", *(v * AROUND), name=Words("c, L/R = ∞", "c, L/R = inf"), look=1),
-        curve("faint", -1.1 * v + 0j, 1.1 * v + 0j),
-        curve("faint", -1.1j * v, 1.1j * v),
-        curve("member", 0j, pin),
-        curve("faint", pin, cut, foot),
-        curve("faint", 0j, foot),
-        curve("faint", cut, over, complex(over.real, 0.0)),
-        curve("line", 0j, cut, look=2),
-        curve("joint", 0j, pin),
+    over, end = complex(v - omega * float(mechanism.coordinate(angle)), cut.imag), complex(1.1 * v)
+    panel = _panel(
+        "velocity",
+        {"B": pin, "G": foot, "c": cut},
+        {"c": cut.imag},
+        faint=[(-end, end), (-1j * end, 1j * end), (pin, cut, foot), (0j, foot), (cut, over, complex(over.real))],
+        member=[(0j, pin)],
+        line=[(0j, cut)],
+        joint=[(0j, pin)],
     )
-    return _panel("velocity", curves, (_mark("B", pin), _mark("G", foot), _mark("c", cut, cut.imag)))
+    infinite = curve("line", *(v * AROUND), name=Words("c, L/R = ∞", "c, L/R = inf"), look=1)
+    return panel._replace(curves=(Curve(Words("c"), v - omega * x, c, look=0), infinite, *panel.curves))
 
 
 def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega: float) -> Panel:
@@ -156,26 +147,21 @@ def _of_lever(source: Source, mechanism: SlottedLever, angle: CrankAngle, omega:
     under = complex(end.real)
     cut = pivot + (under - pivot) * ((foot - pivot) / (pin - pivot)).real
     x, c = source.samples("c", [source.line("x"), source.line("c")]).values
-    line = pivot.real + length
-    ram = complex(line, end.imag)
-    curves = (
-        curve("faint", *(mechanism.crank * omega * AROUND)),
-        curve("faint", *(pivot / 2 * (1 + AROUND))),
-        curve("faint", pivot, complex(line)),
-        curve("guide", *(complex(line, omega * one) for one in (x.min(), x.max()))),
-        Curve(Words("c"), line + c, omega * x, look=0),
-        curve("member", 0j, pin),
-        curve("member", pivot, end),
-        curve("faint", end, under, pin),
-        curve("faint", 0j, foot, cut),
-        curve("faint", end, ram),
-        curve("line", under, cut, look=2),
-        curve("arrow", ram, ram + under - cut),
-        curve("joint", 0j, pin, end, pivot),
+    line = pivot + length  # of the ram
+    ram, circle = complex(line.real, end.imag), mechanism.crank * omega * AROUND
+    tip = ram + under - cut
+    panel = _panel(
+        "velocity",
+        {"C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut, "c": tip},
+        {"c": (under - cut).real},
+        guide=[(line + 1j * omega * x.min(), line + 1j * omega * x.max())],
+        faint=(circle, pivot / 2 * (1 + AROUND), (pivot, line), (end, under, pin), (0j, foot, cut), (end, ram)),
+        member=[(0j, pin), (pivot, end)],
+        line=[(under, cut)],
+        arrow=[(ram, tip)],
+        joint=[(0j, pin, end, pivot)],
     )
-    places = {"C": pin, "D": pivot, "E": end, "F": foot, "G": under, "H": cut}
-    marks = *(_mark(name, place) for name, place in places.items()), _mark("c", ram + under - cut, (under - cut).real)
-    return _panel("velocity", curves, marks)
+    return panel._replace(curves=(Curve(Words("c"), line.real + c, omega * x, look=0), *panel.curves))
 
 
 def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, complex, float, float]:
@@ -184,10 +170,11 @@ def _straight(mechanism: SliderCrank, angle: CrankAngle) -> tuple[complex, compl
     return pin, complex(pin.real + mechanism.rod * cos, mechanism.offset), sin, cos
 
 
-def _mark(symbol: str, place: complex, value: float | None = None) -> Mark:
-    return Mark(place.real, place.imag, PageFigure(Words(symbol), value))
-
-
-def _panel(kind: str, curves: tuple[Curve, ...], marks: tuple[Mark, ...]) -> Panel:
+def _panel(
+    kind: str, places: dict[str, complex], values: dict[str, float], **lines: Sequence[Sequence[complex] | ComplexArray]
+) -> Panel:
+    """Return a panel of lines by their kinds, with named places and the values of some; what is found is a `line`."""
+    curves = [curve(one, *each, look=1 if one == "line" else None) for one, every in lines.items() for each in every]
+    marks = [Mark(at.real, at.imag, PageFigure(Words(name), values.get(name))) for name, at in places.items()]
     axis = Axis(NO_NAME, kind)
-    return Panel(axis, axis, curves, marks=marks, equal=True, plain=True)
+    return Panel(axis, axis, tuple(curves), marks=tuple(marks), equal=True, plain=True)

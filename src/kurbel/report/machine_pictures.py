@@ -3,15 +3,15 @@
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.report.picture_source import Line, Source, curve, level
 from kurbel.solver.bearings import BearingColumns
 from kurbel.solver.effort import Term
+from kurbel.solver.figures import AtAngles
 from kurbel.solver.flywheel import TurningState
 from kurbel.solver.state import State
 from kurbel.solver.stress import PARTS
@@ -102,7 +102,7 @@ def effort_of_sides(source: Source) -> Iterator[Panel]:
     yield source.panel(lines, like="T", shaded=True, zero=True)
 
 
-def driven_force(state: State) -> Any:
+def driven_force(state: State) -> Number:
     """Return the force in N of the pistons of a rod that do not drive, and of what a ram works against."""
     gas = 0.0 if state.P_gas is None else state.P_gas - (0.0 if state.P_driving is None else state.P_driving)
     return gas if state.P_ram is None else gas + state.P_ram
@@ -228,7 +228,7 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
         yield panel._replace(x=source.axis(x), y=source.axis(y))
 
 
-def _of_components(x: str, y: str, state: Any) -> ComplexArray:
+def _of_components(x: str, y: str, state: AtAngles) -> ComplexArray:
     return np.asarray(state[x] + 1j * state[y])
 
 

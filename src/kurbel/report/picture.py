@@ -5,11 +5,11 @@ Panels are made in SI; `in_units` of `picture_source` gives them the units in wh
 
 from collections.abc import Callable, Iterable
 from itertools import pairwise
-from typing import Any, NamedTuple, Union
+from typing import NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
 
@@ -147,7 +147,12 @@ class Body(NamedTuple):
 
     @classmethod
     def of(
-        cls, shapes: Iterable[Shape], place: Any = 0.0, turn: Any = 0.0, stretch: Any = 1.0, tint: Any = 1.0
+        cls,
+        shapes: Iterable[Shape],
+        place: complex | Array | ComplexArray = 0.0,
+        turn: Number = 0.0,
+        stretch: Number = 1.0,
+        tint: Number = 1.0,
     ) -> "Body":
         """Return the body of numbers or arrays."""
         return cls(tuple(shapes), *(np.atleast_1d(one) for one in (place, turn, stretch, tint)))

@@ -66,8 +66,11 @@ def sampled(breaks: Array, values: Callable[[Array, Array], Array]) -> Sampled:
     angles (n,) that are on the same side of a break, and returns quantities (k, n). Intervals are halved where the
     point in their middle is off the line.
     """
-    pieces = [np.linspace(low, high, math.ceil((high - low) / _WIDEST) + 1) for low, high in pairwise(breaks.tolist())]
-    degrees, within = np.concatenate(pieces), np.repeat((breaks[:-1] + breaks[1:]) / 2, [len(one) for one in pieces])
+    counts = np.ceil(np.diff(breaks) / _WIDEST).astype(int) + 1
+    piece = np.repeat(np.arange(len(counts)), counts)
+    number = np.arange(len(piece)) - (counts.cumsum() - counts)[piece]
+    degrees = np.interp(piece + number / (counts - 1)[piece], np.arange(len(breaks)), breaks)
+    within = ((breaks[:-1] + breaks[1:]) / 2)[piece]
     points = values(degrees, within)
     # a constant has only rounding for its height
     allowed = np.maximum(np.ptp(points, axis=1) * FINENESS, np.abs(points).max(axis=1) * _JUMP)[:, None]
@@ -98,6 +101,7 @@ class Source:
 
     @cached_property
     def _start(self) -> Any:
+        """The columns just after crank angle 0."""
         return self.results.at(np.zeros(1), np.full(1, 1e-3))
 
     def having(self, *ids: str) -> tuple[str, ...]:

@@ -297,7 +297,7 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
         if not found:
             wrong = f"no picture '{shown(id)}'{did_you_mean(id, tuple(known))}"
             wrong = f"{name} has no picture '{id}': what it shows is left out" if id in known else wrong
-            raise UsageError(f"{wrong}; {name} has {', '.join(kind.id for kind in pictures_of(case, options))}")
+            raise UsageError(f"{wrong} ({name} has {', '.join(kind.id for kind in pictures_of(case, options))})")
         yield from found
 
 

@@ -1,4 +1,4 @@
-"""Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R. Needs no numpy.
+"""Zusammenstellung 112: the factors of the straight slider-crank over the crank angle, for any L/R.
 
 The printed figures are those of F. Rötscher, Die Maschinenelemente (1927), p. 602 f., read from the scan.
 """

@@ -87,16 +87,16 @@ def _is_level(chamber: Chamber | None) -> bool:
 
 def _displaced(
     state: State, piston: Driven, draws: bool = False, rises: bool = False, head: bool = True, crank: bool = True
-) -> Any:
+) -> Array:
     """Return dV/dφ in m³ of what chambers deliver, or draw in; rises: d²V/dφ². On each stroke it is one of them.
 
     head, crank: whether that end counts.
     """
-    head_area, crank_area = piston.gas.areas
-    areas = head_area * (piston.head and head), crank_area * (piston.crank and crank)
+    own = state.drive.cylinder.pistons[piston.number]  # of many machines its numbers are those of the angles
+    areas = own.head_area * (piston.head and head), own.crank_area * (piston.crank and crank)
     # a piston that a lever moves against the crosshead draws in where another one delivers
-    outward, back = areas if draws != piston.gas.turned else areas[::-1]
-    return np.where(state.direction > 0, outward, -back) * (state.curvature if rises else state.slope)
+    outward, back = (abs(own.lever_ratio) * area for area in (areas if draws != piston.gas.turned else areas[::-1]))
+    return np.where(state.direction > 0, outward, -back) * np.asarray(state.curvature if rises else state.slope)
 
 
 # pumps
@@ -211,12 +211,12 @@ class Delivery(Results):
             found[f"{name}friction_head"] = np.broadcast_to(heads, self.pieces.degrees.shape)
         return found
 
-    def _mean(self, draws: bool = False, cubed: bool = False) -> Any:
+    def _mean(self, draws: bool = False, cubed: bool = False) -> Number:
         """Return the mean over the cycle of dV/dφ, or of its cube."""
         rate = self._rate(draws=draws)
         return self._result(self.pieces.mean(rate * rate * rate if cubed else rate))  # ** 3 is slow
 
-    def _swing(self, draws: bool) -> Any:
+    def _swing(self, draws: bool) -> Number:
         """Return the fluctuating volume in m³ of a flow, with all its crossings of the mean."""
         rate = self._rate(draws=draws)
         above = self.pieces.running(rate - self.pieces.of(self.pieces.mean(rate)))[None]
@@ -280,7 +280,7 @@ def _friction(pipe: Pipe) -> Number:
     return pipe.friction_factor * pipe.length / (2 * pipe.diameter * _section(pipe) ** 2)
 
 
-def _vessel(vessel: Vessel, swing: float, place: str) -> tuple[Number, Number]:
+def _vessel(vessel: Vessel, swing: Number, place: str) -> tuple[Number, Number]:
     """Return mean volume in m³ and swing of pressure of a vessel that takes a fluctuating volume in m³."""
     if vessel.pressure_swing is not None:
         delta = vessel.pressure_swing
@@ -290,7 +290,7 @@ def _vessel(vessel: Vessel, swing: float, place: str) -> tuple[Number, Number]:
     half = swing / 2
     empties = volume <= half
     if isinstance(empties, (bool, np.bool_)) and empties:
-        least, given = show(half, "volume"), show(volume, "volume")
+        least, given = show(float(half), "volume"), show(volume, "volume")
         raise UsageError(f"pump.{place}_pipe.vessel.volume: {given} would empty; it must be more than ΔV/2 = {least}")
     ratio = where(empties, math.nan, (volume + half) / where(empties, 1.0, volume - half)) ** vessel.exponent
     return where(empties, math.nan, volume), 2 * (ratio - 1) / (ratio + 1)
@@ -321,7 +321,7 @@ class CompressorEnd:
             work = gas.works[0 if head or gas.head is None else 1] / gas.repeats
             self._add_figures(card, gases, drive.machine.speed, -work)
 
-    def _add_figures(self, card: Compressor, gases: Sequence[Gas], speed: Any, work: Any) -> None:
+    def _add_figures(self, card: Compressor, gases: Sequence[Gas], speed: Number | None, work: Number) -> None:
         """Add what follows from the card, from the first gas that has what is needed, and from the speed."""
         found, ratio, n = self.figures, self.delivery / self.suction, card.exponent
         if self.loaded:
@@ -456,20 +456,13 @@ class MachineDelivery:
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
-    """Return the stages that ends make, in the order of their suction pressures; those without any last."""
-    groups: list[list[CompressorEnd]] = []
+    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last."""
+    groups: dict[object, list[CompressorEnd]] = {}
     for end in ends:
-        alike = (group for group in groups if _in_one_stage(group[0], end))
-        group = next(alike, None)
-        groups.append([end]) if group is None else group.append(end)
-    stages = [CompressorStage(group) for group in groups]
+        pressures = () if end.suction is None else (end.suction, end.delivery)
+        groups.setdefault(tuple(f"{np.mean(one):.9g}" for one in pressures) or end.owner, []).append(end)
+    stages = [CompressorStage(group) for group in groups.values()]
     stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
     for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
         stage.name = f"stage {number}"
     return tuple(stages)
-
-
-def _in_one_stage(one: CompressorEnd, other: CompressorEnd) -> bool:
-    if one.suction is None or other.suction is None:
-        return one.suction is other.suction and one.owner == other.owner
-    return _agreed((abs(one.suction - other.suction) <= 1e-9 * one.suction) & (one.delivery == other.delivery))

@@ -166,7 +166,7 @@ def _wandering_cycles(reading: TraceReading) -> str:
 def _rounded_angles(reading: TraceReading) -> str:
     trace, angles = reading.trace, reading.angles
     twins = int(np.count_nonzero(np.diff(angles) == 0))
-    if twins < _TWICE * len(angles):
+    if not trace.files or twins < _TWICE * len(angles):
         return ""
     zero = trace.as_written(trace.angle_zero) - (-trace.angles[-1] if trace.against else float(trace.angles[0]))
     moved = f" and 'angle_zero: {zero:g} deg'" if trace.angles[0] else ""
@@ -297,13 +297,11 @@ def _peak_elsewhere(reading: TraceReading) -> str:
     peak_at, cycle, zero = reading.peak_at, reading.setting.cycle, reading.trace.angle_zero
     if not reading.engine or reading.usual[0] <= peak_at <= reading.usual[1]:
         return ""
-    # by quarter turns, or else to where such a peak usually is
-    by_quarters = (
-        quarter
-        for quarter in np.arange(90.0, cycle, 90.0).tolist()
-        if _AIMED[0] <= (peak_at - quarter + cycle / 2) % cycle - cycle / 2 <= _AIMED[1]
-    )
-    later = peak_at if reading.motored else next(by_quarters, round(zero + peak_at - _USUAL) - zero)
+    later = 90.0 * round((peak_at - _USUAL) / 90.0)
+    if reading.motored:
+        later = peak_at
+    elif not _AIMED[0] <= peak_at - later <= _AIMED[1]:  # by quarter turns, or else to where such a peak usually is
+        later = round(zero + peak_at - _USUAL) - zero
     key, effect = reading.put_later(later)
     where = "firing dead centre" if cycle == 720 else "dead centre"
     gas_exchange = ", in the gas exchange" if abs(peak_at) > 180 else ""
@@ -374,12 +372,10 @@ def _exponents(reading: TraceReading) -> str:
         return ""
     seen, sensible = f"its compression goes by p V^{compression.value:.3g}", _is_sensible(compression)
     sure = _APART + 2 * math.hypot(compression.error, expansion.error if expansion else 0.0)
-    if expansion and abs(compression.value - expansion.value) > sure:
-        seen += f" and its expansion by p V^{expansion.value:.3g}"
-    elif sensible:
+    parted = expansion if expansion and abs(compression.value - expansion.value) > sure else None
+    if sensible and not parted:
         return ""
-    else:
-        seen += ", where air has 1.2 to 1.4"
+    seen += f" and its expansion by p V^{parted.value:.3g}" if parted else ", where air has 1.2 to 1.4"
     now, next_to = _apart(reading, 0.0), _apart(reading, 1.0)
     later = now / (now - next_to or math.nan)  # where both exponents would be one
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
@@ -395,8 +391,15 @@ def _apart(reading: TraceReading, later: float) -> float:
 
 
 CHECKS: tuple[Callable[[TraceReading], str], ...] = (
-    *(_turns_in_pairs, _wandering_cycles, _rounded_angles, _drift),
-    *(_inverted, _unit),
-    *(_backward, _peak_elsewhere, _motored_peak),
-    *(_level, _exponents),
+    _turns_in_pairs,
+    _wandering_cycles,
+    _rounded_angles,
+    _drift,
+    _inverted,
+    _unit,
+    _backward,
+    _peak_elsewhere,
+    _motored_peak,
+    _level,
+    _exponents,
 )

@@ -11,7 +11,6 @@ import os
 import re
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -126,35 +125,37 @@ def read_table(file: str, layout: Layout) -> Table:
 
 @lru_cache(maxsize=4)
 def _numbers(text: str, layout: Layout) -> Array:
-    """Return the wanted columns (n, k); look-alikes of a blank or a minus are sought only where one is in the way.
+    """Return the wanted columns (n, k).
 
     Kept, since designs that vary what is known of a trace have one text in common. Refuses columns between which
     commas seem to be decimal ones, too: '0,37,05' without any point.
     """
-    for one in (text, familiar(text)):
-        with warnings.catch_warnings(), suppress(ValueError):
+    known = familiar(text)
+    try:
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an empty file, of which a message of ours speaks
             found = np.loadtxt(
-                io.StringIO(layout.tidied(one)),
+                io.StringIO(layout.tidied(known)),
                 delimiter=layout.between,
                 skiprows=layout.skip_rows,
                 usecols=tuple(column - 1 for column in layout.wanted),
                 ndmin=2,
                 max_rows=MOST_NUMBERS // len(layout.wanted) + 1,
             )
-            body = text.split("\n", layout.skip_rows)[-1]
-            split = layout.delimiter == "comma" and "." not in body and _SPLIT_DECIMALS.search(body)
-            if split:
-                number = layout.skip_rows + body.count("\n", 0, split.start()) + 1
-                message = (
-                    f"line {number}: '{_shown(split[0])}' is whole numbers in columns, or has a decimal comma before "
-                    "its last digits, which begin with 0; export the file with decimal points, or with semicolons "
-                    "between columns and write 'delimiter: semicolon' and 'decimal: comma'"
-                )
-                refused(message, "file")
-            found.flags.writeable = False
-            return found
-    raise RuleError(_first_fault(familiar(text), layout))
+    except ValueError:
+        raise RuleError(_first_fault(known, layout)) from None
+    body = text.split("\n", layout.skip_rows)[-1]
+    split = layout.delimiter == "comma" and "." not in body and _SPLIT_DECIMALS.search(body)
+    if split:
+        number = layout.skip_rows + body.count("\n", 0, split.start()) + 1
+        message = (
+            f"line {number}: '{_shown(split[0])}' is whole numbers in columns, or has a decimal comma before its last "
+            "digits, which begin with 0; export the file with decimal points, or with semicolons between columns and "
+            "write 'delimiter: semicolon' and 'decimal: comma'"
+        )
+        refused(message, "file")
+    found.flags.writeable = False
+    return found
 
 
 def _figure_lines(text: str, layout: Layout) -> Iterator[tuple[int, str]]:
