@@ -79,8 +79,7 @@ def report(name: str, many: float, count: int, single: float | None = None) -> N
 def beside_alone(name: str, batches: list[Batch], requested: list[Answer]) -> None:
     """Compare machines side by side with the same ones alone."""
     alone = [batches[0].one(place) for place in range(SINGLE)]
-    with np.errstate(all="ignore"):
-        single = seconds(lambda: [answered_alone(machine, requested) for machine in alone]) / SINGLE
+    single = seconds(lambda: [answered_alone(machine, requested) for machine in alone]) / SINGLE
     report(name, seconds(lambda: answers_of(batches, requested)), DESIGNS, single)
 
 

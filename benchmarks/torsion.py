@@ -62,7 +62,7 @@ def main() -> None:
     chain = whole().chain
     print("30 masses, 48 orders, 200 speeds")
     print(f"  torques of every order   {seconds(lambda: whole().torques) * 1e3:8.1f} ms")
-    print(f"  and their crests         {seconds(lambda: whole().vibratory) * 1e3:8.1f} ms")
+    print(f"  and half of their swings {seconds(lambda: whole().vibratory) * 1e3:8.1f} ms")
     print(f"  natural frequencies      {seconds(lambda: Modes(chain).omegas) * 1e3:8.1f} ms")
     print("\nlargest relative error of the elastic modes of 12 masses\n")
     print(f"{'masses differ by 10^':<22}{'kurbel':>10}{'eigvalsh':>10}")

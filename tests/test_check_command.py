@@ -113,7 +113,7 @@ def test_a_check_as_junit(tmp_path: Path) -> None:
         names = [case.attrib["name"] for case in cases]
         assert len(set(names)) == len(names)  # GitLab reads the first of a name alone
         assert {case.attrib["classname"] for case in cases} == {name}
-    assert (int(root.attrib["tests"]), int(root.attrib["failures"])) == (len(root.findall("*/testcase")), 3)
+    assert len(root.findall("*/testcase/failure")) == 3
     (limit,) = (case for case in suites[str(bad)] if case.attrib["name"] == "c_max")
     (failure,) = limit
     assert "2.13593341 m/s > 1 m/s" in failure.attrib["message"]

@@ -17,6 +17,7 @@ from kurbel.errors import UsageError
         ("bore=300 mm:500:100", ("300 mm", "400 mm", "500 mm")),
         ("speed=60:40:-10 rpm", ("60 rpm", "50 rpm", "40 rpm")),
         ("speed=40,50 1/s,60 rpm", ("40 rpm", "50 1/s", "60 rpm")),
+        ("rod_ratio=3,7/2", ("3", "7/2")),
         ("mechanism=slider-crank,scotch-yoke", ("slider-crank", "scotch-yoke")),
         ("x=0:0.3:0.1", ("0.0", "0.1", "0.2", "0.3")),
     ],

@@ -44,9 +44,9 @@ def interrupted(machine: Path, *args: str, rows: int = 6) -> Path:
     ("others", "message"),
     [
         (("--set", "speed=60 rpm"), "row 6 has 2.1"),
-        (("--vary", "rod_ratio=3:6:0.2"), "row 2 has 3.3 rod_ratio in it, and 3.2 now"),
+        (("--vary", "rod_ratio=3:6:0.2"), "row 2 has 3.3 in it, and 3.2 now"),
         (("--vary", "rod_ratio=3:4:0.3"), "it has row 5, these are rows 1 to 4"),
-        (("--vary", "rod_ratio=6:3:-0.3"), "row 1 has 3.0 rod_ratio in it, and 6.0 now"),
+        (("--vary", "rod_ratio=6:3:-0.3"), "row 1 has 3.0 in it, and 6.0 now"),
         (("--where", "rod_ratio > 7"), "which --where leaves out"),
         (("--shard", "2/2"), "it "),
         (("--columns", "c_max,N_max"), ""),

@@ -9,13 +9,9 @@ import pytest
 from drawn import drawn, ids_of, named
 
 from kurbel.render import Look
-from kurbel.render.html import BAD, GOOD, LINK
-from kurbel.render.html import FAINT as PAGE_FAINT
-from kurbel.render.html import INK as PAGE_INK
-from kurbel.render.html import PAPER as PAGE_PAPER
-from kurbel.render.html import SHADE as PAGE_SHADE
 from kurbel.render.picture import Label, PanelFrame
-from kurbel.render.svg import FAINT, GAIN, INK, LOSS, PAPER, PAPER_SIZES, STROKES, css, svg_file
+from kurbel.render.style import COLOURS, picture_css
+from kurbel.render.svg import PAPER_SIZES, svg_file
 from kurbel.report.picture import Panel
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import pictures
@@ -49,14 +45,15 @@ def test_files_are_small_and_whole(name: str) -> None:
 
 @pytest.mark.parametrize("mode", [0, 1], ids=["light", "dark"])
 def test_contrast(mode: int) -> None:
-    for colours in (INK, FAINT, *((stroke.light, stroke.dark) for stroke in STROKES)):
-        assert contrast(colours[mode], PAPER[mode]) >= 4.5
-        assert colours[mode] in css()
-    for ground in (GAIN, LOSS):
-        assert contrast(INK[mode], ground[mode]) >= 4.5
-    for colours in (PAGE_INK, PAGE_FAINT, GOOD, BAD, LINK):
-        for ground in (PAGE_PAPER, PAGE_SHADE):
-            assert contrast(colours[mode], ground[mode]) >= 4.5
+    of = {name: both[mode] for name, both in COLOURS.items()}
+    for name in ("ink", "faint", *(f"line{number}" for number in range(6))):
+        assert contrast(of[name], of["paper"]) >= 4.5
+        assert of[name] in picture_css()
+    for ground in ("gain", "loss"):
+        assert contrast(of["ink"], of[ground]) >= 4.5
+    for name in ("ink", "faint", "good", "bad", "link"):
+        for ground in ("paper", "shade"):
+            assert contrast(of[name], of[ground]) >= 4.5
 
 
 def test_a_name_is_text_and_nothing_else() -> None:

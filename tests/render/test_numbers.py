@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.render.numbers import angle_scale, cell, rounded, scale_of, single
+from kurbel.render.text import angle_scale, cell, rounded, scale_of, single
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 ROW = st.lists(FINITE, min_size=1, max_size=8)
@@ -24,7 +24,7 @@ def test_a_cell_is_within_half_a_unit_of_its_last_decimal(row: list[float], digi
 
 @given(FINITE, st.integers(0, 6))
 def test_no_negative_zero(value: float, decimals: int) -> None:
-    from kurbel.render.numbers import Scale
+    from kurbel.render.text import Scale
 
     shown = cell(value, Scale(decimals))
     assert not (shown.startswith("-") and float(shown) == 0)

@@ -108,7 +108,7 @@ def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
     card = Card.from_keys(unit=(1e5, 1), expansion=[(0, 10), (0.4, 10), (0.4, 0), (1, 0)], compression=[(1, 0), (0, 0)])
     mechanism = SliderCrank(0.3, 1.5)
     solved = strength(shaft(), mechanism, card)
-    degrees = solved.largest_torque.degrees
+    degrees = solved.at_largest_torque[0].degrees
     assert degrees == pytest.approx(float(mechanism.crank_angles_at(np.array([0.24]), True)[0]), abs=1e-9)
     pin = solved.at_largest_torque[0]
     force = 1e6 * math.pi / 4 * 0.4**2

@@ -13,7 +13,7 @@ from kurbel.machine_file import source
 from kurbel.machine_file.overrides import rewritten
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw
-from kurbel.render.findings import as_json, as_rows, heads, picture, remarks
+from kurbel.render.findings import as_json, as_rows, columns, picture, remarks
 from kurbel.render.output import refuse_overwriting, write_out
 from kurbel.render.sweep_rows import Titles, write_rows
 
@@ -69,7 +69,8 @@ def run(
         write_out([text], file_name, "utf-8")
     else:
         look = Look(written, comma=comma, digits=digits or (None if written == "csv" else _DIGITS))
-        write_rows(as_rows(found, system), Titles(heads(found, system)), look, file_name, to_stderr)
+        titles = Titles(tuple((name, unit) for name, unit, _ in columns(found, system)))
+        write_rows(as_rows(found, system), titles, look, file_name, to_stderr)
     for one in remarks(found):
         to_stderr(one)
 

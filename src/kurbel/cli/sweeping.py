@@ -93,7 +93,7 @@ def run(
     on_terminal = sys.stdout and sys.stdout.isatty()
     with closing(rows_of(sweep, rows, jobs, dask, to_stderr)) as computed:
         found: Iterable[Design] = computed
-        if file_name or not on_terminal:  # else the rows themselves show the progress
+        if file_name or for_people or not on_terminal:  # else the rows themselves show the progress
             found = Progress("sweep").counted(found, "designs", len(rows))
         found = (row for row in found if all(one.holds(row) for one in kept_if))
         found = pareto_front(found, aims) if aims else found

@@ -26,9 +26,10 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST, _MOST = 3, 250
-"""Fewest machines of a batch, fewer are computed as quickly one by one; and most: of the many quantities of bearings
-1000 would need a gigabyte."""
+_FEWEST, _MOST = 3, 500
+"""Fewest machines of a batch, fewer are computed as quickly one by one; and most: more would only need more memory."""
+_LARGE, _MOST_LARGE = {"stress", "bearings"}, 200
+"""Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]
 """A key value in SI: a number, or a list; None where there is none."""
@@ -57,6 +58,7 @@ class Answer(NamedTuple):
 # which key values are requested
 
 
+@np.errstate(all="ignore")
 def requested_answers(
     machine: Machine, names: Sequence[str], with_angles: bool = False, option: str = "--columns"
 ) -> tuple[Answer, ...]:
@@ -69,12 +71,11 @@ def requested_answers(
     """
     case = Case(machine)
     once: dict[tuple[str, str], list[Answer]] = {}
-    with np.errstate(all="ignore"):
-        if names:
-            known = joined(names, every_quantity().all_key_values)
-            found = [one for name in known for one in _named(case, name, option)]
-        else:
-            found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
+    if names:
+        known = joined(names, every_quantity().all_key_values)
+        found = [one for name in known for one in _named(case, name, option)]
+    else:
+        found = [*_holding(case, "forces" if machine.cylinders else "flywheel")]
     for one, value in found:
         # other designs may have a value with an angle where this one has an error
         with_angle = with_angles and isinstance(value, (Extreme, KurbelError))
@@ -86,16 +87,26 @@ def requested_answers(
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
-    owner, _, own = name.rpartition(".")
+    owner, own = parts_of_name(name)
     ids = called(own, declared)
     if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
         raise UsageError(f"{option}: {ambiguity(own, ids) or f'no key value {shown(name)!r}{near}'}")
     commands = every_quantity().commands_of(ids[0])
     for command in ("forces", *commands) if "forces" in commands and case.machine.cylinders else commands:
-        if found := [*_holding(case, command, ids[0], "whole machine" if owner == MACHINE else owner)]:
+        if found := [*_holding(case, command, ids[0], owner)]:
             return found
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
+
+
+def parts_of_name(name: str) -> tuple[str, str]:
+    """Return the subject, '' for none, and the key value of `LP.c_max`, as a report names the subject.
+
+    >>> parts_of_name("machine.T_max")
+    ('whole machine', 'T_max')
+    """
+    owner, _, own = name.rpartition(".")
+    return ("whole machine" if owner == MACHINE else owner), own
 
 
 def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
@@ -136,17 +147,18 @@ def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
     return [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
 
 
+@np.errstate(all="ignore")
 def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
     """Return the key values of each of many machines, by its row."""
     found: dict[int, Values] = {}
-    with np.errstate(all="ignore"):
-        for batch in batches:
-            if not is_slow(batch.machine, requested):
-                for start in range(0, len(batch.rows), _MOST):
-                    found |= _together(batch, np.arange(start, min(start + _MOST, len(batch.rows))), requested)
-            for place, row in enumerate(batch.rows):
-                if row not in found:
-                    found[row] = answered_alone(batch.one(place), requested)
+    most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
+    for batch in batches:
+        if not is_slow(batch.machine, requested):
+            for start in range(0, len(batch.rows), most):
+                found |= _together(batch, np.arange(start, min(start + most, len(batch.rows))), requested)
+        for place, row in enumerate(batch.rows):
+            if row not in found:
+                found[row] = answered_alone(batch.one(place), requested)
     return found
 
 
@@ -189,6 +201,7 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
     return {batch.rows[place]: values for place, values, good in zip(places.tolist(), zip(*each), fit.tolist()) if good}
 
 
+@np.errstate(all="ignore")
 def answered_alone(machine: Machine, requested: Sequence[Answer]) -> Values:
     """Return the key values of a machine by itself."""
     try:

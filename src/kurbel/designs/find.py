@@ -202,7 +202,7 @@ class _Search:
         wanted = np.array([one.value for one in self.wanted], dtype=float)
 
         def left(places: Array) -> Array:
-            return np.asarray(np.array([one.values for one in self.at(places)])[:, columns] - wanted)
+            return np.array([one.values for one in self.at(places)])[:, columns] - wanted
 
         if len(wanted) == 1:
             found, jumps = roots(lambda places: left(places)[:, 0])

@@ -5,9 +5,8 @@ These are a grid of all values, or of values side by side, each with every point
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
-from functools import partial
 from itertools import chain
 from statistics import NormalDist
 from typing import NamedTuple
@@ -17,6 +16,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.units import written_unit
 from kurbel.errors import UsageError
 from kurbel.machine_file.overrides import path_of
 
@@ -31,15 +31,23 @@ _NEXT_KEY = re.compile(r";(?=[^;=]*=|\s*(?:;|$))")
 _DISTRIBUTIONS = {"normal": "mean, deviation", "uniform": "least, most"}
 
 
-class Input(NamedTuple):
-    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit.
+class Uniform(NamedTuple):
+    """A distribution that is uniform from its least to its most."""
 
-    quantile: of the distribution, returns the value below which a share of all lies, 0 < share < 1.
-    """
+    least: float
+    most: float
+
+    def inv_cdf(self, share: float) -> float:
+        """Return the value below which this share of all lies."""
+        return self.least + share * (self.most - self.least)
+
+
+class Input(NamedTuple):
+    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit."""
 
     key: str
     texts: tuple[str, ...] = ()
-    quantile: Callable[[float], float] | None = None
+    distribution: NormalDist | Uniform | None = None
     unit: str = ""
 
 
@@ -53,7 +61,7 @@ def read_axis(text: str) -> tuple[Input, ...]:
     if len(parts) > 1 and not all(parts):
         raise _refused(text, "a key is missing next to ';'; write KEY=…; KEY=…, or leave it out")
     together = tuple(map(read_input, parts))
-    if len(together) > 1 and any(one.quantile for one in together):
+    if len(together) > 1 and any(one.distribution for one in together):
         raise _refused(text, "a distribution has a --vary of its own; write a list or a range of each key")
     return together
 
@@ -99,26 +107,22 @@ def _list(text: str, parts: list[str]) -> tuple[str, ...]:
         raise _refused(text, "a value is missing between two commas; write decimal points, such as 1.5")
     if any(";" in part and NUMBER.match(part) for part in parts):
         raise _refused(text, "values are separated by commas; after ';' comes a further KEY=…")
-    number, unit = _number_and_unit(parts[-1])
-    return tuple(f"{part} {unit}" if number and unit and NUMBER.fullmatch(part) else part for part in parts)
-
-
-def _number_and_unit(part: str) -> tuple[str, str]:
-    found = NUMBER.match(part)
-    return (found.group(), part[found.end() :].strip()) if found else ("", part)
+    unit = written_unit(parts[-1])
+    return tuple(f"{part} {unit}" if unit and NUMBER.fullmatch(part) else part for part in parts)
 
 
 def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tuple[list[str], str]:
     """Return so many numbers as they are written, and their unit; expected: what else is refused."""
-    pairs = [_number_and_unit(part.strip()) for part in parts]
-    if len(pairs) != count or not all(number for number, _ in pairs):
+    written = [written_unit(part) for part in parts]
+    numbers = [part.strip().removesuffix(unit).strip() for part, unit in zip(parts, written)]
+    if len(numbers) != count or not all(map(NUMBER.fullmatch, numbers)):
         raise _refused(text, expected)
-    units = {unit for _, unit in pairs if unit}
+    units = sorted({*written} - {""})
     if len(units) > 1:
-        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(sorted(units))}")
-    if large := next((number for number, _ in pairs if abs(float(number)) > _LARGEST), ""):
+        raise _refused(text, f"write these numbers in one unit, not in {' and '.join(units)}")
+    if large := next((number for number in numbers if abs(float(number)) > _LARGEST), ""):
         raise _refused(text, f"{shown(large)} is too large to compute with")
-    return [number for number, _ in pairs], "".join(units)
+    return numbers, "".join(units)
 
 
 def _range(text: str, values: str) -> tuple[str, ...]:
@@ -136,7 +140,7 @@ def _range(text: str, values: str) -> tuple[str, ...]:
     return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
 
 
-def _distribution(text: str, name: str, inside: str) -> tuple[Callable[[float], float], str]:
+def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
     if name not in _DISTRIBUTIONS:
         known = ", ".join(f"{one}({words})" for one, words in _DISTRIBUTIONS.items())
         raise _refused(text, f"no distribution '{shown(name)}'; known are {known}")
@@ -147,11 +151,7 @@ def _distribution(text: str, name: str, inside: str) -> tuple[Callable[[float], 
         raise _refused(text, f"the standard deviation must be more than 0, got {numbers[1]}")
     if name == "uniform" and second <= first:
         raise _refused(text, f"the least value must be less than the most, got {numbers[0]} and {numbers[1]}")
-    return NormalDist(first, second).inv_cdf if name == "normal" else partial(_of_uniform, first, second), unit
-
-
-def _of_uniform(least: float, most: float, share: float) -> float:
-    return least + share * (most - least)
+    return NormalDist(first, second) if name == "normal" else Uniform(first, second), unit
 
 
 class Plan:
@@ -171,8 +171,8 @@ class Plan:
         most: int | None = None,
     ) -> None:
         self.inputs = tuple(chain(*axes))
-        self._drawn = [one for one in self.inputs if one.quantile]
-        listed = [axis for axis in axes if not axis[0].quantile]
+        self._drawn = [one for one in self.inputs if one.distribution]
+        listed = [axis for axis in axes if not axis[0].distribution]
         self._axes = [tuple(chain(*listed))] if side_by_side and listed else listed
         self._sample = sample or 1
         self._refuse(sample, "--zip" if side_by_side else "")
@@ -208,8 +208,8 @@ class Plan:
             combination, place = divmod(combination, len(axis[0].texts))
             found.update((one.key, one.texts[place]) for one in axis)
         for one, share in zip(self._drawn, self._points[point].tolist()):
-            assert one.quantile
-            found[one.key] = f"{one.quantile(share)!r} {one.unit}".rstrip()
+            assert one.distribution
+            found[one.key] = f"{one.distribution.inv_cdf(share)!r} {one.unit}".rstrip()
         return tuple(found[one.key] for one in self.inputs)
 
 
@@ -219,7 +219,7 @@ def latin_hypercube(count: int, width: int, seed: int) -> Array:
     strips = random.permuted(np.tile(np.arange(float(count))[:, None], width), axis=0)
     # neither 0 nor 1: a distribution has no value there
     within = np.clip(random.random((count, width)), 2.0**-40, 1 - 2.0**-40)
-    return np.asarray((strips + within) / count)
+    return (strips + within) / count
 
 
 def shard(text: str, rows: int) -> range:

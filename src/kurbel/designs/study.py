@@ -66,7 +66,8 @@ class Study:
     """Designs of a machine file by the texts under these keys, in their order.
 
     starts: rows of texts, of which the first that make a valid machine decide which key values there are; names: of
-    those that are requested, see `requested_answers`; cases: the first of the keys is the load case.
+    those that are requested, see `requested_answers`; cases: the first of the keys is the load case. Of the first valid
+    machine are `binder`, `answers`, `limits`, and `every`, the key values that are computed for both.
     Raises the error of the first texts if none are valid, or the first error that occurs for two of them.
     """
 
@@ -86,6 +87,7 @@ class Study:
                 self.binder = Binder(origin, keys, texts, cases)
                 self.answers = requested_answers(self.binder.machine, names, with_angles, option)
                 self.limits = list(_limits_of(self.binder.machine))
+                self.every = (*self.answers, *(one.answer for one in self.limits))
                 return
             except KurbelError as error:
                 failed.append(error)
@@ -117,12 +119,11 @@ class Study:
     def of(self, rows: Sequence[Sequence[str]]) -> list[Found]:
         """Return what the designs with these texts (rows, keys) give; for the same digits give the same rows."""
         count = len(self.answers)
-        every = (*self.answers, *(one.answer for one in self.limits))
         return [
             Found(failure=values)
             if isinstance(values, str)
             else Found(values[:count], "", *self._judged(values[count:]))
-            for values in answered(self.binder, rows, every)
+            for values in answered(self.binder, rows, self.every)
         ]
 
     def _judged(self, values: Sequence[Value]) -> tuple[tuple[str, ...], tuple[str, ...]]:

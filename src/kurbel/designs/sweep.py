@@ -118,7 +118,7 @@ class Sweep:
 
         A row is computed together with the same rows in every run, since its last digits may depend on their number.
         """
-        size = _SLOW_BLOCK if is_slow(self._study.binder.machine, self._study.answers) else _BLOCK
+        size = _SLOW_BLOCK if is_slow(self._study.binder.machine, self._study.every) else _BLOCK
         start, stop = 0, min(_FIRST, size)
         while start < rows.stop:
             if stop > rows.start:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property, lru_cache
 from itertools import combinations, combinations_with_replacement
 from typing import Any, NamedTuple
@@ -27,10 +26,6 @@ _EQUAL = 1e-12
 """Of the largest length: summits that differ by less are equal; the first counts."""
 _HIGH = 0.9
 """Of the largest sample: no summit between samples belongs to a lower one."""
-_LARGE = 1e-3
-"""Of the largest wave: the shortest of these waves decides how close the samples are."""
-_PER_WAVE = 16
-"""Samples to a period of that wave."""
 _STEPS = 5
 """Newton's steps from a sample to the summit next to it."""
 _ROUNDS = 60
@@ -116,11 +111,8 @@ class ClosedCurve:
 
     @cached_property
     def samples(self) -> ComplexArray:
-        """The points at equal angles from 0 on, (count, machines); four to a period of the shortest wave at least."""
-        sizes = np.abs(self.waves)
-        large = np.flatnonzero((sizes > _LARGE * sizes.max(axis=0, initial=0.0)).any(axis=1))
-        shortest = int(np.abs(self.numbers[large]).max(initial=1))
-        count = 1 << math.ceil(math.log2(max(_PER_WAVE * shortest, 2 * len(self.waves))))
+        """The points at equal angles from 0 on, (count, machines); eight to a period of the shortest wave at least."""
+        count = 1 << (4 * len(self.waves)).bit_length()
         spectrum = np.zeros((count, self.waves.shape[1]), complex)
         spectrum[self.numbers] = self.waves
         return np.fft.ifft(spectrum, axis=0) * count

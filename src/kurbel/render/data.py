@@ -5,17 +5,15 @@ import json
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
-from html import escape
 from itertools import chain, repeat
 from typing import Any
+from xml.etree import ElementTree
 
 from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.numbers import decimal, rounded, whole_if_integral
-from kurbel.render.text import TURNING
-from kurbel.report.tables import Column, Part, Provenance, Report
+from kurbel.render.text import TURNING, rounded, whole_if_integral
+from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
 
 FORMAT = 1
 """Number of the format of JSON; it changes when a script that reads it would break."""
@@ -24,6 +22,8 @@ _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 _ESCAPED = {code: f"\\u{code:04x}" for code in TURNING}
 _FIRST = {"ratios": "rod_ratio", "bearings": "bearing", "scenes": "scene"}
 """Group of the parts of a report -> head of the column with their names, if not `cylinder`."""
+_PISTONS = "pistons"
+"""The table of places that is a list of key values in JSON, and not in CSV."""
 
 
 # CSV
@@ -41,7 +41,7 @@ def csv_line(look: Look) -> Callable[[Iterable[object]], str]:
     return csv.writer(_Echo(), delimiter=";" if look.comma else ",", lineterminator="\n").writerow
 
 
-def csv_cell(value: Any, look: Look, in_full: bool = False) -> object:
+def csv_cell(value: Value | str | tuple[float, ...], look: Look, in_full: bool = False) -> object:
     """Return a value for `csv_line`: an apostrophe marks a text that a spreadsheet would take for a formula.
 
     Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
@@ -52,69 +52,73 @@ def csv_cell(value: Any, look: Look, in_full: bool = False) -> object:
     if isinstance(value, tuple):
         return " ".join(str(csv_cell(one, look)) for one in value)
     number = rounded(value, None if in_full else look.digits)
-    return number if value is None or not look.comma else decimal(repr(number), True)
+    return number if value is None or not look.comma else repr(number).replace(".", ",")
+
+
+Cells = dict[str, Iterable[object]]
+"""The cells of columns by their heads."""
 
 
 def csv_text(report: Report, look: Look) -> Iterator[str]:
     """Yield head and rows as CSV.
 
     These are the tables over the crank angle; if there are none, the tables of places; if there are none either, the
-    key values, a row for each and for each value of a list. Several parts follow one another, with their names in a
-    first column.
+    key values. Several parts follow one another, with their names in a first column.
     """
     parts = report.all_parts
-    blocks: list[tuple[Part, dict[str, Iterable[object]]]] = []  # the cells of a part by the heads of their columns
+    places = [(part, [one for one in part.place_tables if one.id != _PISTONS]) for part in parts]
     if any(part.columns for part in parts):
-        blocks = [(part, _columns(part.columns, look)) for part in parts if part.columns]
-        named = len(blocks) + sum(bool(part.nowhere) for part in report.parts)
-        # all heads once, each new one before the known one that follows it in its own table
-        heads: list[str] = []
-        for _, columns in blocks:
-            place = len(heads)
-            for head in reversed(columns):
-                if head in heads:
-                    place = heads.index(head)
-                else:
-                    heads.insert(place, head)
-    elif tables := [(part, table) for part in parts for table in part.place_tables if table.id != "pistons"]:
-        for part, table in tables:
-            names = ((csv_cell(name, look) for name in column) for column in zip(*table.names))
-            cells = {"table": repeat(table.id, len(table.names)), **dict(zip(table.heads, names))}
-            blocks.append((part, cells | _columns(table.columns, look)))
-        first = dict.fromkeys(head for _, table in tables for head in table.heads)
-        heads = list(dict.fromkeys(("table", *first, *(head for _, columns in blocks for head in columns))))
-        named = len({id(part) for part, _ in blocks})
+        blocks = [(part, [_columns(part.columns, look)]) for part in parts if part.columns]
+    elif any(tables for _, tables in places):
+        blocks = [(part, [_of_places(one, look) for one in tables]) for part, tables in places if tables]
     else:
-        heads, named = ["key_value", "unit", "value", "at_deg"], len(parts)
-        for part in parts:
-            rows = []
-            for one in part.key_values:
-                at = csv_cell(one.at_deg, look, True)
-                values = one.value if isinstance(one.value, tuple) else (one.value,)
-                rows += [(one.id, one.unit, csv_cell(value, look), at) for value in values]
-            blocks.append((part, dict(zip(heads, zip(*rows)))))
-    name = [_FIRST.get(report.group, "cylinder")] if named > 1 or report.group in ("ratios", "scenes") else []
+        blocks = [(part, [_of_key_values(part, look)]) for part in parts]
+    named = len(blocks) + sum(bool(part.nowhere) for part in parts) > 1 or report.group in ("ratios", "scenes")
+    names = {head for part in parts for one in part.place_tables for head in ("table", *one.heads)}
+    every = dict.fromkeys(head for _, tables in blocks for cells in tables for head in cells)
+    heads = sorted(every, key=lambda head: head not in names)  # otherwise in order of their first occurrence
     line = csv_line(look)
-    yield line([*name, *heads])
-    for part, columns in blocks:
-        of = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
-        named_rows = [repeat(csv_cell(of, look, True)) for _ in name]
-        longest = zip(*named_rows, *(columns.get(head, repeat("")) for head in heads)) if columns else ()
-        yield from map(line, longest)
+    yield line([_FIRST.get(report.group, "cylinder"), *heads] if named else heads)
+    for part, tables in blocks:
+        name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
+        beside = [csv_cell(name, look, True)] if named else []
+        for cells in tables:
+            rows = zip(*(cells.get(head, repeat("")) for head in heads))
+            yield from (line((*beside, *row)) for row in rows)
 
 
-def _columns(columns: Iterable[Column], look: Look) -> dict[str, Iterable[object]]:
-    """Return the cells of columns by id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio.
-
-    Crank angles have all digits, whole ones no decimal point.
-    """
-    found: dict[str, Iterable[object]] = {}
+def _columns(columns: Iterable[Column], look: Look) -> Cells:
+    """Return the cells of columns by id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
+    found: Cells = {}
     for one in columns:
         unit = one.unit.replace(" abs", "_abs").replace(" ", "")
-        angle = one.id == "phi"
-        values = map(whole_if_integral, one.values) if angle else one.values
-        found[f"{one.id}_{unit}" if unit else one.id] = map(partial(csv_cell, look=look, in_full=angle), values)
+        found[f"{one.id}_{unit}" if unit else one.id] = _cells(one, look)
     return found
+
+
+def _cells(column: Column, look: Look) -> Iterator[object]:
+    """Yield the values of a column; crank angles have all digits, whole ones no decimal point."""
+    for value in column.values:
+        yield csv_cell(whole_if_integral(value), look, True) if column.id == "phi" else csv_cell(value, look)
+
+
+def _of_places(table: PlaceTable, look: Look) -> Cells:
+    names = ([csv_cell(name, look) for name in column] for column in zip(*table.names))
+    return {
+        "table": repeat(table.id, len(table.names)),
+        **dict(zip(table.heads, names)),
+        **_columns(table.columns, look),
+    }
+
+
+def _of_key_values(part: Part, look: Look) -> Cells:
+    """Return the cells of key values: a row for each, and for each value of a list."""
+    rows = []
+    for one in part.key_values:
+        at = csv_cell(one.at_deg, look, True)
+        values = one.value if isinstance(one.value, tuple) else (one.value,)
+        rows += [(one.id, one.unit, csv_cell(value, look), at) for value in values]
+    return {head: [row[k] for row in rows] for k, head in enumerate(("key_value", "unit", "value", "at_deg"))}
 
 
 # JSON
@@ -129,17 +133,12 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
         content |= {"machine": report.machine, **_made_from(report.provenance)}
     if report.head:
         content["head"] = list(report.head)
-    if report.group == "ratios":
-        content["ratios"] = []
-        for part in report.parts:
-            ratio = whole_if_integral(float(part.name))
-            results = {key: value for key, value in _results(part, look).items() if value}
-            content["ratios"].append({"rod_ratio": "inf" if ratio == float("inf") else ratio, **results})
-    elif report.parts:
-        content[report.group] = [{"name": part.name, **_results(part, look)} for part in report.parts]
+    ratios = report.group == "ratios"
+    if ratios or report.parts:
+        content[report.group] = [_named(part, ratios, look) for part in report.parts]
     if report.whole is not None:
         whole = _results(report.whole, look).items()
-        content |= {f"machine_{key}": value for key, value in whole if value or report.group != "ratios"}
+        content |= {f"machine_{key}": value for key, value in whole if value or not ratios}
     if report.notes:
         content["notes"] = list(report.notes)
     return chain(_pieces(content, "\n", look), "\n")
@@ -153,46 +152,6 @@ def findings_json(
     return chain(_pieces({**head, **_made_from(made_from), "findings": findings}, "\n", look), "\n")
 
 
-def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], look: Look) -> Iterator[str]:
-    """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
-
-    An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
-    the case of a limit has no values, so that a CI service compares runs by it, that of an error of the file is the
-    sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
-    """
-
-    def quoted(text: str) -> str:
-        return escape(look.data(text))
-
-    failures = sum(one["severity"] == "error" for _, found in checks for one in found)
-    total = sum(max(len(found), 1) for _, found in checks)
-    yield f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="kurbel" tests="{total}" failures="{failures}">\n'
-    for file, found in checks:
-        name, broken = quoted(file), sum(one["severity"] == "error" for one in found)
-        yield f'<testsuite name="{name}" tests="{max(len(found), 1)}" failures="{broken}" errors="0" skipped="0">\n'
-        if not found:  # a file of results without a test counts as a fault
-            yield f'<testcase classname="{name}" name="valid machine"/>\n'
-        names = Counter[str]()
-        for one in found:
-            message, key = one["message"], one["key"] or ""
-            if key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2]):
-                own = message.partition(": ")[0]
-            else:
-                plain = one["severity"] != "error" or message.startswith(key)
-                own = message = message if plain else f"{key}: {message}"
-            names[own] += 1
-            own += f" ({names[own]})" if names[own] > 1 else ""
-            yield f'<testcase classname="{name}" name="{quoted(own)}">'
-            if one["severity"] == "error":
-                place = ":".join(str(part) for part in (file, one["line"], one["column"]) if part)
-                yield f'<failure message="{quoted(message)}" type="error">{quoted(f"{place}: {message}")}</failure>'
-            else:
-                yield f"<system-out>{quoted(message)}</system-out>"
-            yield "</testcase>\n"
-        yield "</testsuite>\n"
-    yield "</testsuites>\n"
-
-
 def _made_from(given: Provenance | None) -> dict[str, object]:
     if given is None:
         return {}
@@ -200,33 +159,39 @@ def _made_from(given: Provenance | None) -> dict[str, object]:
     return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
-def _results(part: Part, look: Look) -> dict[str, object]:
+def _named(part: Part, ratio: bool, look: Look) -> dict[str, object]:
+    """Return a part with its name, or with its L/R, where empty results are left out."""
+    results = _results(part, look)
+    if not ratio:
+        return {"name": part.name, **results}
+    name = "inf" if part.name == float("inf") else whole_if_integral(float(part.name))
+    return {"rod_ratio": name, **{key: value for key, value in results.items() if value}}
+
+
+def _results(part: Part, look: Look) -> dict[str, Any]:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
-    tables, key_values, pistons = [], [], list[dict[str, object]]()
+
+    def number(value: Value) -> Value:
+        return rounded(value, look.digits)
+
+    def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
+        return {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **more}
+
+    found: dict[str, Any] = {"columns": list(part.columns), "place_tables": [], "key_values": [], "pistons": []}
     for table in part.place_tables:
-        if table.id == "pistons":
-            for name, *values in zip((names[0] for names in table.names), *(one.values for one in table.columns)):
-                figures = ((one, rounded(value, look.digits)) for one, value in zip(table.columns, values))
-                own = [{"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value} for one, value in figures]
-                pistons.append({"name": name, "key_values": own})
-            continue
-        rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
-        tables.append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
+        if table.id == _PISTONS:
+            for names, *values in zip(table.names, *(one.values for one in table.columns)):
+                own = [key_value(one, number(value)) for one, value in zip(table.columns, values)]
+                found["pistons"].append({"name": names[0], "key_values": own})
+        else:
+            rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
+            found["place_tables"].append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
     for one in part.key_values:
-        values = [
-            rounded(value, look.digits) for value in (one.value if isinstance(one.value, tuple) else (one.value,))
-        ]
-        value = values if isinstance(one.value, tuple) else values[0]
-        at = {} if one.at_deg is None else {"at_deg": rounded(one.at_deg, look.digits)}
-        key_values.append({"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **at})
-    return {
-        "columns": list(part.columns),
-        **({"place_tables": tables} if tables else {}),
-        "key_values": key_values,
-        **({"pistons": pistons} if pistons else {}),
-        "left_out": [{"what": one.what, "why": one.why} for one in part.left_out],
-        "warnings": list(part.warnings),
-    }
+        at = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
+        value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
+        found["key_values"].append(key_value(one, value, **at))
+    found |= {"left_out": [one._asdict() for one in part.left_out], "warnings": list(part.warnings)}
+    return {key: value for key, value in found.items() if value or key not in ("place_tables", "pistons")}
 
 
 def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
@@ -234,12 +199,10 @@ def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
     if isinstance(node, Column):
         phi = node.id == "phi"  # crank angles have all digits
         values = [whole_if_integral(one) if phi else rounded(one, look.digits) for one in node.values]
-        node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values} | (
-            {"marked": list(node.marked)} if node.marked else {}
-        )
+        marked = {"marked": node.marked} if node.marked else {}
+        node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values, **marked}
     elif _holds_object(node):
-        deeper = line_end + " "
-        is_object = isinstance(node, dict)
+        deeper, is_object = line_end + " ", isinstance(node, dict)
         for index, (key, child) in enumerate(node.items() if is_object else (("", one) for one in node)):
             yield ("," if index else "{" if is_object else "[") + deeper
             yield f"{json.dumps(key)}: " if is_object else ""
@@ -259,3 +222,39 @@ def answer_schema() -> Any:
     """Return the JSON Schema (draft-07) of the answers of all commands but the lines of `kurbel sweep`."""
     with open(os.path.join(os.path.dirname(__file__), "answers.schema.json"), encoding="utf-8") as file:
         return json.load(file)
+
+
+# JUnit
+
+
+def findings_junit(checks: Sequence[tuple[str, Sequence[Mapping[str, Any]]]], look: Look) -> Iterator[str]:
+    """Yield checks as JUnit XML: a suite for every file, given with its findings, and a case for every finding.
+
+    An error is a failure with its sentence; warnings and what is left out pass and have theirs as output. The name of
+    the case of a limit has no values, so that a CI service compares runs by it, that of an error of the file is the
+    sentence after its key, and none occurs twice. Elements and attributes are those of the schema of Jenkins.
+    """
+    root = ElementTree.Element("testsuites", name="kurbel")
+    for file, found in checks:
+        file, names = look.data(file), Counter[str]()
+        broken = sum(one["severity"] == "error" for one in found)
+        counts = {"tests": str(max(len(found), 1)), "failures": str(broken), "errors": "0", "skipped": "0"}
+        suite = ElementTree.SubElement(root, "testsuite", {"name": file, **counts})
+        if not found:  # a file of results without a test counts as a fault
+            ElementTree.SubElement(suite, "testcase", classname=file, name="valid machine")
+        for one in found:
+            error, key, message = one["severity"] == "error", one["key"] or "", look.data(one["message"])
+            of_limit = key.startswith(("limits.", "expect.")) and message.startswith(key.partition(".")[2])
+            if error and not of_limit and not message.startswith(key):
+                message = f"{key}: {message}"
+            name = message.partition(": ")[0] if of_limit else message
+            names[name] += 1
+            name += f" ({names[name]})" if names[name] > 1 else ""
+            case = ElementTree.SubElement(suite, "testcase", classname=file, name=name)
+            if error:
+                place = ":".join(str(part) for part in (file, one["line"], one["column"]) if part)
+                ElementTree.SubElement(case, "failure", message=message, type="error").text = f"{place}: {message}"
+            else:
+                ElementTree.SubElement(case, "system-out").text = message
+    ElementTree.indent(root, "")
+    yield f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, "unicode")}\n'

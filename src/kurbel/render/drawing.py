@@ -1,20 +1,24 @@
 """Output of pictures: to the terminal, or to a file whose suffix decides the format."""
 
 import importlib.util
+import json
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Literal
+
+import numpy as np
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.output import opened, stdout_look, write_coloured, write_out
-from kurbel.render.svg import svg_file
-from kurbel.render.text import BLANK, plain
-from kurbel.report.picture import Picture
+from kurbel.render.output import opened, stdout_look, write_lines
+from kurbel.render.svg import poster_svg, svg_file
+from kurbel.render.text import BLANK, DIGITS, subscripts
+from kurbel.report.picture import Fact, Facts, Picture
 
-_SHEET = b"""#set document(date: none)
+_PAGE = """#set document(date: none)
 #set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg")"""
 _DOTS_PER_INCH = 192.0
@@ -37,11 +41,13 @@ def check_file(file_name: str, option: str = "--output", poster: bool = False) -
 
 
 def draw(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None:
-    """Draw pictures to a file, or to standard output where none is named."""
-    if file_name is None:
-        draw_stdout(pictures, look)
-    else:
+    """Draw pictures to a file, or as characters to standard output where none is named."""
+    if file_name is not None:
         draw_file(list(pictures), look, file_name)
+        return
+    look = stdout_look(look)
+    lines = (line for picture in pictures for line in (BLANK, *braille(picture, look)))
+    write_lines(islice(lines, 1, None), look)
 
 
 def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
@@ -49,17 +55,92 @@ def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
     kind, look = check_file(file_name), replace(look, encoding="utf-8")
     drawn = svg_file(pictures, look, paper=kind != "svg").encode()
     if kind != "svg":
-        import typst
-
-        kind_of_page: Literal["png", "pdf"] = "png" if kind == "png" else "pdf"
-        drawn = typst.compile(_SHEET, format=kind_of_page, ppi=_DOTS_PER_INCH, sys_inputs={"svg": drawn.decode()})
+        drawn = typeset(_PAGE, file_name, svg=drawn.decode())
     with opened(file_name) as file:
         file.write(drawn)
 
 
-def draw_stdout(pictures: Iterable[Picture], look: Look) -> None:
-    """Draw pictures as characters to standard output, in colour on a terminal unless colours are not wanted."""
-    look = stdout_look(look)
-    lines = [line for picture in pictures for line in (BLANK, *braille(picture, look))][1:]
-    if not write_coloured(lines, look):
-        write_out(plain(lines), None)
+def typeset(document: str, file_name: str, **inputs: str) -> bytes:
+    """Return a document of typst as svg, png or pdf, as the name of a file ends; inputs: texts that it reads."""
+    import typst
+
+    formats: dict[str, Literal["svg", "png", "pdf"]] = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+    kind = formats[os.path.splitext(file_name)[1].lower()]
+    return typst.compile(document.encode(), format=kind, ppi=_DOTS_PER_INCH, sys_inputs=inputs)
+
+
+# a machine in section as a sheet to hang: its picture, its name, one line of sizes, and a few key values
+
+SIZES = ("A0", "A1", "A2", "A3", "A4", "A5")
+_MOST_FACTS = 6
+_SHEET = """
+#let of = json(bytes(sys.inputs.words))
+#set document(title: of.title, date: none)
+#set page(paper: lower(of.size), flipped: of.wide, margin: 0pt)
+#set text(font: ("Libertinus Serif", "DejaVu Serif"), fill: rgb("#1f2a33"))
+#layout(sheet => {
+  let u = calc.min(sheet.width, sheet.height) / 100
+  set par(leading: 0.5em)
+  pad(x: 7 * u, y: 7 * u, grid(
+    rows: (auto, 1fr, auto), row-gutter: 3 * u, columns: 100%,
+    align(center, [
+      #text(size: of.large * u, of.title)
+      #v(-1.2 * u)
+      #text(size: 1.75 * u, fill: rgb("#66727c"), of.line)
+    ]),
+    align(center + horizon, image(bytes(sys.inputs.svg), format: "svg", width: 100%, height: 100%, fit: "contain")),
+    if of.facts.len() > 0 {
+      line(length: 100%, stroke: 0.08 * u + rgb("#9aa5ae"))
+      v(0.6 * u)
+      let faint(of) = text(size: 1.4 * u, fill: rgb("#66727c"), of)
+      grid(
+        columns: (1fr,) * of.facts.len(), column-gutter: 2 * u, row-gutter: 1.1 * u,
+        ..of.facts.map(one => grid.cell(align: center + bottom, faint(one.title))),
+        ..of.facts.map(one => align(center)[#text(size: 2.9 * u, one.value) #text(size: 1.6 * u, one.unit)]),
+        ..of.facts.map(one => align(center, faint[
+          #emph(one.symbol.at(0))#sub(one.symbol.at(1, default: ""))#one.where
+        ])),
+      )
+    },
+  ))
+})
+"""
+
+
+def check_poster(size: str, file_name: str | None) -> str:
+    """Return the size of a sheet as it is named; raises UsageError where none can be drawn to this file."""
+    named = next((one for one in SIZES if one.lower() == size.lower()), None)
+    if named is None:
+        raise UsageError(f"--poster {size}: there are {', '.join(SIZES)}")
+    if file_name is None or not file_name.lower().endswith((".pdf", ".svg")):
+        raise UsageError(f"--poster {named}: a poster is a file; give --output NAME.pdf or NAME.svg")
+    check_file(file_name, poster=True)
+    return named
+
+
+def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str) -> None:
+    """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
+    look, panel = replace(look, encoding="utf-8"), picture.panels[0]
+    x, y = (axis._replace(low=None, high=None) for axis in (panel.x, panel.y))  # no room for forces, which are left out
+    panel = panel._replace(x=x, y=y, curves=(), title="")
+    across, up = (np.concatenate(one) for one in panel.places)
+    wide = bool(np.ptp(across) > 0.95 * np.ptp(up))
+    title = look.text(picture.machine)
+    words = {
+        "title": title,
+        "line": line,
+        "size": size,
+        "wide": wide,
+        "large": min(5.2, 150.0 * (1.4 if wide else 1.0) / max(len(title), 1)),
+        "facts": [_fact(one, look) for one in facts.facts[:_MOST_FACTS]],
+    }
+    drawn = typeset(_SHEET, file_name, words=json.dumps(words), svg=poster_svg(panel, look, wide))
+    with opened(file_name) as file:
+        file.write(drawn)
+
+
+def _fact(one: Fact, look: Look) -> dict[str, object]:
+    value, unit = look.measured(one.value, one.unit, DIGITS)
+    symbol = subscripts(look.text(one.symbol))
+    where = f" {look.text(one.where)}"
+    return {"title": look.text(one.title), "value": look.fine(value), "unit": unit, "symbol": symbol, "where": where}

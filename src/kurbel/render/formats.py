@@ -1,18 +1,17 @@
 """The text of a report in each format, and its output."""
 
 import sys
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 from shutil import get_terminal_size
 
 from kurbel.render import Look
 from kurbel.render.data import csv_text, json_text
-from kurbel.render.html import html
-from kurbel.render.markup import Latex, Markdown, document
-from kurbel.render.output import stdout_look, write_coloured, write_out
+from kurbel.render.markup import Latex, Markdown, document, html
+from kurbel.render.output import stdout_look, write_lines, write_out
 from kurbel.render.page import page
-from kurbel.render.text import plain
+from kurbel.render.text import Line, plain
 from kurbel.report.alike import first_selection
 from kurbel.report.tables import Report
 
@@ -34,33 +33,31 @@ def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable
     return "".join(_WRITERS[look.format](report, look))
 
 
-def _fitting(report: Report, look: Look, first: Collection[str]) -> Report:
-    """Return the report, or a first selection of it if a terminal has fewer lines."""
-    most = get_terminal_size().lines
-    if not sys.stdout.isatty() or len([*islice(page(report, look), most)]) < most:
-        return report
-    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return first_selection(report, first, across, rows=most // 6)
-
-
 def write_report(
     report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
 ) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in its encoding.
+    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
 
     first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
 
     On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
-    only to a given width. Raises UsageError if it cannot be written.
+    only to a given width.
     """
-    if file_name not in (None, "-"):
+    named = file_name not in (None, "-")
+    look = look if named else stdout_look(look)
+    if named or look.format in ("html", "latex"):  # always read as UTF-8
         look = replace(look, encoding="utf-8")
+    if named or look.format != "table":
+        write_out(_WRITERS[look.format](report, look), file_name, look.encoding)
     else:
-        look = stdout_look(look)
-        if look.format in ("html", "latex"):  # always read as UTF-8
-            look = replace(look, encoding="utf-8")
-        if look.format == "table":
-            report = report if first is None else _fitting(report, look, first)
-            if write_coloured(page(report, look), look):
-                return
-    write_out(_WRITERS[look.format](report, look), file_name, look.encoding)
+        write_lines(page(report, look) if first is None else _fitting(report, look, first), look)
+
+
+def _fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+    lines, most = page(report, look), get_terminal_size().lines
+    begin = list(islice(lines, most)) if sys.stdout.isatty() else []
+    if len(begin) < most:
+        return chain(begin, lines)
+    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
+    return page(first_selection(report, first, across, rows=most // 6), look)

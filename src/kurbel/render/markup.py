@@ -1,7 +1,7 @@
 r"""The second pass for markup: `document` writes a report with a writer for Markdown, HTML or LaTeX.
 
-A writer has no knowledge of reports. Its methods `text`, `name`, `sentence`, `symbol` and `number` take plain text and
-escape it; all others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
+A writer has no knowledge of reports. Its methods `text`, `sentence` and `symbol` take plain text and escape it; all
+others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
 """
 
 import re
@@ -9,17 +9,15 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 
 from kurbel.render import Look
-from kurbel.render.numbers import in_thousands
+from kurbel.render.style import page_css
 from kurbel.render.text import measures, subscripts
 from kurbel.render.text_tables import (
     MARK,
-    TextColumn,
     TextTable,
     headed,
     key_value_table,
     part_name,
     place_table,
-    sentence_text,
     sheets,
 )
 from kurbel.report.alike import shown_once
@@ -44,7 +42,7 @@ class Markdown:
         """Return a text in which everything is escaped that Markdown would take for markup."""
         return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
 
-    name = sentence = symbol = number = text
+    sentence = symbol = text
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return title, heads, and the line that sets the alignment of the columns."""
@@ -70,39 +68,17 @@ class Html:
         """Return a text in which everything is escaped that HTML would take for markup."""
         return escape(plain)
 
-    def symbol(self, plain: str) -> str:
-        """Return a text in which what follows the underscore of a symbol is a subscript.
-
-        >>> print(Html().symbol("φ_P=0"), Html().symbol("A_1, A_2"))
-        φ<sub>P=0</sub> A<sub>1</sub>, A<sub>2</sub>
-        """
-        return self._with_subscripts(escape(plain))
-
-    def name(self, plain: str) -> str:
-        """Return a name or a value, with no line break between a number and its unit."""
-        text = self._signed(re.sub(r"(?<=\d) deg\b", "&deg;", escape(plain)))
-        return in_thousands(measures().sub(r'<span class="n">\g<0></span>', text), "&#8239;")
-
     def sentence(self, plain: str) -> str:
-        """Return a sentence, with no line break between a number and its unit, and with subscripts."""
-        return self._with_subscripts(self.name(plain))
+        """Return a text with no line break between a number and its unit, and with subscripts.
 
-    def _with_subscripts(self, escaped: str) -> str:
-        parts = subscripts(escaped)
+        >>> print(Html().sentence("φ_P=0"), Html().sentence("T_max 5.1 kN"))
+        φ<sub>P=0</sub> T<sub>max</sub> <span class="n">5.1 kN</span>
+        """
+        parts = subscripts(measures().sub(r'<span class="n">\g<0></span>', escape(plain)))
         parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
         return "".join(parts)
 
-    def number(self, plain: str) -> str:
-        """Return a number with thin spaces and a minus sign instead of a hyphen, in any encoding.
-
-        >>> print(Html().number("-18066.25, -1.5"))
-        &minus;18&#8239;066.25, &minus;1.5
-        """
-        return self._signed(in_thousands(escape(plain), "&#8239;"))
-
-    def _signed(self, escaped: str) -> str:
-        """Return a text with minus signs in place of the hyphens before its numbers."""
-        return re.sub(r"(?<![\w.-])-(?=\d)", "&minus;", escaped)
+    symbol = sentence
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table, which can be scrolled in a narrow window."""
@@ -110,7 +86,7 @@ class Html:
             f'<th scope="col"{_right(not one.words)}>{symbol}{f"<br><small>{unit}</small>" if unit else ""}</th>'
             for one, (symbol, unit) in zip(table.columns, heads)
         )
-        titled = f"<caption>{in_thousands(caption, '&#8239;')}</caption>" if caption else ""
+        titled = f"<caption>{caption}</caption>" if caption else ""
         return (
             f'<div class="wide" tabindex="0" role="region" aria-label="{caption or "values over the crank angle"}">'
             f"<table>{titled}\n"
@@ -135,21 +111,22 @@ def _right(number: bool) -> str:
     return ' class="r"' if number else ""
 
 
+_NAMES = (
+    "varphi psi theta omega delta lambda mu eta pi varrho alpha beta kappa sigma tau varepsilon gamma nu zeta xi chi "
+    "Phi Psi Omega Theta Sigma Delta"
+)
 _MATH = {
-    "φ": "varphi", "ψ": "psi", "θ": "theta", "ω": "omega", "δ": "delta", "λ": "lambda", "μ": "mu", "η": "eta",
-    "π": "pi", "ρ": "varrho", "α": "alpha", "β": "beta", "κ": "kappa", "σ": "sigma", "τ": "tau", "Δ": "Delta",
-    "ε": "varepsilon", "γ": "gamma", "ν": "nu",
-    "ζ": "zeta", "ξ": "xi", "χ": "chi", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega", "Θ": "Theta", "∠": "angle",
-    "Σ": "Sigma", "∮": "oint", "√": "surd", "∞": "infty", "·": "cdot", "×": "times", "≤": "le", "≥": "ge",
-    "≈": "approx", "≠": "ne", "→": "to", "±": "pm", "−": "-", "²": "^2", "³": "^3", "°": "^\\circ", "′": "prime",
-    "½": "frac12", "¼": "frac14", "⅔": "frac23", "₀": "_0", "…": "dots",
+    **dict(zip("φψθωδλμηπραβκστεγνζξχΦΨΩΘΣΔ", _NAMES.split())),
+    "∠": "angle", "∮": "oint", "√": "surd", "∞": "infty", "·": "cdot", "×": "times", "≤": "le", "≥": "ge",
+    "≈": "approx", "≠": "ne", "→": "to", "±": "pm", "−": "-", "°": "^\\circ", "′": "prime", "½": "frac12",
+    "¼": "frac14", "⅔": "frac23", "₀": "_0", "…": "dots", "²": "^2", "³": "^3",
     **{power: f"^{{{plain}}}" for power, plain in zip("⁻⁰¹⁴⁵⁶⁷⁸⁹", "-01456789")},
 }  # fmt: skip
 """Character -> its command in a formula, without the backslash; what begins with -, ^ or _ is no command."""
 _SPECIAL = {
-    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
-    "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
-    "|": r"\textbar{}", '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}",
+    **{one: f"\\{one}" for one in "{}$&#%_"}, "\\": r"\textbackslash{}", "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}",
+    '"': r"\textquotedblright{}", "„": r"\quotedblbase{}", "[": "{[}", "*": "{*}", "\N{NARROW NO-BREAK SPACE}": r"\,",
 }  # fmt: skip
 """Character -> how LaTeX writes it; a bracket or a star right after the end of a row would be its argument."""
 _DOTS = {"\u0307": "dot", "\u0308": "ddot"}
@@ -170,25 +147,15 @@ class Latex:
     def text(self, plain: str) -> str:
         r"""Return a text in which everything is escaped that LaTeX would take for a command.
 
-        >>> print(Latex().text("50 % of φ_1 ≤ 90°"), Latex().text("-3"))
+        >>> print(Latex().text("50 % of φ_1 ≤ 90°"), Latex().text("−3"))
         50 \% of $\varphi$\_1 $\le$ 90$^\circ$ $-$3
         """
-        if re.match("-[0-9]", plain):  # a number has a minus sign, not a hyphen
-            plain = "−" + plain[1:]
         return "".join(
             _SPECIAL.get(one) or (f"${_formula(one)}$" if one[1:] or one in _MATH else one)
             for one in _LETTER.findall(plain)
         )
 
-    name = sentence = text
-
-    def number(self, plain: str) -> str:
-        r"""Return a number with thin spaces.
-
-        >>> print(Latex().number("-18066.25"))
-        $-$18\,066.25
-        """
-        return self.text(in_thousands(plain, "\N{THIN SPACE}")).replace("\N{THIN SPACE}", "\\,")
+    sentence = text
 
     def symbol(self, plain: str) -> str:
         r"""Return a symbol, with what follows its underscore as a subscript.
@@ -235,17 +202,18 @@ def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
     """Yield the text of the report piece by piece; identical cylinders appear once."""
     report = shown_once(report)
     yield out.title.format(out.text(look.text(report.title)))
-    yield from (out.paragraph.format(out.sentence(look.text(text))) for text in report.head)
-    for table in (*over_angle(report, look, out.across), *of_places(report, look, out.across)):
-        yield from written(table, out)
+    yield from (out.paragraph.format(out.sentence(look.sentence(text))) for text in report.head)
+    yield from written(over_angle(report, look, out), out)
+    yield from written(of_places(report, look, out), out)
     notes = [note for note in (report.mirrored, *report.notes) if note]
-    yield from (out.paragraph.format(out.sentence(sentence_text(note, look))) for note in notes)
+    yield from (out.paragraph.format(out.sentence(look.sentence(note))) for note in notes)
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
         for heading, key_values in headed(part.key_values).items():
             caption = f"Key values{of}{f', {heading.lower()}' if heading else ''}"
-            yield from written(key_value_table(caption, key_values, look), out) if key_values else ()
+            if key_values:
+                yield from written([key_value_table(caption, key_values, look)], out)
         left_out = [f"{one.what}: {one.why}" for one in part.left_out]
         yield from listed(f"Left out{of}", left_out, look, out)
         yield from listed(f"Warnings{of}", part.warnings, look, out)
@@ -255,42 +223,61 @@ def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> I
     """Yield a list of sentences under a title, or nothing if there are none."""
     if sentences:
         yield out.list_head.format(out.text(title))
-        yield from (out.item.format(out.sentence(sentence_text(one, look))) for one in sentences)
+        yield from (out.item.format(out.sentence(look.sentence(one))) for one in sentences)
         yield out.list_end
 
 
-def over_angle(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables over the crank angle, split into parts of at most `across` columns."""
-    found = [(name, heads, columns, True) for heads, bands in sheets(report, look) for name, columns in bands]
-    return _parts_of(found, across)
+def over_angle(report: Report, look: Look, out: Writer) -> Iterator[TextTable]:
+    """Yield the tables over the crank angle, in parts that are not too wide."""
+    for heads, bands in sheets(report, look):
+        for name, columns in bands:
+            yield from _parts_of(TextTable(name, [*heads, *columns], len(heads)), out)
 
 
-def of_places(report: Report, look: Look, across: int | None) -> Iterator[TextTable]:
-    """Yield the tables of places, split into parts of at most `across` columns."""
-    tables = [place_table(one, look) for one in report.printed_tables]
-    found = [(one.caption, [*one.columns[: one.heads]], [*one.columns[one.heads :]], False) for one in tables]
-    return _parts_of(found, across)
+def of_places(report: Report, look: Look, out: Writer) -> Iterator[TextTable]:
+    """Yield the tables of places, in parts that are not too wide."""
+    for one in report.printed_tables:
+        yield from _parts_of(place_table(one, look), out)
 
 
-def _parts_of(
-    found: Iterable[tuple[str, Sequence[TextColumn], Sequence[TextColumn], bool]], across: int | None
-) -> Iterator[TextTable]:
-    for caption, names, columns, named in found:
-        most = across or max(len(columns), 1)
-        for start in range(0, max(len(columns), 1), most):
-            yield TextTable(caption, [*names, *columns[start : start + most]], len(names) if named else 0)
+def _parts_of(table: TextTable, out: Writer) -> Iterator[TextTable]:
+    """Yield the parts of a table, each with the columns that name the rows."""
+    names, columns = table.columns[: table.heads], table.columns[table.heads :]
+    most = out.across or max(len(columns), 1)
+    for start in range(0, max(len(columns), 1), most):
+        yield table._replace(columns=[*names, *columns[start : start + most]])
 
 
-def written(table: TextTable, out: Writer) -> Iterator[str]:
-    """Yield a table row by row."""
-    heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
-    yield out.table_head(table, out.text(table.caption), heads)
-    escapes = {"number": out.number, "name": out.name, "symbol": out.symbol, "sentence": out.sentence}
-    of_columns = [escapes[one.kind] for one in table.columns]
-    for number, row in enumerate(zip(*(one.cells() for one in table.columns))):
-        cells = [
-            out.strong.format(out.number(text[:-1])) if text.endswith(MARK) else escaped(text)
-            for escaped, text in zip(of_columns, map(str.strip, row))
-        ]
-        yield out.row(table, number, cells)
-    yield out.table_end
+def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
+    """Yield tables row by row."""
+    escapes = {"number": out.text, "name": out.sentence, "symbol": out.symbol, "sentence": out.sentence}
+    for table in tables:
+        heads = [((out.text if one.words else out.symbol)(one.symbol), out.text(one.unit)) for one in table.columns]
+        yield out.table_head(table, out.text(table.caption), heads)
+        of_columns = [escapes[one.kind] for one in table.columns]
+        for number, row in enumerate(zip(*(one.cells for one in table.columns))):
+            cells = [
+                out.strong.format(out.text(text[:-1])) if text.endswith(MARK) else escaped(text)
+                for escaped, text in zip(of_columns, map(str.strip, row))
+            ]
+            yield out.row(table, number, cells)
+        yield out.table_end
+
+
+def html(report: Report, look: Look) -> Iterator[str]:
+    """Yield the report as a page of its own."""
+    yield from page(look.text(report.title), document(report, look, Html()), page_css())
+
+
+def page(title: str, main: Iterable[str], style: str) -> Iterator[str]:
+    """Yield a self-contained page: no script, nothing from elsewhere, which the browser enforces."""
+    yield (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+        'img-src data:">\n'
+        f'<meta name="color-scheme" content="light dark">\n<title>{escape(title)}</title>\n'
+        f"<style>\n{style}</style>\n</head>\n<body>\n<main>\n"
+    )
+    yield from main
+    yield "</main>\n</body>\n</html>\n"

@@ -9,15 +9,13 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from io import TextIOWrapper
-from itertools import islice
 from shutil import copyfile, get_terminal_size
 from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Line
+from kurbel.render.text import Line, plain
 
-_MOST_COLOURED_LINES = 400
 STYLES = {
     "title": "bold",
     "head": "bold cyan",
@@ -53,13 +51,11 @@ def _stdout() -> TextIO:
     return sys.stdout
 
 
-def write_coloured(page: Iterable[Line], look: Look) -> bool:
-    """Write lines in colour and return True; return False without a terminal, or if colours are not wanted."""
+def write_lines(lines: Iterable[Line], look: Look) -> None:
+    """Write lines to standard output, in colour on a terminal unless colours are not wanted."""
     if not _stdout().isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
-        return False
-    lines = list(islice(page, _MOST_COLOURED_LINES + 1))
-    if len(lines) > _MOST_COLOURED_LINES:
-        return False
+        write_out(plain(lines), None, look.encoding)
+        return
     from rich.console import Console  # takes longer to load than most tables to print
     from rich.text import Text
 
@@ -67,7 +63,6 @@ def write_coloured(page: Iterable[Line], look: Look) -> bool:
     console = Console(width=look.width, height=25, highlight=False, markup=False, emoji=False, soft_wrap=True)
     for one in lines:  # as Text objects: a string would lose its brackets as markup
         console.print(Text.assemble(*((piece.text, STYLES[piece.role]) for piece in one)))
-    return True
 
 
 def silence(stream: TextIO) -> None:
@@ -152,9 +147,6 @@ def whole_file(file_name: str) -> str:
 
     Raises OSError where it may not be written.
     """
-    if not os.path.basename(file_name):
-        missing = errno.EISDIR if file_name else errno.ENOENT
-        raise OSError(missing, os.strerror(missing))
     with suppress(FileNotFoundError):
         old = os.stat(file_name)
         if not stat.S_ISREG(old.st_mode) or any(_is_same(old, descriptor) for descriptor in (1, 2)):

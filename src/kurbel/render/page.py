@@ -2,26 +2,17 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import islice
 
 from kurbel.render import Look
 from kurbel.render.output import stdout_look, write_out
-from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, plain, width
-from kurbel.render.text_tables import (
-    MARK,
-    TextColumn,
-    headed,
-    key_value_table,
-    part_name,
-    place_table,
-    sentence_text,
-    sheets,
-)
+from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, plain, width
+from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
 from kurbel.report.alike import shown_once
 from kurbel.report.tables import KeyValue, Report
 
 _NINE = 9  # angles to a block: the book breaks after 80°
-_GAP = 2
-_ROW_GAP = 3
+_GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 _NARROWEST = 24  # below this a sentence is folded under its head instead of next to it
 
@@ -29,29 +20,29 @@ _NARROWEST = 24  # below this a sentence is folded under its head instead of nex
 def page(report: Report, look: Look) -> Iterator[Line]:
     """Yield the lines of the whole page."""
     report = shown_once(report)
-    yield from (line(one, "title") for one in folded(look.text(report.title), look.width))
-    yield from (line(one) for text in report.head for one in folded(look.text(text), look.width))
+    yield from paragraph(look.text(report.title), look.width, "title")
+    for text in report.head:
+        yield from paragraph(look.text(text), look.width)
 
     for heads, bands in sheets(report, look):
-        yield BLANK
         if look.layout == "book":
+            yield BLANK
             yield from _book(heads, bands, report.group == "ratios", look)
-            continue
-        for number, (name, columns) in enumerate(bands):
-            yield from [BLANK] * (number > 0) + [line(name, "name")] * bool(name)
-            yield from _blocks(heads, columns, look, _ROW_GAP, between=(BLANK,))
+        else:
+            for name, columns in bands:
+                yield from (BLANK, line(name, "name")) if name else (BLANK,)
+                yield from blocks(heads, columns, look, _ROW_GAP)
 
     for table in report.printed_tables:
-        yield BLANK
         shown = place_table(table, look)
-        yield from (line(one, "name") for one in folded(shown.caption, look.width))
+        yield from (BLANK, *paragraph(shown.caption, look.width, "name"))
         # without names the first column names the rows; a name that repeats the one above stays blank
         hidden = shown.heads and not table.headed
         side = [one._replace(symbol="") if hidden else one for one in shown.columns[: shown.heads or 1]]
         if len(side) > 1:
-            repeated = zip(side[0].values, ("", *side[0].values))
-            side[0] = side[0]._replace(values=["" if name == above else name for name, above in repeated])
-        yield from _blocks(side, shown.columns[len(side) :], look, _GAP)
+            repeated = zip(side[0].cells, ("", *side[0].cells))
+            side[0] = side[0]._replace(cells=["" if name == above else name for name, above in repeated])
+        yield from blocks(side, shown.columns[len(side) :], look)
 
     if notes := [note for note in (report.mirrored, *report.notes) if note]:
         yield from (BLANK, *(one for note in notes for one in sentence("", note, look)))
@@ -70,9 +61,7 @@ def page(report: Report, look: Look) -> Iterator[Line]:
 # a line for each row
 
 
-def _blocks(
-    side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int, between: Iterable[Line] = ()
-) -> Iterator[Line]:
+def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
     blocks = [list(side)]
     for one in columns:
@@ -81,24 +70,26 @@ def _blocks(
             blocks.append(list(side))
         blocks[-1].append(one)
     for number, block in enumerate(blocks):
-        yield from between if number else ()
-        widths = list(map(_wide, block))
-        lines = [([one.symbol for one in block], "head"), ([one.unit for one in block], "unit")]
-        for texts, role in lines if any(lines[1][0]) else lines[:1]:
-            yield _row(block, widths, gap, texts, role)
-        ruled = line(look.text("─") * (sum(widths) + gap * (len(widths) - 1)), "rule")
-        yield ruled
-        for cells in zip(*(one.cells() for one in block)):
-            yield _row(block, widths, gap, cells, "cell")
-        yield ruled
+        yield from (BLANK,) if number else ()
+        rule = line(look.text("─") * (sum(map(_wide, block)) + gap * (len(block) - 1)), "rule")
+        yield _row(block, gap, [one.symbol for one in block], "head")
+        if any(one.unit for one in block):
+            yield _row(block, gap, [one.unit for one in block], "unit")
+        yield rule
+        for cells in zip(*(one.cells for one in block)):
+            yield _row(block, gap, cells, "cell")
+        yield rule
 
 
-def _row(block: Sequence[TextColumn], widths: Sequence[int], gap: int, texts: Sequence[str], role: str) -> Line:
-    pieces = []
-    for number, (column, wide, text) in enumerate(zip(block, widths, texts)):
-        role_of = "name" if column.words else "mark" if text.endswith(MARK) else role
-        pieces.append(Piece(" " * gap * (number > 0) + padded(text, wide, not column.words), role_of))
-    return tuple(pieces)
+def _row(block: Sequence[TextColumn], gap: int, texts: Sequence[str], role: str) -> Line:
+    return tuple(
+        Piece(" " * gap * (number > 0) + padded(text, _wide(column), not column.words), _role(text, column, role))
+        for number, (column, text) in enumerate(zip(block, texts))
+    )
+
+
+def _role(text: str, column: TextColumn, role: str) -> str:
+    return "name" if column.words else "mark" if text.endswith(MARK) else role
 
 
 def _wide(column: TextColumn) -> int:
@@ -124,26 +115,26 @@ def _book(
         name = 0
     side = name + symbol + unit
 
-    def book_line(band: str, row: TextColumn, across: range, role: str = "symbol") -> Line:
+    def book_line(band: str, row: TextColumn, across: slice, role: str = "symbol") -> Line:
         label = padded(row.symbol, symbol - _GAP, role == "head") + " " * _GAP
         pieces = [Piece(padded(band, name), "name"), Piece(label, role), Piece(padded(row.unit, unit), "unit")]
         number = "head" if role == "head" else "cell"
-        cells = [
-            Piece(padded(text, cell, True), "mark" if text.endswith(MARK) else number) for text in row.cells(across)
-        ]
-        return (*(one for one in pieces if one.text), *cells)
+        return (
+            *pieces,
+            *(Piece(padded(text, cell, True), _role(text, row, number)) for text in row.cells[across]),
+        )
 
-    start, count = 0, len(heads[0].values)
+    start, count = 0, len(heads[0].cells)
     for size in book_sizes(count) if look.width is None else fitting_sizes(count, (look.width - side) // cell):
-        yield from [BLANK] * (start > 0)
-        across, ruled = range(start, start + size), line(look.text("─") * (side + size * cell), "rule")
+        yield from (BLANK,) if start else ()
+        across, rule = slice(start, start + size), line(look.text("─") * (side + size * cell), "rule")
         yield from (book_line("", head, across, "head") for head in heads)
         for band, columns in bands:
-            yield ruled
+            yield rule
             if band and not name:
                 yield line(band, "name")
             yield from (book_line("" if k or not name else band, row, across) for k, row in enumerate(columns))
-        yield ruled
+        yield rule
         start += size
 
 
@@ -165,36 +156,38 @@ def fitting_sizes(count: int, most: int) -> list[int]:
 def _key_value_lines(key_values: Collection[KeyValue], look: Look) -> Iterator[Line]:
     """Yield a line for each key value: symbol, value, unit, crank angle, meaning; those of one heading together."""
     groups = headed(key_values)
-    key_values = [one for group in groups.values() for one in group]
-    first_of = {group[0].id: heading for heading, group in groups.items() if heading}
-    table = key_value_table("", key_values, look)
-    symbols, shown, units, angles, meanings = (one.values for one in table.columns)
-    # decimal points below one another; whole numbers end there, too
-    wholes = ["" if row in table.lists else re.findall(r"^-?\d+|$", text)[0] for row, text in enumerate(shown)]
-    before = max(map(len, wholes))
-    pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, shown)]
-    numbers = [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]
-    wide = max((width(one) for one in numbers if width(one) <= _LONGEST), default=0)
+    table = key_value_table("", [one for group in groups.values() for one in group], look)
+    symbols, shown, units, angles, meanings = (one.cells for one in table.columns)
+    numbers = _below_one_another(shown, table.lists)
     angles = [f"at {one}" if one else "" for one in angles]
     symbol, unit, angle = (max(map(width, each)) for each in (symbols, units, angles))
-    if look.width is not None and 2 + symbol + 2 + wide + 2 + unit + 2 + angle > look.width:
+    wide = max((width(one) for one in numbers if width(one) <= _LONGEST), default=0)
+    before_meaning = 2 + symbol + 2 + wide + 2 + unit + 2
+    if look.width is not None and before_meaning + angle > look.width:
         angle = 0
 
-    for one, name, number, of, at, text in zip(key_values, symbols, numbers, units, angles, meanings):
-        if one.id in first_of:
-            yield from (BLANK, line(first_of[one.id], "unit"))
-        start = f"  {padded(name, symbol)}  "
-        head = f"{start}{padded(number, wide)}  {padded(of, unit)}  "
-        if angle:
-            head += f"{padded(at, angle)}  "
-        elif at:
-            text = f"{at}  {text}"
-        if width(number) > wide:  # a long list has lines of its own
-            room = None if look.width is None else max(look.width - width(start), _NARROWEST)
-            for k, row in enumerate(folded(f"{number}  {of}".rstrip(), room)):
-                yield line((" " * width(start) if k else start) + row, "cell")
-            head = " " * (4 + symbol + wide + 2 + unit + 2 + (angle + 2 if angle else 0))
-        yield from sentence(head, text, look)
+    lines = zip(symbols, numbers, units, angles, meanings)
+    for heading, group in groups.items():
+        yield from (BLANK, line(heading, "unit")) if heading else ()
+        for name, number, of, at, text in islice(lines, len(group)):
+            start = f"  {padded(name, symbol)}  "
+            head = f"{start}{padded(number, wide)}  {padded(of, unit)}  "
+            if width(number) > wide:  # a long list has lines of its own
+                yield from sentence(start, f"{number}  {of}".rstrip(), look)
+                head = " " * before_meaning
+            if angle:
+                head += f"{padded(at, angle)}  "
+            elif at:
+                text = f"{at}  {text}"
+            yield from sentence(head, text, look)
+
+
+def _below_one_another(texts: Sequence[str], lists: Collection[int]) -> list[str]:
+    """Return numbers with their decimal points below one another, where whole ones end, too; lists: rows of lists."""
+    wholes = ["" if row in lists else re.findall(r"^-?\d+|$", text)[0] for row, text in enumerate(texts)]
+    before = max(map(len, wholes))
+    pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, texts)]
+    return [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]
 
 
 def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
@@ -207,17 +200,14 @@ def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "
 
 def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
     """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
-    text = sentence_text(text, look)
-    if look.width is None or width(head) + width(text) <= look.width:
-        yield (Piece(head, "cell"), Piece(text))
-        return
-    indent = width(head)
-    if look.width - indent < _NARROWEST:
+    text, room = look.sentence(text), None if look.width is None else look.width - width(head)
+    if room is not None and room < min(width(text), _NARROWEST):
         if head.strip():
             yield line(head, "cell")
-        head, indent = "", 6
-    for index, one in enumerate(folded(text, max(look.width - indent, _NARROWEST))):
-        yield (Piece(head if head and index == 0 else " " * indent, "cell"), Piece(one))
+        head, room = " " * 6, max((look.width or 0) - 6, _NARROWEST)
+    for one in folded(text, room):
+        yield (Piece(head, "cell"), Piece(one))
+        head = " " * width(head)
 
 
 # lists of the commands that print no report
@@ -225,9 +215,9 @@ def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
 
 def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
     """Return a title and sections, each a head line with its entries, as plain text."""
-    lines = [line(one) for one in folded(look.text(title), look.width)]
+    lines = paragraph(look.text(title), look.width)
     for name, entries in sections:
-        lines += [BLANK, *(line(one) for one in folded(look.text(name), look.width)), *in_two_columns(entries, look)]
+        lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
     return "".join(plain(lines))
 
 

@@ -1,16 +1,15 @@
 """The layout of a panel, for paper and terminal: scales, ticks, and labels in free space."""
 
 import math
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.render import Look
-from kurbel.render.numbers import angle, angle_scale, cell, decimal, in_thousands, single
-from kurbel.render.text import folded, width
-from kurbel.report.picture import Axis, PageFigure, Panel, Picture, Words
+from kurbel.render.text import angle_scale, cell, folded, width
+from kurbel.report.picture import Axis, Curve, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
@@ -19,6 +18,8 @@ _ROUNDING = 1e-9
 _AIR = 0.12
 """Free space of a panel above and below its curves, relative to their height."""
 _MOST_MARKED = 12
+_TAKEN = 1e6
+"""What it costs a label to cover another one."""
 LOOKS = 6
 """Different colours and strokes of curves."""
 
@@ -33,25 +34,24 @@ def symbol(words: Words, look: Look) -> str:
 
 def axis_text(axis: Axis, look: Look) -> str:
     """Return the title of an axis: words, symbol, unit."""
-    words = look.text(axis.name.words)
-    name = " ".join(filter(None, (words[:1].upper() + words[1:], symbol(axis.name, look))))
-    return " in ".join(filter(None, (name, look.unit(axis.unit))))
+    words, unit = look.text(axis.name.words), look.unit(axis.unit)
+    name = f"{words[:1].upper()}{words[1:]} {symbol(axis.name, look)}".strip()
+    return f"{name} in {unit}" if name and unit else name or unit
 
 
 def legend_text(words: Words, look: Look) -> str:
     """Return a symbol with its words."""
-    return " ".join(filter(None, (symbol(words, look), look.text(words.words))))
+    return f"{symbol(words, look)} {look.text(words.words)}".strip()
 
 
 def figure_text(figure: PageFigure, look: Look) -> str:
     """Return a figure: symbol, value, unit, and its crank angle."""
-    at = "" if figure.at_deg is None else angle(figure.at_deg, look.comma) + look.text("°")
+    name, at = symbol(figure.name, look), "" if figure.at_deg is None else look.degrees(figure.at_deg)
     if figure.value is None:
-        return f"{symbol(figure.name, look)} {at}".strip()
-    number, power = single(figure.value, look.digits, look.comma)
-    value, unit = look.counted(printed(number, look), power), look.unit(figure.unit)
-    parts = symbol(figure.name, look), f"{value}{unit}" if unit == "°" else f"{value} {unit}".rstrip()
-    return ", ".join(filter(None, (" ".join(filter(None, parts)), at)))
+        return f"{name} {at}".strip()
+    value, unit = look.measured(figure.value, figure.unit)
+    text = f"{name} {look.fine(value)} {unit}".strip()
+    return f"{text}, {at}" if at else text
 
 
 def picture_text(picture: Picture, look: Look) -> str:
@@ -61,13 +61,6 @@ def picture_text(picture: Picture, look: Look) -> str:
     texts = "; ".join(dict.fromkeys(figure_text(figure, look) for figure in figures))
     sentence = f"{look.text(picture.heading)}. {look.text(picture.text)}"
     return f"{sentence} {texts}." if texts else sentence
-
-
-def printed(number: str, look: Look) -> str:
-    """Return a number with a minus sign in place of a hyphen, and with thin spaces, where the output has them."""
-    if not look.has("−\N{NARROW NO-BREAK SPACE}"):
-        return number
-    return in_thousands(f"−{number[1:]}" if number.startswith("-") else number)
 
 
 # scales
@@ -82,24 +75,24 @@ class AxisScale(NamedTuple):
     end: float = 1.0
     log: bool = False
 
-    def place(self, values: Any) -> Any:
+    def place(self, values: Number) -> Array:
         """Return the places of values."""
-        low, high, at = (np.log10(one) if self.log else one for one in (self.low, self.high, values))
+        low, high, at = (np.log10(one) if self.log else np.asarray(one) for one in (self.low, self.high, values))
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
-        return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
+        return np.asarray(np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9))
 
 
-def scale_of(axis: Axis, drawn: list[Array], air: bool, around: float = 0.0) -> AxisScale:
-    """Return the scale from 0 to 1 of an axis, which includes all that is drawn; air: with free space around it.
+def scale_of(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScale:
+    """Return the scale from 0 to 1 of an axis, which includes all that is drawn.
 
-    around: what is above and below a level line, if it is not a tenth of its height.
+    air: with free space around it; level: a level line is in the middle.
     """
     every = np.concatenate([*map(np.ravel, drawn), [one for one in (axis.low, axis.high) if one is not None]])
     low, high = (float(np.nanmin(every)), float(np.nanmax(every))) if len(every) else (0.0, 0.0)
     if axis.log:
         low, high = 10.0 ** math.floor(math.log10(low)), 10.0 ** math.ceil(math.log10(high) or 1)
-    elif high - low <= _ROUNDING * max(abs(low), abs(high)):  # a level line is in the middle
-        low, high = (end + sign * (around or 0.1 * abs(end) or 1.0) for end, sign in ((low, -1), (high, 1)))
+    elif level and high - low <= _ROUNDING * max(abs(low), abs(high)):
+        low, high = low - (0.1 * abs(low) or 1.0), high + (0.1 * abs(high) or 1.0)
     elif air:
         below = 0.0 if low == axis.low else _AIR * (high - low)
         low, high = low - below, high + _AIR * (high - low)
@@ -123,11 +116,9 @@ def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[flo
         step = (steps or [one * power for one in _STEPS if one * power >= least * (1 - 1e-9)])[0]
         first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
         values = [float(f"{number * step:.12g}") for number in range(first, last + 1)]
-        if len(values) > 1 and (values[-1] - values[0] < 1e-4 or max(map(abs, values)) >= 1e6):
-            texts = [decimal(f"{value:.4g}", look.comma) for value in values]
-        else:
-            texts = [cell(value, angle_scale(values), look.comma) for value in values]
-        texts = [printed(text, look) for text in texts]
+        small = len(values) > 1 and values[-1] - values[0] < 1e-4
+        short = small or max(map(abs, values), default=0.0) >= 1e6
+        texts = [look.fine(f"{value:.4g}" if short else cell(value, angle_scale(values))) for value in values]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 
@@ -178,22 +169,20 @@ class PanelFrame:
         self.panel, self.look, self.medium, self.wide = panel, look, medium, wide
         across, up = panel.places
         bare = not panel.bodies  # which leave no air around them
-        spread = max((float(np.nanmax(one) - np.nanmin(one)) for one in (*across, *up) if one.size), default=0.0)
-        around = 0.1 * spread if panel.equal and bare else 0.0
-        airy = bare and (panel.plain or panel.equal)
-        x, y = scale_of(panel.x, across, airy, around), scale_of(panel.y, up, bare, around)
+        x = scale_of(panel.x, across, bare and (panel.plain or panel.equal), not panel.equal)
+        y = scale_of(panel.y, up, bare, not panel.equal)
         if panel.equal:
             sizes = np.array([x.high - x.low, y.high - y.low])
             least = medium.shortest if panel.plain else min(0.8 * wide, 2 * medium.shortest)  # a flat curve has room
-            tall = min(max(wide * sizes[1] / sizes[0], least), medium.tallest)
+            tall = min(max(wide * sizes[1] / sizes[0] if sizes[0] else 0.0, least), medium.tallest)
             room = np.array([wide, tall])
-            spare = (max(sizes / room) * room - sizes) / 2
+            spare = (max(*(sizes / room), _ROUNDING) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
         names = panel.x.names
-        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) - medium.letter if names else 0.0
+        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) if names else 0.0
         numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
-        if not numeric and any(width(name) * medium.letter > between for name in names):
+        if not numeric and any((width(name) + 1) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
             key = ", ".join(
                 f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
@@ -215,110 +204,102 @@ class PanelFrame:
     def ticks_across(self, most: int, start: float, end: float) -> list[tuple[float, float, str]]:
         """Return the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
 
-        start, end: how far texts may reach. Of two that meet the outer one is written.
+        start, end: how far texts may reach.
         """
-        letter, every = self.medium.letter, ticks(self.panel.x, self.x, most, self.look)
-        found: list[tuple[float, float, str]] = []
-        spans: list[tuple[float, float]] = []
-        for k in sorted(range(len(every)), key=lambda k: min(k, len(every) - 1 - k)):
-            place, text = every[k]
-            wide = width(text) * letter
-            left = max(min(place - wide / 2, end - wide), start)
-            if all(left >= right or left + wide <= other for other, right in spans):
-                spans.append((left - letter, left + wide + letter))
-            else:
-                text = ""
-            found.append((place, left, text))
-        return sorted(found)
+        every, found = ticks(self.panel.x, self.x, most, self.look), []
+        wide = [width(text) * self.medium.letter for _, text in every]
+        apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
+        of_each = max(math.ceil((max(wide, default=0.0) + self.medium.grain[0]) / apart), 1)
+        for number, (place, text) in enumerate(every):
+            left = max(min(place - wide[number] / 2, end - wide[number]), start)
+            found.append((place, left, "" if number % of_each else text))
+        return found
 
     def labels(self, named: bool) -> list[Label]:
         """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.
 
         Each is on the nearest ground that no other label has and no curve crosses; without room it is left out.
         """
-        panel, (wide, tall), dot = self.panel.at_moment(0), self.medium.grain, self.medium.dot
-        # places along each curve, no farther apart than a quarter of a cell
-        tracks = []
-        for curve in panel.curves:
-            places = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps()) if len(piece[0])]
-            steps = [dense(one.real / wide * 4, one.imag / tall * 4) for one in places]
-            tracks.append(np.concatenate([x * wide / 4 + 1j * y * tall / 4 for x, y in steps]))
-        wanted = list(self._wanted(panel, tracks, named))
-        reach = np.add.outer(np.array([-1.0, 0.0, 1.0]), np.array([-1j, 0j, 1j])).ravel() * dot
+        panel = self.panel.at_moment(0)
+        tracks = [self._track(curve) for curve in panel.curves]
+        around = np.add.outer([-1.0, 0.0, 1.0], [-1j, 0j, 1j]).ravel() * self.medium.dot
         points = [(mark.x, mark.y) for mark in panel.marks]
         points += [(one.x[0], one.y[0]) for one in panel.curves if one.kind == "pole"]
-        marks = [self.place(*point) + reach for point in points]
-
-        # on a grid: which cells curves cross, and which labels and marks have
-        shape = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)
-        crossed, taken = np.zeros(shape, dtype=int), np.zeros(shape, dtype=int)
-        for grid, places in ((crossed, tracks), (taken, marks)):
-            for one in places:
-                row, column = np.floor(one.imag / tall).astype(int), np.floor(one.real / wide).astype(int)
-                inside = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
-                grid[row[inside], column[inside]] = 1
-        placed = [self._on_free_ground(label, crossed, taken) for label in wanted]
+        marks = [self.place(*point) + around for point in points]
+        ground = self.medium.covering * self._cells(tracks) + _TAKEN * self._cells(marks)
+        wanted = (*self._of_curves(panel, tracks, named), *self._of_marks(panel), *self._of_shades(panel))
+        placed = [self._on_free_ground(label, ground) for label in wanted]
         return [label for label in placed if label]
 
-    def _wanted(self, panel: Panel, tracks: list[ComplexArray], named: bool) -> Iterator[Label]:
-        """Yield the labels of faint lines, of forces and curves, marks and shades, not placed yet."""
-        look = self.look
-        for curve in panel.curves:
-            if curve.kind == "faint" and curve.name.symbol:
-                yield Label(symbol(curve.name, look), complex(self.place(curve.x[-1], curve.y[-1])))
-            if curve.kind in ("arrow", "force") and curve.name.symbol and named:
-                yield Label(symbol(curve.name, look), complex(self.place(curve.x[1], curve.y[1])))
+    def _track(self, curve: Curve) -> ComplexArray:
+        """Return places along a curve, no farther apart than a quarter of a cell of the grid."""
+        wide, tall = (one / 4 for one in self.medium.grain)
+        pieces = [self.place(*piece) for piece in (*curve.pieces(), *curve.jumps())]
+        lines = [dense(one.real / wide, one.imag / tall) for one in pieces]
+        return np.concatenate([x * wide + 1j * y * tall for x, y in lines])
 
-        # of several curves each where it is farthest from the others
-        thin = [track[::4] for track in tracks]
-        named_ones = (one for one in zip(panel.curves, looks_of(panel), thin) if one[0].name.symbol)
-        lines = [one for one in named_ones if one[0].kind in ("line", "dots")]
-        for curve, number, own in lines if named and len(lines) > 1 else ():
-            others = np.concatenate([track for other, _, track in lines if other is not curve])
+    def _cells(self, lines: Sequence[ComplexArray]) -> Array:
+        """Return 1 for the cells (rows, columns) of the grid in which one of these places is, else 0."""
+        (wide, tall), dot = self.medium.grain, self.medium.dot
+        rows, columns = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)
+        places = np.concatenate([*lines, np.empty(0, dtype=complex)])
+        bounds = (0.0, rows * tall), (0.0, columns * wide)
+        return np.asarray(np.sign(np.histogram2d(places.imag, places.real, (rows, columns), bounds)[0]))
+
+    def _of_curves(self, panel: Panel, tracks: list[ComplexArray], named: bool) -> Iterator[Label]:
+        """Yield the labels of faint lines, of forces and of several curves, not placed yet."""
+        symbols = [symbol(curve.name, self.look) for curve in panel.curves]
+        for curve, text in zip(panel.curves, symbols):
+            if text and (curve.kind == "faint" or (named and curve.kind in ("arrow", "force"))):
+                yield Label(text, complex(self.place(curve.x[-1], curve.y[-1])))
+        every = zip(panel.curves, symbols, looks_of(panel), (track[::4] for track in tracks))
+        lines = [one for one in every if one[1] and one[0].kind in ("line", "dots")]
+        for curve, text, number, own in lines if named and len(lines) > 1 else ():
+            others = np.concatenate([track for other, _, _, track in lines if other is not curve])
             farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
-            yield Label(symbol(curve.name, look), complex(own[farthest]), number)
+            yield Label(text, complex(own[farthest]), number)
 
-        named_marks = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
-        for mark in (*named_marks, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
+    def _of_marks(self, panel: Panel) -> Iterator[Label]:
+        """Yield the labels of marks: first those of figures, then mere angles where there is room."""
+        figures = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
+        for mark in (*figures, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
             led = bool(mark.figure.name.symbol)
-            yield Label(figure_text(mark.figure, look), complex(self.place(mark.x, mark.y)), led=led, spare=not led)
+            yield Label(figure_text(mark.figure, self.look), complex(self.place(mark.x, mark.y)), None, led, not led)
 
-        # the figures of shades, or their names alone where not each figure has the room
-        written = [(shade, shade.figure, figure_text(shade.figure, look)) for shade in panel.shades if shade.figure]
+    def _of_shades(self, panel: Panel) -> Iterator[Label]:
+        """Yield the figures of shades, or their names alone where not each figure has the room."""
+        written = [
+            (shade, shade.figure, figure_text(shade.figure, self.look)) for shade in panel.shades if shade.figure
+        ]
         roomy = all(width(text) * self.medium.letter <= np.ptp(self.x.place(one.x)) for one, _, text in written)
         for shade, figure, text in written:
             widest = int(np.argmax(np.abs(shade.high - shade.low)))
             middle = self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)
-            yield Label(text if roomy else symbol(figure.name, look), complex(middle))
+            yield Label(text if roomy else symbol(figure.name, self.look), complex(middle))
 
-    def _on_free_ground(self, label: Label, crossed: Indices, taken: Indices) -> Label | None:
+    def _on_free_ground(self, label: Label, ground: Array) -> Label | None:
         """Return a label in its place, whose cells are then taken, or None where labels leave no room for it.
 
-        What it costs to be somewhere is the distance from its point, and more for each cell of a curve that it covers.
-        Sums over rectangles of the grid are differences of four of its summed areas.
+        What it costs to be somewhere is the distance from its point, and what the ground that it covers costs.
         """
         x, y, grain = label.point.real, label.point.imag, self.medium.grain
         wide, tall = width(label.text) * self.medium.letter, self.medium.line
         rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
-        if rows > taken.shape[0] or columns > taken.shape[1]:
+        if rows > ground.shape[0] or columns > ground.shape[1]:
             return None
-        areas = [np.pad(grid.cumsum(0).cumsum(1), ((1, 0), (1, 0))) for grid in (crossed, taken)]
-        on_curves, on_labels = (
-            area[rows:, columns:] - area[:-rows, columns:] - area[rows:, :-columns] + area[:-rows, :-columns]
-            for area in areas
-        )
-        left, top = grain[0] * np.arange(on_curves.shape[1]), grain[1] * np.arange(on_curves.shape[0])[:, None]
-        across = np.maximum(np.maximum(left - x, x - left - wide), 0.0)
-        down = np.maximum(np.maximum(top - y, y - top - tall), 0.0)
+        sums = np.pad(ground.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+        strips = sums[rows:] - sums[:-rows]
+        covered = strips[:, columns:] - strips[:, :-columns]
+        left, top = grain[0] * np.arange(covered.shape[1]), grain[1] * np.arange(covered.shape[0])[:, None]
+        across, down = np.clip(x, left, left + wide) - x, np.clip(y, top, top + tall) - y
         off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
-        cost = np.hypot(across, down) + 0.05 * off_middle + self.medium.covering * on_curves
-        cost = np.where(on_labels > 0, np.inf, cost.round(6))
+        cost = (np.hypot(across, down) + 0.05 * off_middle + covered).round(6)
         row, column = np.unravel_index(cost.argmin(), cost.shape)
-        if np.isinf(cost[row, column]) or (label.spare and cost[row, column] > 2 * tall):
+        if cost[row, column] >= (2 * tall if label.spare else _TAKEN):
             return None
-        taken[row : row + rows, max(column - 1, 0) : column + columns + 1] = 1
+        ground[row : row + rows, max(column - 1, 0) : column + columns + 1] = _TAKEN
         start, height = float(left[column]), float(top[row, 0])
-        end = complex(min(max(x, start), start + wide), min(max(y, height), height + tall))
+        end = label.point + complex(across[column], down[row, 0])
         far = label.led and abs(end - label.point) > 1.2 * tall
         return label._replace(left=start, right=start + wide, top=height, lead=end if far else None)
 

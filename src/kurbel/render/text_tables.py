@@ -1,14 +1,13 @@
 """First pass of every printed format: the values of a report as tables of text, with their digits, units and marks."""
 
-import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
-from kurbel.render.numbers import Scale, angle, angle_scale, cell, decimal, scale_of, single, whole_if_integral
-from kurbel.render.text import width
+from kurbel.render.text import Scale, angle, angle_scale, cell, scale_of, single, whole_if_integral, width
+from kurbel.report.alike import grouped
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value
 
 MARK = "*"
@@ -18,35 +17,23 @@ _FEW = 12
 
 
 class TextColumn(NamedTuple):
-    """A column as text. Its cells are made when they are read: a table of a million rows is never held.
-
-    width: of the widest cell; kind: `number`, `name`, `symbol` or `sentence`; marked: rows that end in MARK, where all
-    others end in `pad`.
-    """
+    """A column as text; width: of the widest cell; kind: `number`, `name`, `symbol` or `sentence`."""
 
     symbol: str
     unit: str
-    values: Sequence[Any]
+    cells: Sequence[str]
     width: int
-    text: Callable[[Any], str] = str
     kind: str = "number"
-    marked: Collection[int] = ()
-    pad: str = ""
 
     @property
     def words(self) -> bool:
         """Whether it holds words, which are flush left."""
         return self.kind != "number"
 
-    def cells(self, across: range | None = None) -> Iterator[str]:
-        """Yield the texts of these rows, of all by default."""
-        for row in range(len(self.values)) if across is None else across:
-            yield self.text(self.values[row]) + (MARK if row in self.marked else self.pad)
-
 
 def texts(symbol: str, unit: str, cells: Sequence[str], kind: str = "number") -> TextColumn:
     """Return a column of texts."""
-    return TextColumn(symbol, unit, cells, max(map(width, cells), default=0), kind=kind)
+    return TextColumn(symbol, unit, cells, max(map(width, cells), default=0), kind)
 
 
 class TextTable(NamedTuple):
@@ -74,35 +61,33 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], list[
             values = tuple(None if value is None else 360 - value for value in phi.values)
             symbol, ascii_symbol = f"360° − {phi.symbol}", f"360 - {phi.ascii_symbol}"
             angles.append(phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values))
-        heads = [_over_angle(one, angle_scale(one.values), look, pad) for one in angles]
+        heads = [_scaled(one, angle_scale(one.values), look, pad) for one in angles]
         bands = []
         for part in alike:
             scaled = [(one, scale_of((one.size,) if one.size else one.values, look.digits)) for one in part.columns[1:]]
-            columns = [_over_angle(one, scale, look, pad) for one, scale in scaled]
-            bands.append((part_name(report, part, look), columns))
+            bands.append((part_name(report, part, look), [_scaled(one, scale, look, pad) for one, scale in scaled]))
         yield heads, bands
 
 
-def _over_angle(column: Column, scale: Scale, look: Look, pad: str) -> TextColumn:
-    """Return a column whose cells all have the same decimals: the largest or the smallest value is the widest."""
+def _scaled(column: Column, scale: Scale, look: Look, pad: str = "", missing: str = "") -> TextColumn:
+    """Return a column whose cells all have the same decimals; pad: after those without a mark."""
     if column.decimals is not None:
         scale = Scale(column.decimals)
+    cells = [missing if value is None else look.number(cell(value, scale)) + pad for value in column.values]
+    for row in column.marked:
+        cells[row] = cells[row].removesuffix(pad) + MARK
+    return _headed(column, cells, look, scale.exponent)
 
-    def text(value: Value) -> str:
-        return cell(value, scale, look.comma)
 
-    ends = (end((value for value in column.values if value is not None), default=None) for end in (min, max))
-    wide = max(len(text(end)) for end in ends) + len(pad)
-    symbol = look.symbol(column.symbol, column.ascii_symbol)
-    unit = look.unit(column.unit, scale.exponent)
-    return TextColumn(symbol, unit, column.values, wide, text, marked=frozenset(column.marked), pad=pad)
+def _headed(column: Column, cells: Sequence[str], look: Look, exponent: int = 0) -> TextColumn:
+    return texts(look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells)
 
 
 def part_name(report: Report, part: Part, look: Look) -> str:
     """Return the heading of the results of a part; nothing for the only one, which the title names."""
     if part is not report.whole and report.group == "ratios":
         ratio = str(whole_if_integral(float(part.name))).replace("inf", "∞")
-        return look.text(f"L/R = {decimal(ratio, look.comma)}")
+        return look.text(f"L/R = {look.number(ratio)}")
     return look.text(str(part.name)) if len(report.all_parts) > 1 else ""
 
 
@@ -113,40 +98,34 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     """
     blank = "_" if table.headed else " "
     columns = [
-        texts(head, "", [look.text(name.replace("_", blank)) for name in column], "name")
+        texts(head, "", [look.number(look.text(name.replace("_", blank))) for name in column], "name")
         for head, column in zip(table.heads, zip(*table.names))
     ]
     sharing: dict[str, list[Value]] = {}
     for one in table.columns:
         if one.decimals is None and not one.alone:
             sharing.setdefault(one.unit, []).extend(one.values)
+    missing = look.text("–")
     for one in table.columns:
-        scale = Scale(one.decimals or 0) if one.unit not in sharing else scale_of(sharing[one.unit], look.digits)
-        own = one.decimals is not None
-        exponent, cells = 0, []
-        for value in one.values:
-            if value is None:
-                cells.append(look.text("–"))
-            elif one.alone and not own:
-                cells.append(look.counted(*single(value, look.digits, look.comma, own=one.alone)))
-            elif one.unit == "deg" and not own:
-                cells.append(angle(value, look.comma))
-            else:
-                cells.append(cell(value, Scale(one.decimals) if one.decimals is not None else scale, look.comma))
-        if not (own or one.alone or one.unit == "deg"):
-            exponent = scale.exponent
-        symbol = look.symbol(one.symbol, one.ascii_symbol)
-        columns.append(texts(symbol, look.unit(one.unit, exponent), cells))
+        if one.decimals is None and (one.alone or one.unit == "deg"):
+            own = [None if value is None else _alone(value, one, look) for value in one.values]
+            columns.append(_headed(one, [missing if text is None else look.number(text) for text in own], look))
+        else:
+            columns.append(_scaled(one, scale_of(sharing.get(one.unit, []), look.digits), look, missing=missing))
     return TextTable(look.text(table.title), columns, len(table.heads))
+
+
+def _alone(value: float, column: Column, look: Look) -> str:
+    return look.counted(*single(value, look.digits, column.alone)) if column.alone else angle(value)
 
 
 def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> TextTable:
     """Return key values as a table: symbol, value, unit, crank angle, meaning."""
     rows = []
     for one in found:
-        at = "" if one.at_deg is None else angle(one.at_deg, look.comma) + look.text("°")
+        at = "" if one.at_deg is None else look.degrees(one.at_deg)
         symbol = look.symbol(one.symbol, one.ascii_symbol)
-        rows.append((symbol, _number(one, look), look.unit(one.unit), at, sentence_text(one.text, look)))
+        rows.append((symbol, _value(one, look), look.unit(one.unit), at, look.sentence(one.text)))
     heads = ("Symbol", "symbol"), ("Value", "number"), ("Unit", "name"), ("At", "number"), ("Meaning", "sentence")
     columns = [texts(head, "", cells, kind) for (head, kind), cells in zip(heads, zip(*rows))]
     lists = {row for row, one in enumerate(found) if isinstance(one.value, tuple) and one.value}
@@ -155,33 +134,24 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
 
 def headed(found: Collection[KeyValue]) -> dict[str, list[KeyValue]]:
     """Return key values by their headings, in the order of the first of each; a few, or those of one, all by ""."""
-    groups: dict[str, list[KeyValue]] = {}
-    for one in found:
-        groups.setdefault(one.heading, []).append(one)
+    groups = {group[0].heading: group for group in grouped(found, lambda one: one.heading)}
     return groups if len(groups) > 1 and len(found) > _FEW else {"": list(found)}
 
 
-def _number(one: KeyValue, look: Look) -> str:
+def _value(one: KeyValue, look: Look) -> str:
     """Return a number with its power of ten, or the numbers of a list, of a long one its ends."""
-
-    def text(value: float) -> str:
-        if one.unit == "deg" and (look.digits is None or isinstance(one.value, tuple)):
-            return angle(value, look.comma)
-        return look.counted(*single(value, look.digits, look.comma))
-
     if one.value is None or one.value == ():
         return look.text("–")
     if one.noise:  # is only known to be less
         power = look.counted("1", NOISE_POWER)
         return f"< {power.removeprefix('1·')}"
-    if not isinstance(one.value, tuple):
-        return text(one.value)
-    if len(one.value) > _MOST_LISTED:
-        return f"{len(one.value)} from {text(min(one.value))} to {text(max(one.value))}"
-    return ("; " if look.comma else ", ").join(map(text, one.value))
 
+    values, listed = (one.value, True) if isinstance(one.value, tuple) else ((one.value,), False)
 
-def sentence_text(text: str, look: Look) -> str:
-    """Return a sentence in the characters of the output, its numbers with the decimal comma where that is wanted."""
-    text = look.text(re.sub(r"(?<=[a-z])\^2", "²", text))
-    return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if look.comma else text
+    def text(value: float) -> str:
+        plain = one.unit == "deg" and (listed or look.digits is None)
+        return look.number(angle(value)) if plain else look.value(value)
+
+    if len(values) > _MOST_LISTED:
+        return f"{len(values)} from {text(min(values))} to {text(max(values))}"
+    return ("; " if look.comma else ", ").join(map(text, values))

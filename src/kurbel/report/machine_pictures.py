@@ -127,7 +127,7 @@ def throw_stress(source: Source) -> Iterator[Panel]:
 def torque_orders(source: Source) -> Iterator[Panel]:
     """Amplitudes of the turning effort by order, periods per turn of the shaft."""
     found, drawn = source.results.machine, source.results.orders <= _HIGHEST
-    spectra = [np.abs(one.amplitudes)[drawn] for one in (found.whole, found.gas, found.inertia) if one]
+    spectra = [np.abs(one)[drawn] for one in (found.whole, found.gas, found.inertia) if one is not None]
     whole, *parts = spectra
     orders, name = source.results.orders[drawn], Words("|M_ν|", words="amplitude")
     both = len(parts) == 2 and all(one.any() for one in parts)  # one alone is all

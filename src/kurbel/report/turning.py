@@ -168,7 +168,7 @@ def harmonics_report(
                 "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
             )
     no_masses = "no masses, or no speed given" if found.cylinders else "the effort is given as a torque"
-    apart = missing({"gas and inertia apart": "" if found.machine.inertia else no_masses})
+    apart = missing({"gas and inertia apart": no_masses if found.machine.inertia is None else ""})
     lacking, warnings = (*flywheel_left_out(machine), *apart), of_machine(case) if frame.prose else ()
     whole = Subject("whole machine", found, left_out=lacking, warnings=warnings, tables=tables)
     return report_on(frame, machine, "Harmonics of the turning effort", cylinders, whole, notes)
@@ -199,12 +199,12 @@ def _orders_table(
 ) -> PlaceTable:
     """Return the orders of a torque; area: of the piston, for the tangential pressure; major: those to mark."""
     rows: list[Row] = []
-    for index, order in enumerate(orders.whole.orders.tolist()):
-        amplitude = complex(orders.whole.amplitudes[index])
+    for index, order in enumerate(orders.orders.tolist()):
+        amplitude = complex(orders.whole[index])
         values = _of_order(order, amplitude)
         if orders.inertia is not None:
-            values["M_gas"] = float(abs(orders.gas.amplitudes[index]))
-            values["M_inertia"] = float(abs(orders.inertia.amplitudes[index]))
+            values["M_gas"] = float(abs(orders.gas[index]))
+            values["M_inertia"] = float(abs(orders.inertia[index]))
         if area:
             values["t_order"] = abs(amplitude) / area
         rows.append((("major" if order in major else "",), values))
@@ -224,7 +224,7 @@ def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[f
     rows: list[Row] = []
     for speed in speeds:
         at_speed = found.machine.at_speed(speed / machine.speed)
-        for order, amplitude in zip(at_speed.orders.tolist(), at_speed.amplitudes.tolist()):
+        for order, amplitude in zip(found.orders.tolist(), at_speed.tolist()):
             rows.append((("",), {"speed": speed, **_of_order(order, amplitude)}))
     title = "Orders of the turning effort at other speeds"
     table = place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)
@@ -233,7 +233,7 @@ def _speeds_of_orders(machine: Machine, found: MachineOrders, speeds: Sequence[f
 
 def _uniform(found: Orders) -> bool:
     """Whether every order is zero, at every speed."""
-    return not any(one.amplitudes.any() for one in (found.gas, found.inertia) if one)
+    return not any(one.any() for one in (found.gas, found.inertia) if one is not None)
 
 
 # torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
@@ -35,7 +35,7 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import SupportedShaft, shaft_obstacle
+from kurbel.solver.shaft import Force, SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
 HALF_CONTACT = 60.0
@@ -254,7 +254,7 @@ class MainBearing(Bearing):
         super().__init__(name, (*self._members.values(),), size, ("throw", "engine"))
         self._number, self._line = number, line
 
-    def _force(self, line: SupportedShaft, pins: dict[int, ComplexArray], degrees: Array) -> ComplexArray:
+    def _force(self, line: SupportedShaft, pins: Mapping[int, Force], degrees: Array) -> ComplexArray:
         """Return the force in N in the frame of crank 1, whose angles in degrees these are.
 
         line: with the numbers of the machines whose angles they are; pins: D + iT on the crank pin of each cylinder.
@@ -265,8 +265,8 @@ class MainBearing(Bearing):
                 own, pin = line.machine.cylinders[throw.cylinders[0]], sum(pins[index] for index in throw.cylinders)
                 # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
                 angle = CrankAngle.of(degrees - np.fmod(own.crank_position, 360.0))
-                carried = line.carried(throw, pin, own, angle)[0 if self._number == throw.A else 1]
-                force -= np.conj(carried) * unit_vector(throw.angle)
+                on_bearing = line.carried(throw, pin, own, angle)[0 if self._number == throw.A else 1]
+                force -= np.conj(on_bearing) * unit_vector(throw.angle)
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
@@ -297,7 +297,7 @@ class MainBearing(Bearing):
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def _pin_load(state: State) -> Any:
+def _pin_load(state: State) -> Force:
     return on_pin(state).complex if state.drive.has_force else 0j
 
 

@@ -76,44 +76,26 @@ def amplitudes(pieces: Pieces, values: Array, orders: Array) -> ComplexArray:
     return np.asarray(whole * (2 / pieces.cycle), dtype=complex)
 
 
-class Spectrum(NamedTuple):
-    """The mean of a torque in N m, and its orders ν (k,) with their complex amplitudes M_ν (k,), or (k, n)."""
-
-    mean: Any
-    orders: Array
-    amplitudes: ComplexArray
-
-
 class Orders(NamedTuple):
     """The orders ν (k,) of a torque in two parts: independent of the speed, and of the inertia forces at ω_n.
 
-    parts: complex amplitudes of both in N m, (2, 1 + k), or (2, 1 + k, n), after their mean; moving: whether masses
-    move.
+    gas, inertia: complex amplitudes M_ν in N m, (k,) or (k, n), None without moving masses; largest: of the amplitudes
+    and the means, (n,).
     """
 
     orders: Array
-    parts: ComplexArray
-    moving: bool
+    gas: ComplexArray
+    inertia: ComplexArray | None
+    largest: Array
 
-    def at_speed(self, ratio: float = 1.0, gas: float = 1.0) -> Spectrum:
-        """Return both together at a speed, over the nominal one; gas: how often what is independent of it counts."""
-        whole = gas * self.parts[0] + ratio**2 * self.parts[1]
-        return Spectrum(whole[0].real, self.orders, whole[1:])
-
-    @property
-    def gas(self) -> Spectrum:
-        """What is independent of the speed."""
-        return self.at_speed(0.0)
+    def at_speed(self, ratio: float) -> ComplexArray:
+        """Return both together at a speed, over the nominal one."""
+        return self.gas if self.inertia is None else self.gas + ratio**2 * self.inertia
 
     @property
-    def inertia(self) -> Spectrum | None:
-        """What the inertia forces give at the nominal speed; None without them."""
-        return self.at_speed(gas=0.0) if self.moving else None
-
-    @property
-    def whole(self) -> Spectrum:
+    def whole(self) -> ComplexArray:
         """Both together."""
-        return self.at_speed()
+        return self.at_speed(1.0)
 
 
 class CylinderOrders(NamedTuple):
@@ -144,15 +126,17 @@ class MachineOrders(Results):
         """Return the orders of a torque (nodes, pieces) with the part of the inertia forces, None without any.
 
         A torque of a shorter cycle has only some of the orders. What is rounding of the largest, or of the torques of
-        this size in N m that it is the sum of, is 0: means, cosines, and sines.
+        this size in N m that it is the sum of, is 0: cosines, and sines.
         """
         moved = np.zeros(()) if inertia is None else inertia
         values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (torque - moved, moved)])
         present = np.flatnonzero(is_whole(self.orders * round(pieces.cycle / 360.0)))
-        found = np.zeros((2, 1 + len(self.orders), pieces.count), dtype=complex)
-        found[:, 0], found[:, 1 + present] = pieces.mean(values), amplitudes(pieces, values, self.orders[present])
-        found = unless_cancelled(found, np.maximum(size, np.abs(found).max(axis=(0, 1))), _ROUNDING)
-        return Orders(self.orders, found[..., 0] if self.effort.count is None else found, inertia is not None)
+        found = np.zeros((2, len(self.orders), pieces.count), dtype=complex)
+        found[:, present] = amplitudes(pieces, values, self.orders[present])
+        largest = np.maximum(np.abs(found).max(axis=(0, 1)), np.abs(pieces.mean(values)).max(axis=0))
+        found = unless_cancelled(found, np.maximum(size, largest), _ROUNDING)
+        gas, moved = found[..., 0] if self.effort.count is None else found
+        return Orders(self.orders, gas, None if inertia is None else moved, largest)
 
     @cached_property
     def cylinders(self) -> tuple[CylinderOrders, ...]:
@@ -167,7 +151,7 @@ class MachineOrders(Results):
     @cached_property
     def machine(self) -> Orders:
         """Those of the turning effort, with the losses of the machine."""
-        effort, sizes = self.effort, [np.abs(one.own.parts).max(axis=(0, 1)) for one in self.cylinders]
+        effort, sizes = self.effort, [one.own.largest for one in self.cylinders]
         inertia = effort.sampled(effort.inertia_terms) if effort.given is None and effort.inertia_terms else None
         return self._orders_of(effort.pieces, effort.M, inertia, np.sum(sizes, axis=0))
 
@@ -184,7 +168,7 @@ class MachineOrders(Results):
 
         None where the torque is uniform.
         """
-        effort, carried = self.effort, (np.abs(self.machine.whole.amplitudes) ** 2).sum(axis=0) / 2
+        effort, carried = self.effort, (np.abs(self.machine.whole) ** 2).sum(axis=0) / 2
         swing = effort.result(effort.pieces.mean((effort.M - effort.pieces.of(effort.mean)) ** 2))
         varies = swing > 1e-28 * self.M_mean**2
         return carried / where(varies, swing, math.nan) if some(varies) else None

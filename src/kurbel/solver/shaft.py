@@ -44,6 +44,11 @@ _ALIKE = 1e-9
 """Degrees, and metres, by which throws differ by rounding only."""
 
 
+Force = Any
+"""A force D + iT in N, or the moments of such forces in N m: complex, a number or an array (…). mypy has no one type
+for it: the sum of a complex128 and a float is to it a complex number of any precision."""
+
+
 class Vector(NamedTuple):
     """A force in N along D and along T."""
 
@@ -51,7 +56,7 @@ class Vector(NamedTuple):
     T: Number
 
     @property
-    def complex(self) -> Any:
+    def complex(self) -> Force:
         """D + iT."""
         return self.D + 1j * self.T
 
@@ -59,7 +64,7 @@ class Vector(NamedTuple):
 # one throw
 
 
-def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Any:
+def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Force:
     """Return a weight on the shaft in the frame of the throw: D = G sin(φ + i), T = −G cos(φ + i).
 
     weight: G in N; angle: crank angles φ (n,); inclination: i of the stroke line in degrees, 0 horizontal, 90 cylinder
@@ -75,7 +80,7 @@ def weight_in_throw(weight: float, angle: CrankAngle, inclination: float) -> Any
     return -1j * weight * (angle.cos + 1j * angle.sin) * (incline.cos + 1j * incline.sin)
 
 
-def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Any:
+def flywheel_weight(machine: Machine, cylinder: Cylinder, angle: CrankAngle) -> Force:
     """Return the weight of the flywheel in the frame of a cylinder's throw; nothing where its direction is not known.
 
     angle: crank angles φ (n,) of that cylinder; the inclination given is that of the stroke line of cylinder 1.
@@ -100,7 +105,7 @@ class FreeBody:
     D in the web of an overhung crank.
     """
 
-    def __init__(self, shaft: Crankshaft, crank: Number, pin: Any, weight: Any) -> None:
+    def __init__(self, shaft: Crankshaft, crank: Number, pin: Force, weight: Force) -> None:
         self.shaft, self.crank, self.pin, self.weight = shaft, crank, pin, weight
         b, f, span = shaft.b, shaft.flywheel_position, shaft.span
         self.A = (pin * b - weight * f) / span
@@ -108,7 +113,7 @@ class FreeBody:
         self.before_pin = 0 * self.A if shaft.overhung else self.A
         self.along_web, self.torque = (pin - self.before_pin).real, pin.imag * crank
 
-    def moments_at(self, u: Number) -> Any:
+    def moments_at(self, u: Number) -> Force:
         """Return the bending moments in N m at the section u, of the forces before it: D and T of each times its arm.
 
         A (u − u_A) from bearing A on, less F u from the pin on; valid up to B, or to a flywheel before B. The opposite
@@ -150,8 +155,8 @@ class Throw(NamedTuple):
     A: int = 0
     B: int = 1
     flywheel: bool = False
-    at_A: Any = 0.0
-    at_B: Any = 0.0
+    at_A: Force = 0.0
+    at_B: Force = 0.0
 
 
 class SupportedShaft:
@@ -167,14 +172,14 @@ class SupportedShaft:
         for one, following in pairwise(throws):
             _decided(one.place <= following.place)
         overhung, last = self.shaft.overhung, len(throws) - 1
-        # the second throw of an overhung shaft is at its other end
-        bearings = [(0, 1), (1, 0)] if overhung else [(number, number + 1) for number in range(len(throws))]
-        for number, (A, B) in enumerate(bearings[: len(throws)]):
-            throws[number] = throws[number]._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
-        for number, product, u in self._turning(throws):
+        for number, one in enumerate(throws):
+            # the second throw of an overhung shaft is at its other end
+            A, B = (1, 0) if overhung and number else (number, number + 1)
+            throws[number] = one._replace(A=A, B=B, flywheel=number == (0 if overhung else last))
+        for number, product, beside in self._turning(throws):
             one = throws[number]
-            along, to_B = product * unit_vector(-one.angle), where(one.A < one.B, u, -u) - self.shaft.place_A
-            at_B = along * to_B / self.shaft.span
+            along, u = product * unit_vector(-one.angle), beside if one.A < one.B else -beside
+            at_B = along * (u - self.shaft.place_A) / self.shaft.span
             throws[number] = one._replace(at_A=one.at_A + along - at_B, at_B=one.at_B + at_B)
         self.throws, self.bearings = tuple(throws), 2 if overhung else len(throws) + 1
 
@@ -201,7 +206,7 @@ class SupportedShaft:
         """Return the throw on whose pin a cylinder is, by its number from 0."""
         return next(throw for throw in self.throws if cylinder in throw.cylinders)
 
-    def carried(self, throw: Throw, pin: Any, own: Cylinder, angle: CrankAngle) -> tuple[Any, Any]:
+    def carried(self, throw: Throw, pin: Force, own: Cylinder, angle: CrankAngle) -> tuple[Force, Force]:
         """Return the forces in N of a throw on its bearings A and B, in its own frame.
 
         pin: force on its pin in N; own: a cylinder on it, and its own crank angle, for the weight of the flywheel.

@@ -43,7 +43,7 @@ from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.quantity import Heading, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import FreeBody, flywheel_weight
+from kurbel.solver.shaft import Force, FreeBody, flywheel_weight
 from kurbel.solver.state import State, on_pin
 
 PARTS = {
@@ -134,19 +134,19 @@ def places(body: FreeBody) -> Iterator[Place]:
         yield _round("journal_A", "at web", body.moments_at(-outer), None, diameter)
         yield _round("journal_B", "at web", body.moments_at(outer), body.torque, diameter)
     beyond = f >= 0  # of bearing B, in whose middle the bending is G f
-    bending = where(beyond, body.weight * f, body.moments_at(shaft.b + f))
+    bending = np.where(beyond, body.weight * f, body.moments_at(shaft.b + f))
     name = "in bearing" if every(beyond) else "at flywheel"
     yield _round("journal_B", name, bending, body.torque, diameter)
 
 
-def _round(part: str, name: str, moments: Any, torque: Number | None, diameter: Number) -> Place:
+def _round(part: str, name: str, moments: Force, torque: Number | None, diameter: Number) -> Place:
     """Stresses at the surface of a round section, whose bendings add up as vectors."""
     in_plane, out_of_plane = (magnitude(round_bending(one, diameter)) for one in (moments.real, moments.imag))
     torsion = None if torque is None else magnitude(round_torsion(torque, diameter))
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
-def _web(part: str, shaft: Crankshaft, force: Number, moments: Any, out_of_plane: Number) -> Iterator[Place]:
+def _web(part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
 
     force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
@@ -283,7 +283,7 @@ class CrankshaftStrength(Results):
         self.forces = cylinders[0]
         self.count = self.forces.drive.count
 
-    def _body(self, pin: Any, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
+    def _body(self, pin: Force, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
         several = pieces is not None and self.count is not None
         machine = taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
@@ -399,12 +399,6 @@ class CrankshaftStrength(Results):
         return found
 
     @cached_property
-    def largest_torque(self) -> Extreme:
-        """The largest T in N, or the smallest where the machine is driven harder than it drives, and its angle."""
-        found = self._force_extremes("T")
-        return chosen(found.peak.degrees == found.largest.degrees, found.largest, found.smallest)
-
-    @cached_property
     def full_force(self) -> Extreme:
         """The largest piston force without inertia in N, and the dead centre in degrees in which the throw takes it.
 
@@ -426,8 +420,8 @@ class CrankshaftStrength(Results):
 
     @property
     def at_largest_torque(self) -> tuple[Place, ...]:
-        """Every place in the position of the largest torque, of the only machine."""
-        degrees = self.largest_torque.degrees
+        """Every place in the position of the largest torque, driving or driven, of the only machine."""
+        degrees = self._force_extremes("T").peak.degrees
         body = self._beside([degrees])
         side = int(np.abs(body.pin.imag).argmax())
         return tuple(place.one_of(side, degrees) for place in places(body))

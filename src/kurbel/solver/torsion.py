@@ -167,12 +167,16 @@ class Vibration:
         reached -= reached @ counted / counted.sum()
         return reached[chain.around != 0] / self.ratios
 
+    def _turns(self, count: int) -> Pieces:
+        """Return the turns of so many machines in equal pieces, on each of which the waves are polynomials."""
+        pieces = Pieces.between(NOWHERE, count, self.acting.cycle)
+        parts = math.ceil(2 * pieces.half.max() * self.acting.orders.max() / _WAVE)
+        return pieces.parted(np.full(len(pieces.half), parts))
+
     @cached_property
     def swings(self) -> tuple[Pieces, Array]:
         """The torques in the segments less their mean in N m over the turn, (segments, s, nodes, pieces)."""
-        orders, pieces = self.acting.orders, Pieces.between(NOWHERE, 1, self.acting.cycle)
-        parts = math.ceil(2 * pieces.half.max() * orders.max() / _WAVE)
-        pieces = pieces.parted(np.full(len(pieces.half), parts))
+        orders, pieces = self.acting.orders, self._turns(1)
         # at a node the waves are those at the beginning of its piece times those of a piece from there on
         inside = unit_vector(np.multiply.outer(pieces.half[0] * (1 + pieces.rule.nodes), orders))
         begin = unit_vector(np.multiply.outer(orders, pieces.low))
@@ -181,9 +185,13 @@ class Vibration:
     @property
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        pieces, torques = self.swings
-        ends = pieces.extremes(torques.reshape(-1, *pieces.degrees.shape))
-        return ((ends.largest - ends.smallest) / 2).reshape(torques.shape[:2])
+        torques = self.swings[1]
+        segments, speeds, nodes, _ = torques.shape
+        # each segment at each speed is searched as a machine of its own
+        rows = np.moveaxis(torques, 2, 0).reshape(nodes, -1)
+        ends = self._turns(segments * speeds).extremes(rows[None])
+        known = np.isfinite(self.torques).all(axis=2)
+        return np.where(known, ((ends.largest - ends.smallest) / 2).reshape(segments, speeds), math.nan)
 
     @property
     def loss(self) -> Array:
@@ -244,23 +252,23 @@ class SegmentTorque(NamedTuple):
 
 
 class SegmentState(AtAngles):
-    """The columns of a segment at crank angles φ (n,) in degrees."""
+    """The columns of a segment at crank angles φ (n,) in degrees; of the whole shaft line there are none."""
 
     commands = ("torsion",)
     M_shaft = value(
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.segment.torque_at(one.phi),
+        lambda one: one.segment and one.segment.torque_at(one.phi),
     )
     tau = value(
         "τ",
         "stress",
         "Torsional stress at the smallest section of the segment",
-        lambda one: one.segment.stress_of(one.M_shaft),
+        lambda one: one.segment and one.segment.stress_of(one.M_shaft),
     )
 
-    def __init__(self, segment: SegmentTorque, phi: Array) -> None:
+    def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
         self.segment, self.phi = segment, phi
 
 
@@ -358,7 +366,7 @@ class ShaftVibration(Results):
         self.obstacle = self._unexcited or undamped
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
-        raise UsageError("each segment of a shaft line has its own columns: ask one of case.torsion.pieces")
+        return SegmentState(None, phi)
 
     def piece_name(self, segment: int) -> str:
         """Return what a segment is between."""
@@ -474,9 +482,9 @@ class ShaftVibration(Results):
         else:
             assert self.steady
             pieces, torques = self.steady
-        ends, found = pieces.extremes(torques), []
-        rows = zip(self.vibration.means.tolist(), ends.largest[:, 0].tolist(), ends.smallest[:, 0].tolist(), torques)
-        for segment, (mean, high, low, swing) in enumerate(rows):
+        found, ends, known = [], pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
+        highs, lows = (np.where(known, one[:, 0], math.nan).tolist() for one in (ends.largest, ends.smallest))
+        for segment, (mean, high, low, swing) in enumerate(zip(self.vibration.means.tolist(), highs, lows, torques)):
             factor = stress(self.line, segment)
             found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
         return tuple(found)
