@@ -6,6 +6,7 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields
+from inspect import Parameter, Signature
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Union
 
@@ -145,7 +146,25 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-NOT_A_NUMBER = "nan is no number"
+def _in_order(record: "type[Record]") -> list[Field[Any]]:
+    """Return the attributes in the order of positional arguments: first those without a default."""
+    return sorted(fields(record), key=lambda one: one.default is not MISSING)
+
+
+class SignatureOfFields:
+    """Returns the arguments of a record for `help`, when somebody reads them."""
+
+    def __get__(self, record: object, kind: "type[Record]") -> Signature:
+        parameters = [
+            Parameter(
+                one.name,
+                Parameter.POSITIONAL_OR_KEYWORD,
+                default=Parameter.empty if one.default is MISSING else one.default,
+                annotation=one.type,
+            )
+            for one in _in_order(kind)
+        ]
+        return Signature(parameters)
 
 
 @dataclass_transform(frozen_default=True, eq_default=False)
@@ -158,6 +177,7 @@ class Record:
 
     KEYS: ClassVar[Keys] = {}
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    __signature__ = SignatureOfFields()
 
     def __init_subclass__(cls) -> None:
         own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
@@ -170,7 +190,7 @@ class Record:
         dataclass(init=False, repr=False, eq=False)(cls)
 
     def __init__(self, *values: Any, **named: Any) -> None:
-        defaults = {one.name: one.default for one in fields(self)}
+        defaults = {one.name: one.default for one in _in_order(type(self))}
         given = {**dict(zip(defaults, values)), **named}
         wrong = [name for name in given if name not in defaults]
         wrong += [name for name, default in defaults.items() if default is MISSING and name not in given]
@@ -210,7 +230,11 @@ class Record:
         return (
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)
-            or [Fault((name,), NOT_A_NUMBER) for name, one in given.items() if isinstance(one, float) and one != one]
+            or [
+                Fault((name,), "nan is no number")
+                for name, one in given.items()
+                if isinstance(one, float) and one != one
+            ]
         )
 
     @classmethod

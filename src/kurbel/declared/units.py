@@ -167,29 +167,69 @@ _MMHG = 133.322387415
 
 _FACTORS: dict[str, Factor] = {
     # length in m, volume in m³, mass in kg, time in s, frequency in Hz
-    **{"m": (1, 1), "in": (254, 1e4), "ft": (3048, 1e4), "l": (1, 1e3)},
-    **{"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "tonne": (1e3, 1), "lb": (_POUND, 1)},
-    **{"long_ton": (2240 * _POUND, 1), "short_ton": (2e3 * _POUND, 1)},
-    **{"s": (1, 1), "min": (60, 1), "h": (3600, 1), "Hz": (1, 1)},
+    "m": (1, 1),
+    "in": (254, 1e4),
+    "ft": (3048, 1e4),
+    "l": (1, 1e3),
+    "kg": (1, 1),
+    "g": (1, 1e3),
+    "t": (1e3, 1),
+    "tonne": (1e3, 1),
+    "lb": (_POUND, 1),
+    "long_ton": (2240 * _POUND, 1),
+    "short_ton": (2e3 * _POUND, 1),
+    "s": (1, 1),
+    "min": (60, 1),
+    "h": (3600, 1),
+    "Hz": (1, 1),
     # temperature in K, see `_ZEROS`
-    **{"K": (1, 1), "°C": (1, 1), "°F": (5, 9), "mol": (1, 1), "kmol": (1e3, 1)},
+    "K": (1, 1),
+    "°C": (1, 1),
+    "°F": (5, 9),
+    "mol": (1, 1),
+    "kmol": (1e3, 1),
     # angle and revolutions, but for those of `_ELSEWHERE`
     **dict.fromkeys(("rad", "deg", "°", "rps", "U", "rev", "r", "1"), (1, 1)),
     "rpm": (1, 60),
     # force in N, pressure in Pa
-    **{"N": (1, 1), "kgf": (GRAVITY, 1), "kp": (GRAVITY, 1), "tf": (1e3 * GRAVITY, 1)},
-    **{"lbf": (_LBF, 1), "long_tonf": (2240 * _LBF, 1), "short_tonf": (2e3 * _LBF, 1)},
-    **{"Pa": (1, 1), "bar": (1e5, 1), "at": (98066.5, 1), "atm": (101325, 1), "psi": (_LBF, _INCH * _INCH)},
-    **{"Torr": (101325, 760), "mmHg": (_MMHG, 1), "cmHg": (10 * _MMHG, 1), "inHg": (25.4 * _MMHG, 1)},
-    **{"mmH2O": (GRAVITY, 1), "cmH2O": (10 * GRAVITY, 1), "inH2O": (25.4 * GRAVITY, 1), "mWS": (GRAVITY * 1e3, 1)},
+    "N": (1, 1),
+    "kgf": (GRAVITY, 1),
+    "kp": (GRAVITY, 1),
+    "tf": (1e3 * GRAVITY, 1),
+    "lbf": (_LBF, 1),
+    "long_tonf": (2240 * _LBF, 1),
+    "short_tonf": (2e3 * _LBF, 1),
+    "Pa": (1, 1),
+    "bar": (1e5, 1),
+    "at": (98066.5, 1),
+    "atm": (101325, 1),
+    "psi": (_LBF, _INCH * _INCH),
+    "Torr": (101325, 760),
+    "mmHg": (_MMHG, 1),
+    "cmHg": (10 * _MMHG, 1),
+    "inHg": (25.4 * _MMHG, 1),
+    "mmH2O": (GRAVITY, 1),
+    "cmH2O": (10 * GRAVITY, 1),
+    "inH2O": (25.4 * GRAVITY, 1),
+    "mWS": (GRAVITY * 1e3, 1),
     # torque in N m, energy in J, power in W
-    **{"Nm": (1, 1), "J": (1, 1), "W": (1, 1), "PS": (75 * GRAVITY, 1), "hp": (550 * _LBF * 3048, 1e4)},
+    "Nm": (1, 1),
+    "J": (1, 1),
+    "W": (1, 1),
+    "PS": (75 * GRAVITY, 1),
+    "hp": (550 * _LBF * 3048, 1e4),
 }
 """Single units, of which those of every kind are made."""
 
 _PREFIXES: dict[str, Factor] = {
-    **{"G": (1e9, 1), "M": (1e6, 1), "k": (1e3, 1), "h": (1e2, 1)},
-    **{"d": (1, 10), "c": (1, 1e2), "m": (1, 1e3), "u": (1, 1e6)},
+    "G": (1e9, 1),
+    "M": (1e6, 1),
+    "k": (1e3, 1),
+    "h": (1e2, 1),
+    "d": (1, 10),
+    "c": (1, 1e2),
+    "m": (1, 1e3),
+    "u": (1, 1e6),
 }
 _FACTORS |= {
     prefix + name: (up * _FACTORS[name][0], down * _FACTORS[name][1])
@@ -214,8 +254,12 @@ _ELSEWHERE: dict[str, dict[str, Factor]] = {
 
 
 ZEROED_UNITS = {
-    **{"psia": ("absolute", "psi"), "psig": ("gauge", "psi"), "bara": ("absolute", "bar"), "barg": ("gauge", "bar")},
-    **{"ata": ("absolute", "at"), "atü": ("gauge", "at")},
+    "psia": ("absolute", "psi"),
+    "psig": ("gauge", "psi"),
+    "bara": ("absolute", "bar"),
+    "barg": ("gauge", "bar"),
+    "ata": ("absolute", "at"),
+    "atü": ("gauge", "at"),
 }
 """Pressure units that name what they count from, and the unit without; machine files have them."""
 

@@ -26,12 +26,11 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.ideal_cards import Diesel, Otto
 from kurbel.machine.indicator import Rectangle
-from kurbel.machine.known_effort import KnownEffort
 from kurbel.machine.origin import Origin
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, Load, Swing
+from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, KnownEffort, Load, Swing
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace

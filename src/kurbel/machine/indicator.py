@@ -215,10 +215,12 @@ def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
             message = f"{x:g} is no fraction of the stroke; fractions run from 0 to 1{hint}"
         return [Fault((beyond[0],), message)]
     low, high = sorted((points[0][0], points[-1][0]))
+    of = unit and f" {unit}"
     if (low, high) == (0.0, whole):
-        return order_faults(points, f"{{:g}} {unit}" if unit else "fraction {:g}")
-    of, own = unit or "of the stroke", "0 is this chamber's own dead centre, where it is smallest"
-    return [Fault((), f"the line must reach from 0 to {whole:g} {of}; it runs from {low:g} to {high:g} {of}; {own}")]
+        return order_faults(points, f"{{:g}}{of}" if unit else "fraction {:g}")
+    own = "0 is this chamber's own dead centre, where it is smallest"
+    runs = f"it runs from {low:g} to {high:g}{of}; {own}"
+    return [Fault((), f"the line must reach from 0 to {whole:g}{of}; {runs}")]
 
 
 class Constant(Record):

@@ -145,8 +145,8 @@ def _step(node: Node, one: Override, place: int) -> Any:
     above = dotted(one.path[:place])
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            items = f"its items are {above}.0 to {above}.{len(node) - 1}"
-            _refused(one.given, f"'{above}' is a list; {items}, in the order of the file")
+            instead = dotted((*one.path[:place], len(node) - 1, *one.path[place + 1 :]))
+            _refused(one.given, f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…")
         if last:
             node[step] = one.value
         return node[step]

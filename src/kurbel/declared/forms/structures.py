@@ -6,6 +6,7 @@ then `Maker` makes records of these.
 
 import functools
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -14,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Indivisible
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
-from kurbel.declared.keys import NOT_A_NUMBER, TOO_EXTREME, Key, Keys, Record, required
+from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import (
     REFUSED,
@@ -128,11 +129,11 @@ class RecordForm(Form):
         unless = self.listed.unless if self.listed else ""
         faults = []
         for fault in error.faults:
-            name, item, *inner = (*fault.path, "", "")[: max(len(fault.path), 2)]
+            name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
                 head = () if listed is None else (name, "each" if isinstance(listed, dict) else item)
-                fault = fault._replace(path=(*head, *inner))
+                fault = fault._replace(path=(*head, *fault.path[2:]))
             faults.append(fault)
         return RuleError(*faults)
 
@@ -202,8 +203,8 @@ def too_extreme(record: Any, values: Tree) -> Any:
 
     values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
     """
-    endless = [vars(type(record)).get(name) for name in vars(record)]
-    infinite: Any = any(one == math.inf for one in (*values.values(), *endless) if is_number(one))
+    defaults = [vars(type(record)).get(name) for name in vars(record)]
+    infinite = any(one == math.inf for one in (*values.values(), *defaults) if is_number(one))
     broken: Any = False
     for value in vars(record).values():
         if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
@@ -247,7 +248,11 @@ class Maker:
             try:
                 form.record.from_keys(**(values | stand_ins))
             except RuleError as error:
-                raise RuleError(*(one for one in error.faults if one.message != NOT_A_NUMBER)) from None
+                # what speaks of nan is wrong with a stand-in only
+                known = [one for one in error.faults if not re.search(r"\bnan\b", one.message)]
+                raise RuleError(*known) from None
+            except (ArithmeticError, ValueError):  # a formula that takes no nan
+                pass
             return REFUSED
         record = form.record.from_keys(**values)
         extreme = too_extreme(record, values)
@@ -303,27 +308,29 @@ class Listing(Form):
     def _completed(self, reading: Reading, items: Sequence[Node], path: Path) -> list[Node]:
         """Return items with the keys that `like` copies; an error in a copied key is reported once, at the original."""
         assert isinstance(self.item, RecordForm)
-        above: dict[str, tuple[int, Tree]] = {}
-        completed: list[Any] = []
+        above: dict[str, int] = {}
+        completed: list[Any] = list(items)
         for index, item in enumerate(items):
-            whole = item
-            like = item.get("like", REFUSED) if isinstance(item, dict) else REFUSED
-            if isinstance(item, dict) and isinstance(like, str) and like in above:
-                place, other = above[like]
-                here: Path = (*path, index)
-                reading.alike[here] = (*path, place)
+            if not isinstance(item, dict):
+                continue
+            here: Path = (*path, index)
+            if "like" in item:
+                like = str(item["like"])
+                if like not in above:
+                    hint = did_you_mean(like, tuple(above)) or f"; above are {', '.join(map(shown, above))}" * bool(
+                        above
+                    )
+                    none_such = f"no {self.called} above this one is called '{shown(like)}'{hint}"
+                    completed[index] = reading.fault((*here, "like"), none_such)
+                    continue
+                other = completed[above[like]]
+                reading.alike[here] = (*path, above[like])
                 own = {key: value for key, value in item.items() if key != "like"}
                 pairs = [{name, key.instead} for name, key in self.item.names(other | own).items() if key.instead]
                 replaced = {"name", *(key for pair in pairs if own.keys() & pair for key in pair)}
-                whole = {key: value for key, value in other.items() if key not in replaced} | own
-            elif like is not REFUSED:
-                hint = did_you_mean(str(like), tuple(above)) or f"; above are {', '.join(map(shown, above))}"
-                none_such = f"no {self.called} above this one is called '{shown(str(like))}'{hint if above else ''}"
-                whole = reading.fault((*path, index, "like"), none_such)
-            if isinstance(whole, dict):
-                name = whole.get("name")
-                above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", (index, whole))
-            completed.append(whole)
+                completed[index] = {key: value for key, value in other.items() if key not in replaced} | own
+            name = completed[index].get("name")
+            above.setdefault(name if isinstance(name, str) else f"{self.called} {index + 1}", index)
         return completed
 
 
@@ -341,17 +348,18 @@ class OneOf(Form):
 
     def take(self, reading: Reading, value: Node, path: Path) -> Any:
         """Read a value by the first form that has its shape."""
-        words = [word for form in self.forms if isinstance(form, Choice) for word in form.words]
-        keys = [key for form in self.forms if isinstance(form, RecordForm) for key in form.keys]
-        for name in value if isinstance(value, dict) else ():
-            if name in words and name not in keys:
+        if isinstance(value, dict):
+            words = {word for form in self.forms if isinstance(form, Choice) for word in form.words}
+            words -= {key for form in self.forms if isinstance(form, RecordForm) for key in form.keys}
+            if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
         shape = type(value) if isinstance(value, (dict, list)) else str
         alike = [form for form in self.forms if form.shape is shape]
-        if alike:  # a word or a number: by what the text looks like
-            suiting = (form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value))))
-            return next(suiting, alike[0]).read(reading, value, path)
+        # a word or a number: by what the text looks like
+        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value)))]
+        for form in suiting or alike:
+            return form.read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
 
 

@@ -7,7 +7,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
@@ -420,29 +420,30 @@ class Points(Form):
         if any(isinstance(entry, (list, dict)) for entry in item):
             refused(f"expected a {self._called} {self._one} of numbers; are there too many brackets?")
         if len(item) != length:
-            texts = list(map(str, item))
-            wrong = f"a {self._called} {self._one} has {self._count} numbers, [{shown(', '.join(texts[:6]))}] has"
-            if len(item) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", texts[0]):
-                both = shown(", ".join(texts[0].split()))
-                refused(f"a comma is missing between the two numbers; write [{both}]")
-            whole = length < len(item) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", text) for text in texts)
-            refused(f"{wrong} {len(item) or 'none'}{'; write decimal points, such as 1.5 for 1,5' if whole else ''}")
+            self._miscounted(list(map(str, item)))
         numbers, faults = [], list[Fault]()
         for index, entry in enumerate(item):
             try:
-                numbers.append(self._number(index, entry))
+                if is_nothing(entry):
+                    refused(f"a value is missing; write the {self.columns[index]} as a number")
+                text = shown(str(entry), LONGEST_VALUE)
+                if isinstance(entry, str) and not isinstance(entry, Plain):
+                    refused(f'expected a number, got the text "{shown(text)}"; leave out the quotation marks')
+                if entry is not REFUSED:
+                    numbers.append(parse_ratio(text) if self.ratio and not index else parse_number(text))
             except RuleError as error:
                 faults += (fault.below((index,)) for fault in error.faults)
         if len(numbers) < length:
             raise RuleError(*faults)
         return tuple(numbers)
 
-    def _number(self, index: int, entry: Node) -> float:
-        if entry is REFUSED:
-            raise RuleError()
-        if is_nothing(entry):
-            refused(f"a value is missing; write the {self.columns[index]} as a number")
-        text = shown(str(entry), LONGEST_VALUE)
-        if not isinstance(entry, Plain):
-            refused(f'expected a number, got the text "{shown(text)}"; leave out the quotation marks')
-        return parse_ratio(text) if self.ratio and not index else parse_number(text)
+    def _miscounted(self, texts: list[str]) -> NoReturn:
+        """Raise RuleError for a point of too many or too few numbers."""
+        length = len(self.columns)
+        if len(texts) == 1 < length < 3 and re.fullmatch(r"\S+\s+\S+", texts[0]):
+            both = shown(", ".join(texts[0].split()))
+            refused(f"a comma is missing between the two numbers; write [{both}]")
+        whole = length < len(texts) <= 2 * length and all(re.fullmatch(r"[-+]?\d+", text) for text in texts)
+        hint = "; write decimal points, such as 1.5 for 1,5" if whole else ""
+        wrong = f"a {self._called} {self._one} has {self._count} numbers, [{shown(', '.join(texts[:6]))}] has"
+        refused(f"{wrong} {len(texts) or 'none'}{hint}")
