@@ -31,7 +31,7 @@ from kurbel.cli.options import (
 @units_option
 @number_options
 def report(**options: Any) -> None:
-    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits.
+    """Write a full report on the machine in FILE: input, pictures, tables, key values, limits, energy balance.
 
     The page needs no script and nothing from the net; it can be read, printed and sent. Two files are put side by side,
     with their differences. --set holds for each of them. FILE may be - for standard input.

@@ -7,8 +7,8 @@ from operator import itemgetter
 
 import numpy as np
 
-from kurbel.declared.unit_systems import convert, units_of
-from kurbel.errors import NoSolutionError, UsageError
+from kurbel.declared.unit_systems import convert, shown_unit, units_of
+from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
@@ -25,6 +25,7 @@ from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, s
 from kurbel.report.tables import Report, stepped
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
+from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
 
 Given = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""
@@ -56,7 +57,7 @@ def _kinds_of(command: Command) -> list[PictureKind]:
 def whole_report(
     case: Case, given: Given, system: str, step: float, progress: Progress, cases: Sequence[Case] = ()
 ) -> Document:
-    """Return the report on a machine: a first page, pictures and tables of each command, input.
+    """Return the report on a machine: a first page, pictures and tables of each command, energy balance, input.
 
     given: the keys of its file; step: of the tables in degrees; cases: its load cases.
     """
@@ -89,6 +90,7 @@ def whole_report(
 
     rows = tuple((what, why, ", ".join(dict.fromkeys(where))) for (what, why), where in left_out.items())
     sections += [
+        Section("energy", "Energy balance", tuple(_energy(case, system))),
         Section("tables", "Over the crank angle", tuple(tables)),
         Section("left-out", "Left out", (Grid("", ("Part", "Why", "Of"), rows),) if rows else ()),
         Section("input", "Input as understood", tuple(_input(case, given))),
@@ -119,6 +121,40 @@ def _input(case: Case, given: Given) -> Iterator[Grid]:
         listed = tuple((one.what, one.text) for one in part.entries if one.severity != "warning")
         if listed and part.title not in ("Limits", "Expected"):
             yield Grid(part.title, ("", ""), listed)
+
+
+def _energy(case: Case, system: str) -> Iterator[Grid]:
+    """Yield the energy balance of every cylinder over a cycle, with its residual by an independent quadrature.
+
+    Identical cylinders are listed once, those without a solution are omitted.
+    """
+    found = [(forces.drive.name, _energy_rows(forces, system)) for forces in case.cylinders]
+    for equal in grouped((one for one in found if one[1]), itemgetter(1)):
+        name = together([name for name, _ in equal])
+        yield Grid(name, ("Per cycle", "Energy", "Unit"), equal[0][1], (1,))
+
+
+def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...], ...]:
+    try:
+        left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
+        places = {name: place for name, (_, place) in {**SLIDING, **RUBBING}.items()}
+        terms = [
+            ("Indicated work of the driving pistons", forces.work_driving),
+            ("Indicated work of the driven pistons", forces.work_driven),
+            *((f"Friction {place}", -(friction.get(name) or 0.0)) for name, place in places.items()),
+            ("Friction given as a force", -(friction.get("constant") or 0.0)),
+            ("What the output works against", forces.resistance_work),
+        ]
+    except KurbelError:
+        return ()
+    if left is None:
+        return ()
+    known = [(text, value) for text, value in terms if value]
+    unit = shown_unit("energy", system, max((abs(value) for _, value in known), default=abs(left)))
+    known.append(("Reaches the shaft, 2π R W per turn", left))
+    open_ = "below 1e-14" if residual is not None and abs(residual) < 1e-14 else f"{residual:.2g}"
+    rows = [(text, float(convert(value, "energy", unit)), unit) for text, value in known]
+    return (*rows, ("Left open by an independent quadrature, over the turnover", open_, ""))
 
 
 # two machines side by side
