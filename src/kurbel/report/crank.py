@@ -89,7 +89,7 @@ def forces_report(case: Case, frame: Frame) -> Report:
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose else {}
+    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose and case.cylinders else {}
     cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
     if frame.table:
         for forces in case.cylinders:
