@@ -53,18 +53,15 @@ def run(
 ) -> None:
     """Compute and write the rows: the options of the command. Raises UsageError for those that do not go together."""
     written = format_of(format, file_name, _SUFFIXES, comma)
-    named, for_people = file_name not in (None, "-"), written in ("table", "markdown")
+    named, for_people, parquet = file_name not in (None, "-"), written in ("table", "markdown"), written == "parquet"
     resumable = named and written in _LINES and not (sort or pareto or summarised)
     for wrong, message in (
         (not (vary or cases), "Missing option '--vary' (the values to vary); or give --cases."),
         (cases and case_name, "--cases has every load case, --case one; leave one of them out."),
         (top and not sort, "--top N takes the first rows of --sort ID; give --sort too."),
         (resume and not resumable, "--resume goes on in csv or json lines, rows in order; give --output FILE.csv."),
-        (written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
-        (
-            summarised and (shard or written == "parquet"),
-            "--summary is of all rows, as text; leave --shard, parquet out.",
-        ),
+        (parquet and not named, "Parquet is a file; give --output FILE.parquet."),
+        (summarised and (shard or parquet), "--summary is of all rows, as text; leave --shard, parquet out."),
         (dask and jobs, "give only one of --dask and --jobs."),
     ):
         if wrong:
@@ -81,7 +78,7 @@ def run(
     order = None if sort is None else read_aim(sort, every, "--sort")
     shown = sweep.shown if for_people else [(one.id, place) for place, one in enumerate(sweep.heads)]
     names = tuple((name, sweep.heads[place].unit) for name, place in shown)
-    titles = Titles(names, sweep.texts, types=sweep.types() if written == "parquet" else ())
+    titles = Titles(names, sweep.texts, types=sweep.types() if parquet else ())
     titles = Titles(summary_heads(sweep.heads), row="column") if summarised else titles
     look = Look(written, comma=comma, digits=digits)
     headed, kept = rows.start == 0, Kept()

@@ -143,7 +143,7 @@ def subtitle_of(machine: Machine) -> str:
     return ", ".join(texts)
 
 
-class Found(NamedTuple):
+class Headline(NamedTuple):
     """A key value in SI; where: the parts that have it, if others have less; at_deg: its crank angle."""
 
     title: str
@@ -154,7 +154,7 @@ class Found(NamedTuple):
 
 
 @np.errstate(all="ignore")
-def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
+def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Headline]:
     """Return key values for the first page by their ids; without ids, the eight most informative ones, none zero.
 
     Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`; a key value
@@ -162,7 +162,7 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     """
     kind = kind_of(case)
     wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
-    known: dict[str, Found] = {}
+    known: dict[str, Headline] = {}
     for command, labels in _LABELS.items():
         subjects = if_any(partial(subjects_of, case, command))
         for id in labels:
@@ -175,7 +175,7 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
     if "M_max" not in wanted:
         titles["M_min"] = _LABELS["flywheel"]["M_max"]
-    found: dict[str, Found] = {}
+    found: dict[str, Headline] = {}
     for id in dict.fromkeys(one for one in wanted if one in known):
         size, taken = abs(known[id].number), [0.0, *(abs(one.number) for one in found.values())]
         if ids or (size not in taken and len(found) < _MOST_FACTS):
@@ -183,14 +183,14 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Found]:
     return found
 
 
-def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None:
-    each: list[Found] = []
+def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Headline | None:
+    each: list[Headline] = []
     for one in subjects:
         quantity = one.lists.key_values(command).get(id)
         with suppress(KurbelError):
             value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
-                each.append(Found(_LABELS[command][id], number, quantity, one.name, getattr(value, "degrees", None)))
+                each.append(Headline(_LABELS[command][id], number, quantity, one.name, getattr(value, "degrees", None)))
     if not each:
         return None
     whole = [one for one in each if one.where == "whole machine"]
@@ -199,7 +199,7 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None
     return found._replace(where=together(equal) if len(equal) < len(each) else "")
 
 
-def tiles(facts: Iterable[Found], system: str) -> Facts:
+def tiles(facts: Iterable[Headline], system: str) -> Facts:
     """Return key values for display as tiles, each in its unit."""
     found = []
     for one in facts:
