@@ -104,4 +104,4 @@ class ScotchYoke(Mechanism):
     def crank_angles_at(self, displacement: Array, outstroke: bool) -> Array:
         """Return φ = 2 arctan √(x/(2R − x)) in degrees, and 360° less on the return stroke."""
         sweep = np.degrees(2 * np.arctan2(np.sqrt(displacement), np.sqrt(self.stroke - displacement)))
-        return np.asarray(sweep if outstroke else 360.0 - sweep)
+        return sweep if outstroke else 360.0 - sweep

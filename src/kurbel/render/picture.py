@@ -79,7 +79,7 @@ class AxisScale(NamedTuple):
         """Return the places of values."""
         low, high, at = (np.log10(one) if self.log else np.asarray(one) for one in (self.low, self.high, values))
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
-        return np.asarray(np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9))
+        return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
 
 def scale_of(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScale:
@@ -199,7 +199,7 @@ class PanelFrame:
 
     def place(self, x: Array | float, y: Array | float) -> ComplexArray:
         """Return the places of points."""
-        return np.asarray(self.x.place(x) + 1j * self.y.place(y))
+        return self.x.place(x) + 1j * self.y.place(y)
 
     def ticks_across(self, most: int, start: float, end: float) -> list[tuple[float, float, str]]:
         """Return the ticks of the lower axis: place, left end of the text, and text, '' where it would meet another.
@@ -244,7 +244,7 @@ class PanelFrame:
         rows, columns = math.ceil((self.tall - dot) / tall), math.ceil((self.wide - dot) / wide)
         places = np.concatenate([*lines, np.empty(0, dtype=complex)])
         bounds = (0.0, rows * tall), (0.0, columns * wide)
-        return np.asarray(np.sign(np.histogram2d(places.imag, places.real, (rows, columns), bounds)[0]))
+        return np.sign(np.histogram2d(places.imag, places.real, (rows, columns), bounds)[0])
 
     def _of_curves(self, panel: Panel, tracks: list[ComplexArray], named: bool) -> Iterator[Label]:
         """Yield the labels of faint lines, of forces and of several curves, not placed yet."""

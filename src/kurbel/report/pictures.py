@@ -173,7 +173,7 @@ def polar_effort(source: Source) -> Iterator[Panel]:
     base = 1.2 * float(np.abs(source.samples("T", [source.line("T")]).values).max()) or 1.0
 
     def tip(state: State) -> ComplexArray:
-        return np.asarray((base + state.T) * np.exp(1j * np.radians(state.phi)))
+        return (base + state.T) * np.exp(1j * np.radians(state.phi))
 
     circles = [curve("faint", *(base * AROUND), name=Words("T = 0"))]
     if mean := source.results.W:

@@ -41,7 +41,7 @@ class TracePressure:
         self.starts = Angles(np.zeros(len(widths), dtype=np.intp), self._within_cycle(self.angles[:-1]))
 
     def _within_cycle(self, degrees: Array) -> Array:
-        return np.asarray(np.mod(degrees, self.setting.cycle))
+        return np.mod(degrees, self.setting.cycle)
 
     @cached_property
     def noise(self) -> float:
@@ -52,7 +52,7 @@ class TracePressure:
         """Return the gauge pressure in Pa at crank angles in degrees, on the lines that hold `within` (n,)."""
         along, turned = self.angles - self.angles[0], self._within_cycle(within - self.angles[0])
         line = np.minimum(np.searchsorted(along, turned, side="right") - 1, len(self._gradients) - 1)
-        return np.asarray(self._p[line] + self._gradients[line] * (turned - along[line] + (degrees - within)))
+        return self._p[line] + self._gradients[line] * (turned - along[line] + (degrees - within))
 
     @property
     def highest(self) -> Extreme:
@@ -65,7 +65,7 @@ class TracePressure:
     def rise(self, degrees: Array) -> Array:
         """Return the rise of pressure (n,) in Pa per degree at crank angles (n,), over the degree around each."""
         ahead, behind = (self.at(at, at) for at in (degrees + _CHORD / 2, degrees - _CHORD / 2))
-        return np.asarray((ahead - behind) / _CHORD)
+        return (ahead - behind) / _CHORD
 
     def rises(self, cycles: Array) -> tuple[Array, Array]:
         """Return the rises (m, k) in Pa per degree of cycles (m, n), and the angles (k,) in the middle of their chords.

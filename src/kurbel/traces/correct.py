@@ -83,7 +83,7 @@ class Trace(Indivisible):
     @cached_property
     def pressures(self) -> Array:
         """Mean (n,) in Pa of all laps."""
-        return np.asarray(self.samples.mean(axis=0))
+        return self.samples.mean(axis=0)
 
     def as_written(self, angle: float) -> float:
         """Return an angle of the trace with the sign that it has in the file."""
@@ -171,13 +171,13 @@ class Setting(NamedTuple):
     def from_dead_centre(self, trace: Trace) -> Array:
         """Return the angles (n,) in degrees of samples from the chamber's own (firing) dead centre, −½ to ½ cycle."""
         after = trace.angles + self.shift(trace) - self.own_dead_centre
-        return np.asarray(np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2)
+        return np.remainder(after + self.cycle / 2, self.cycle) - self.cycle / 2
 
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
         angle = CrankAngle.of(after + self.own_dead_centre)
         displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
-        return np.asarray(displaced if self.head_end else 1 - displaced)
+        return displaced if self.head_end else 1 - displaced
 
 
 # drift and level
@@ -204,7 +204,7 @@ def corrected(trace: Trace, setting: Setting) -> Array:
     turned = trace.angles + setting.shift(trace) - angle
     away = np.abs(np.remainder(turned + trace.period / 2, trace.period) - trace.period / 2)
     near = away <= max(_AROUND, float(away.min()))
-    return np.asarray(samples + (pressure - samples[:, near].mean(axis=1, keepdims=True)))
+    return samples + (pressure - samples[:, near].mean(axis=1, keepdims=True))
 
 
 def without_drift(trace: Trace, samples: Array) -> Array:
@@ -220,12 +220,12 @@ def drift_of(trace: Trace, samples: Array) -> Array:
     By lines through both ends where the closing sample is missing.
     """
     if not trace.completed:
-        return np.asarray(samples[:, 0] - samples[:, -1])
+        return samples[:, 0] - samples[:, -1]
     to_end, from_begin = trace.angles[:-1] - trace.angles[-1], trace.angles - trace.angles[0]
     last, first = max(3, int((to_end > -LAST).sum())), max(3, int((from_begin <= LAST).sum()))
     before = np.polyfit(to_end[-last:], samples[:, -1 - last : -1].T, 1)[1]
     after = np.polyfit(from_begin[:first], samples[:, :first].T, 1)[1]
-    return np.asarray(after - before)
+    return after - before
 
 
 _OF_MEDIAN = 1.4826
@@ -322,7 +322,7 @@ def parabola_peak(places: Array, values: Array, top: float, width: float) -> Pea
 def sides_of(top: float, angles: Array, pressures: Array, period: float) -> Array:
     """Return the mean pressures before and after a peak at an angle, on three stretches from near to far, (2, 3)."""
     places = np.multiply.outer([-1.0, 1.0], _SIDES) + top
-    return np.asarray(np.interp(places, angles, pressures, period=period).mean(axis=-1))
+    return np.interp(places, angles, pressures, period=period).mean(axis=-1)
 
 
 def motored_peak(angles: Array, laps: Array) -> tuple[Peak, float]:

@@ -20,14 +20,14 @@ _DENSE = 600
 def by_angle(setting: Setting, derivative: Callable[[CrankAngle], Number], degrees: Array) -> Array:
     """Return a derivative of the stroke fraction z by φ, from that of the coordinate of the mechanism."""
     found = derivative(CrankAngle.of(degrees)) / setting.mechanism.stroke
-    return np.asarray(found if setting.head_end else -found)
+    return found if setting.head_end else -found
 
 
 def by_trapezoid(setting: Setting, angles: Array, derivative: Callable[[CrankAngle], Number]) -> Array:
     """Return the weights of the trapezoid rule at crank angles (n,) in degrees; derivative: dx/dφ or d²x/dφ²."""
     steps = np.radians(np.diff(angles)) / 2
     widths = np.append(steps, 0.0) + np.append(0.0, steps)
-    return np.asarray(widths * by_angle(setting, derivative, angles))
+    return widths * by_angle(setting, derivative, angles)
 
 
 def by_straight_lines(setting: Setting, angles: Array, begin: float = 0.0, turn: float = 720.0) -> Array:
