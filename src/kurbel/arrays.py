@@ -1,13 +1,13 @@
 """Types of arrays, declared without numpy.typing, whose import would slow down every start."""
 
-from typing import Any, TypeVar, Union
+from typing import TypeVar, Union
 
 import numpy as np
 
-Array = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
-ComplexArray = np.ndarray[tuple[Any, ...], np.dtype[np.complex128]]
-Flags = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
-Indices = np.ndarray[tuple[Any, ...], np.dtype[np.intp]]
+Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+ComplexArray = np.ndarray[tuple[int, ...], np.dtype[np.complex128]]
+Flags = np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
+Indices = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 Number = Union[float, Array]
 """A number of one machine, or an array (machines,) of many."""
 N = TypeVar("N", float, Array, Number)

@@ -229,6 +229,12 @@ class Lists(NamedTuple):
 
 Condition = Callable[[Any], bool]
 """Takes the results of a command; see `Row`."""
+Formula = Callable[[Any], Any]
+"""Takes the results of a command, or the state at crank angles; see `Row`."""
+FormulaOfPart = Callable[[Any, str], Any]
+"""Takes the results of a command and the name of one of their parts."""
+Answers = dict[str, Any]
+"""Values in SI by id, without those that there are not."""
 
 
 class Row(NamedTuple):
@@ -239,17 +245,17 @@ class Row(NamedTuple):
     """
 
     quantity: Quantity
-    of: Callable[[Any], Any]
+    of: Formula
     unless: Condition | None = None
 
     def under(self, heading: str) -> Row:
         """Return it under a heading, if its quantity has none of its own."""
         return self if self.quantity.heading else self._replace(quantity=self.quantity._replace(heading=heading))
 
-    def through(self, part: Callable[[Any], Any]) -> Row:
+    def through(self, part: Formula) -> Row:
         """Return the same quantity for results of which these are a part, None where they have no such part."""
 
-        def of_part(function: Callable[[Any], Any], results: Any) -> Any:
+        def of_part(function: Formula, results: object) -> Any:
             found = part(results)
             return None if found is None else function(found)
 
@@ -284,7 +290,7 @@ class Computed(Generic[V]):
         (row,) = self.rows
         self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
 
-    def value_of(self, one: Any) -> V:
+    def value_of(self, one: object) -> V:
         """Return the value of an object."""
         known = vars(one)
         if self.name not in known:
@@ -321,7 +327,7 @@ def value(
     symbol: str,
     kind: str,
     text: str,
-    of: Callable[[Any], Any] | None = None,
+    of: Formula | None = None,
     *,
     unless: Condition | None = None,
     **words: Any,
@@ -337,7 +343,7 @@ def value(
 class ForEach:
     """One quantity of several parts, a method of the part; its rows are attributes of the class, named by their ids."""
 
-    def __init__(self, of: Callable[[Any, str], Any], rows: tuple[Row, ...]) -> None:
+    def __init__(self, of: FormulaOfPart, rows: tuple[Row, ...]) -> None:
         self.of, self.rows = of, rows
 
     def __get__(self, one: object | None, owner: type) -> Any:
@@ -351,7 +357,7 @@ def values_for(
     kind: str,
     text: str,
     *,
-    of: Callable[[Any, str], Any] | None = None,
+    of: FormulaOfPart | None = None,
     group: Callable[[str], str] = lambda part: "",
     after: str = "",
     **words: Any,

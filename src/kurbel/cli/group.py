@@ -58,7 +58,9 @@ class _Kurbel(click.Group):
         assert cmd.name
         cmd.short_help, cmd.epilog = COMMANDS[cmd.name].summary, exit_statuses(cmd.name)
 
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
         if name in COMMANDS or name.startswith("-"):
             return super().resolve_command(ctx, args)

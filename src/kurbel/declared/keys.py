@@ -51,7 +51,7 @@ class Key(NamedTuple):
     example: str = ""
     also: tuple[str, ...] = ()
     attribute: str = ""
-    gives: Callable[[Values], dict[str, Any]] | None = None
+    gives: Callable[[Values], dict[str, object]] | None = None
 
     @property
     def description(self) -> str:
@@ -146,7 +146,7 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-def _in_order(record: "type[Record]") -> list[Field[Any]]:
+def _in_order(record: "type[Record]") -> list[Field[object]]:
     """Return the attributes in the order of positional arguments: first those without a default."""
     return sorted(fields(record), key=lambda one: one.default is not MISSING)
 
@@ -176,7 +176,7 @@ class Record:
     """
 
     KEYS: ClassVar[Keys] = {}
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    __dataclass_fields__: ClassVar[dict[str, Field[object]]]
     __signature__ = SignatureOfFields()
 
     def __init_subclass__(cls) -> None:
@@ -189,7 +189,7 @@ class Record:
         cls.KEYS = own
         dataclass(init=False, repr=False, eq=False)(cls)
 
-    def __init__(self, *values: Any, **named: Any) -> None:
+    def __init__(self, *values: object, **named: object) -> None:
         defaults = {one.name: one.default for one in _in_order(type(self))}
         given = {**dict(zip(defaults, values)), **named}
         wrong = [name for name in given if name not in defaults]
@@ -238,7 +238,7 @@ class Record:
         )
 
     @classmethod
-    def from_keys(cls, **values: Any) -> Any:
+    def from_keys(cls, **values: object) -> Any:
         """Return the record of these values by key; None for a key that is not given.
 
         The same checks as for a machine file: raises RuleError for keys that contradict or require one another, for

@@ -2,10 +2,10 @@
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
@@ -22,10 +22,10 @@ from kurbel.machine_file.reader import machine_of
 
 def sweep(
     machine: Machine | str | os.PathLike[str],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, object],
     columns: Sequence[str] | str = (),
     with_angles: bool = False,
-) -> dict[str, Any]:
+) -> dict[str, Array]:
     """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
 
     machine: as `load` or `loads` returned it, or what these take; inputs: dotted key of its file -> numbers (n,) in SI
@@ -91,7 +91,7 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
+def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
     """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)
@@ -103,8 +103,8 @@ def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
         yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
 
 
-def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
-    arrays: dict[str, Any] = {}
+def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Array]:
+    arrays: dict[str, Array] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows))):
         if not head.input:
             listed = any(isinstance(one, tuple) for one in values)

@@ -7,7 +7,7 @@ is each row that breaks a rule, for its message.
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -164,7 +164,7 @@ def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
     axial position.
     """
-    codes: list[Any] = []
+    codes: list[Array] = []
 
     def coded(numbers: Array) -> Array:
         codes.append((numbers == 0) + 2.0 * np.isinf(numbers))
@@ -185,7 +185,7 @@ def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
         yield fit[kinds == kind]
 
 
-def _column(values: Array) -> Any:
+def _column(values: Array) -> Array | list[object]:
     """Return an array of many machines, or the number if all have the same."""
     bits = values.view(np.int64)  # 0 and −0 are different
     return values if (bits != bits[0]).any() else values[0].item()

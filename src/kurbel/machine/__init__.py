@@ -51,7 +51,7 @@ class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
     name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
-    values: tuple[tuple[str, Any], ...] = field(
+    values: tuple[tuple[str, object], ...] = field(
         SETTINGS,
         "Values instead of those of the file, by dotted key",
         required=True,

@@ -18,7 +18,7 @@ def values_of(record: Any) -> dict[str, Any]:
     return {one.name: known[one.name] for one in fields(record)}
 
 
-def varies(value: Any) -> bool:
+def varies(value: object) -> bool:
     """Return whether a value has arrays of many machines; a record remembers which of its fields do."""
     if isinstance(value, np.ndarray):
         return True
@@ -32,7 +32,7 @@ def varies(value: Any) -> bool:
     return bool(known["_varied"])
 
 
-def changed(record: Any, change: Callable[[Array], Any], known: dict[int, Any] | None = None) -> Any:
+def changed(record: Any, change: Callable[[Array], object], known: dict[int, object] | None = None) -> Any:
     """Return a record with every array (machines,) changed, without checking its rules again.
 
     Objects without arrays are not copied, and an object in several places stays one object; known: changed objects by

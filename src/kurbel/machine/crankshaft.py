@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Truth
 from kurbel.declared.record import Record, Rule, field
 
 _ROUNDED = 1.05
@@ -85,7 +86,7 @@ class Crankshaft(Record):
         for name, place in (("a", self.a), ("b", self.b)):
             inside = "puts the bearing inside the web ({end:length} from the pin); measure to the middle of the bearing"
             yield Rule(name, place <= self._web_end, f"{{{name}}} {inside}", numbers)
-        beyond: Any = self.flywheel_position <= -self.span
+        beyond: Truth = self.flywheel_position <= -self.span
         if self.overhung:
             before = self.b <= self.a
             yield Rule("b", before, "{b} puts B before bearing A ({a}); an overhung pin lies beyond A")

@@ -277,7 +277,7 @@ class _MeanTorque(OneOf):
         """Return `ratio` of a bare number, else `torque`."""
         return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read it as what it looks like."""
         bare = self.kind_as_written(value) == "ratio"
         found = self.forms[bare].read(reading, value, path)

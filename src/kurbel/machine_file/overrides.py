@@ -139,7 +139,7 @@ def value_at(tree: Any, path: Path) -> Node | None:
     return tree
 
 
-def _step(node: Node, one: Override, place: int) -> Any:
+def _step(node: Node, one: Override, place: int) -> Node:
     """Go one step down, or set the value at the last one, and return what is there; what leads to it is made."""
     step, last = one.path[place], place == len(one.path) - 1
     above = dotted(one.path[:place])

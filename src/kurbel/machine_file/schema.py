@@ -7,7 +7,6 @@ bounds of bare numbers, and which keys exclude each other.
 import re
 from collections import Counter
 from collections.abc import Mapping
-from typing import Any
 
 from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, FigureForm, Figures
 from kurbel.declared.forms.structures import Inline, Keyed, Listing, OneOf, RecordForm, Variant
@@ -107,7 +106,7 @@ def _of_number(form: NumberForm, definitions: Schema) -> Schema:
             "examples": [form.example],
         }
         number = _reference(name)
-    others: list[Any] = [*form.words] + [0] * form.zero
+    others: list[object] = [*form.words] + [0] * form.zero
     return {"anyOf": [number, {"enum": others}]} if others else number
 
 

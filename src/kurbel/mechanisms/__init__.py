@@ -18,7 +18,7 @@ from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.record import Record, field
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
-from kurbel.quantity import Quantity
+from kurbel.quantity import Condition, Formula, Quantity
 
 Factor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
@@ -37,10 +37,10 @@ class Offer:
     quantity: Quantity
     factor: Factor
     omega: int = 0
-    force: Callable[[Any], Any] | None = None
-    unless: Callable[[Any], bool] | None = None
+    force: Formula | None = None
+    unless: Condition | None = None
 
-    def of(self, state: Any) -> Any:
+    def of(self, state: Any) -> Array | None:
         """Return the column of the state of a cylinder at crank angles (n,) in SI; None where it is not known."""
         factors = [self.factor(state.mechanism, state.posed), *[state.omega] * self.omega]
         if self.force:
@@ -53,9 +53,7 @@ def motion_column(id: str, symbol: str, kind: str, text: str, factor: Factor, om
     return Offer(Quantity(id, symbol, kind, text, commands=("motion",), after="b"), factor, omega)
 
 
-def force_column(
-    id: str, symbol: str, kind: str, text: str, factor: Factor, force: Callable[[Any], Any], after: str = "N"
-) -> Offer:
+def force_column(id: str, symbol: str, kind: str, text: str, factor: Factor, force: Formula, after: str = "N") -> Offer:
     """Return a column that a mechanism adds to `kurbel forces`, with extremes, called as the sentence begins."""
     called = text[0].lower() + text[1:].partition(",")[0]
     forces = ("forces",)

@@ -258,7 +258,7 @@ class SliderCrank(Mechanism):
         after = (whole - passed) * (distance + inner) / (line + 1 - lam)
         half = np.arctan2(np.sqrt(before * (1 + line - lam)), np.sqrt(after * (line + lam + 1)))
         lead, sweep = np.degrees(np.arctan2(eps, distance)), np.degrees(2 * half)
-        return np.asarray(lead + sweep if outstroke else 360.0 + lead - sweep)
+        return lead + sweep if outstroke else 360.0 + lead - sweep
 
 
 def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import cached_property, lru_cache
 from itertools import combinations, combinations_with_replacement
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, ComplexArray, Indices
+from kurbel.arrays import Array, ComplexArray, Indices, Number
 
 _AS_ONE = 1e-9
 """Share of a point in a circle that is 0 but for rounding."""
@@ -49,7 +49,7 @@ def _choices(count: int) -> Indices:
     return np.array([*few, *combinations(range(count), 3)], dtype=np.intp).T
 
 
-def smallest_circle(points: ComplexArray, more: Any = 0.0) -> Enclosing:
+def smallest_circle(points: ComplexArray, more: Number = 0.0) -> Enclosing:
     """Return the smallest circles round few points (k, n), for which max(|point − centre|² + more) is least.
 
     A circle through three points with u = b − a, v = c − a has w = centre − a with 2 w·u = |u|² + more_b − more_a, and
@@ -91,7 +91,7 @@ class ClosedCurve:
         """Return the amplitudes of a wave (machines,), 0 of one that there is not."""
         return self.waves[self.numbers == number].sum(axis=0)
 
-    def plus(self, number: int, amplitude: Any) -> ClosedCurve:
+    def plus(self, number: int, amplitude: complex | ComplexArray) -> ClosedCurve:
         """Return the sum of this curve and one more wave of a number that it has."""
         waves = self.waves.copy()
         waves[number + len(waves) // 2] += amplitude

@@ -20,12 +20,12 @@ class Extreme(NamedTuple):
     degrees: float
 
 
-def number_of(answer: Any) -> Any:
+def number_of(answer: object) -> Any:
     """Return a key value without its angle: the value of an extreme, or the key value itself."""
     return answer.value if isinstance(answer, Extreme) else answer
 
 
-def size_of(answer: Any) -> float:
+def size_of(answer: object) -> float:
     """Return the magnitude of a key value; of a list the largest; 0 for None."""
     number = number_of(answer)
     return max(map(abs, number), default=0.0) if isinstance(number, tuple) else abs(number or 0.0)

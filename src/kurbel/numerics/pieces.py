@@ -63,7 +63,7 @@ class Angles(NamedTuple):
     machine: Indices
     degrees: Array
 
-    def listed(self, count: int | None) -> tuple[Any, ...]:
+    def listed(self, count: int | None) -> tuple[object, ...]:
         """Return them as a tuple; of many machines one tuple each."""
         if count is None:
             return tuple(self.degrees.tolist())

@@ -159,7 +159,7 @@ def _made_from(given: Provenance | None) -> dict[str, object]:
     return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
-def _named(part: Part, ratio: bool, look: Look) -> dict[str, object]:
+def _named(part: Part, ratio: bool, look: Look) -> dict[str, Any]:
     """Return a part with its name, or with its L/R, where empty results are left out."""
     results = _results(part, look)
     if not ratio:

@@ -113,7 +113,7 @@ def _on_crank_1(source: Source, name: Words, torque: Array) -> Line:
     effort, crank = source.results.effort, source.results.crank
 
     def force(state: TurningState) -> Array:
-        return np.asarray(effort.at(effort.pieces, torque, state.phi, state.within) / crank)
+        return effort.at(effort.pieces, torque, state.phi, state.within) / crank
 
     return name, force
 
@@ -229,7 +229,7 @@ def unbalanced_vectors(source: Source) -> Iterator[Panel]:
 
 
 def _of_components(x: str, y: str, state: AtAngles) -> ComplexArray:
-    return np.asarray(state[x] + 1j * state[y])
+    return state[x] + 1j * state[y]
 
 
 def unbalanced_over_angle(source: Source) -> Iterator[Panel]:
@@ -258,7 +258,7 @@ def polar_loads(source: Source) -> Iterator[Panel]:
 def _tip_of_load(frame: str, state: BearingColumns) -> ComplexArray:
     """Return the load along and across the direction from which its angle counts; of 0 there is none."""
     angle = np.where(state.load > 0, np.nan_to_num(state[frame]), 0.0)
-    return np.asarray(state.load * np.exp(1j * np.radians(angle)))
+    return state.load * np.exp(1j * np.radians(angle))
 
 
 def _slenderness(panel: Panel) -> float:

@@ -122,7 +122,7 @@ class Source:
         name = self.words(id)
         return name._replace(words=words or name.words), itemgetter(id)
 
-    def values(self, lines: Iterable[Line], degrees: Any, within: Array | None = None) -> Array:
+    def values(self, lines: Iterable[Line], degrees: object, within: Array | None = None) -> Array:
         """Return lines (k, n) in SI at crank angles (n,)."""
         degrees = np.atleast_1d(np.asarray(degrees, dtype=float))
         state = self.results.at(degrees, degrees if within is None else within)

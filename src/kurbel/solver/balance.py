@@ -94,7 +94,7 @@ def book_curvature(mechanism: Mechanism, angle: CrankAngle) -> Any:
     return offer.factor(mechanism, angle) if offer else mechanism.curvature(angle)
 
 
-class Part(NamedTuple):
+class Contribution(NamedTuple):
     """What a throw or weight adds to the unbalanced force over ω²; place: along the shaft in m, None if not known.
 
     waves: its Fourier coefficients in kg m from −k to k, (2k + 1, count).
@@ -104,7 +104,7 @@ class Part(NamedTuple):
     place: Number | None
 
 
-def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int) -> list[Part]:
+def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: bool, count: int) -> list[Contribution]:
     """Return (m x″(φ − β) + m_rot R e^{i(φ − β)}) e^{iγ} of each throw, and u n² e^{inφ} of each weight.
 
     book: with the acceleration of first order. Cylinders with the same mechanism share one analysis.
@@ -117,12 +117,12 @@ def parts_of(throws: Sequence[CylinderThrow], weights: Sequence[Weight], book: b
         forward = np.concatenate((own, np.zeros((k - len(own), count))))
         waves = np.concatenate((forward[::-1].conj(), np.zeros((1, count)), forward))
         lag = np.multiply.outer(np.arange(-k, k + 1), np.broadcast_to(throw.cylinder.crank_position, count))
-        found.append(Part(waves * throw.mass * unit_vector(throw.bank - lag), throw.place))
+        found.append(Contribution(waves * throw.mass * unit_vector(throw.bank - lag), throw.place))
     for weight in (*(throw.weight(throw.rotating) for throw in throws), *weights):
         if some(weight.product != 0):
             waves = np.zeros((2 * k + 1, count), complex)
             waves[k + weight.order] = weight.product * weight.order**2
-            found.append(Part(waves, weight.place))
+            found.append(Contribution(waves, weight.place))
     return found
 
 
@@ -134,7 +134,7 @@ class Unbalanced:
     next_order: the first one that is not listed, None if all are.
     """
 
-    def __init__(self, parts: Sequence[Part], z_0: Number | None) -> None:
+    def __init__(self, parts: Sequence[Contribution], z_0: Number | None) -> None:
         waves, places = np.array([one.waves for one in parts]), [one.place for one in parts]
         levers = [place - z_0 for place in places if place is not None and z_0 is not None]
         self.force = _summed(waves, [1.0] * len(places))
@@ -163,11 +163,11 @@ def vector_at(curve: ClosedCurve, degrees: Array) -> ComplexArray:
 
 
 def _vector(
-    name: str, symbol: str, kind: str, text: str, of: Callable[[Any], Any], asked: bool = False
-) -> Computed[Any]:
+    name: str, symbol: str, kind: str, text: str, of: Callable[[ComplexArray], Array], asked: bool = False
+) -> Computed[Array | None]:
     """Return a column: a component, or the magnitude, of a vector of `BalanceColumns`; asked: on request only."""
 
-    def part(columns: BalanceColumns) -> Any:
+    def part(columns: BalanceColumns) -> Array | None:
         found = columns.vector(name)
         return None if found is None else of(found)
 
@@ -395,7 +395,7 @@ class MachineBalance(Results):
     def roll(self) -> Array | None:
         """Samples of the rolling moment in N m on the pieces of the effort. Raises UsageError where no force acts."""
 
-        def angular_momentum_rate(state: State) -> Any:
+        def angular_momentum_rate(state: State) -> Number:
             """Return dH/dt = m e b in N m, less the couple of an exact rod, as ψ counts against the rotation."""
             drive = state.drive
             moment = state.b * (drive.mass * drive.mechanism.offset)

@@ -31,7 +31,7 @@ from kurbel.machine.batch import taken
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.lobatto import chebyshev, rule
 from kurbel.numerics.pieces import Pieces, common, resolved
-from kurbel.quantity import value, values_for
+from kurbel.quantity import Answers, value, values_for
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
@@ -66,7 +66,7 @@ def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
     return State.at(forces.drive, degrees - late, within - late)
 
 
-def carried(pieces: Pieces, forces: CylinderForces, *values: Any) -> ComplexArray:
+def carried(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
     """Return quantities sampled on the pieces of a cylinder at the nodes of common ones, (q, nodes, pieces)."""
     source = forces.pieces
     parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
@@ -167,11 +167,11 @@ class Bearing(Results):
         return result(values, self.count)
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The key values by id in SI; those that need sizes or speed only if these are given."""
         pieces, load, surfaces = self._cycle
         ends, mean = pieces.extremes(load[None]).each(self._result)[0], self._result(pieces.mean(load))
-        found: dict[str, Any] = {"load_max": ends.largest, "load_min": ends.smallest, "load_mean": mean}
+        found: Answers = {"load_max": ends.largest, "load_min": ends.smallest, "load_mean": mean}
         found["load_high"] = self._result(mean_of_high(pieces, load, np.atleast_1d(ends.largest.value)))
         for surface, ending in zip(surfaces, ("", "_shell")):
             for id, degrees in zip(("unloaded_arc", "unloaded_middle"), unloaded(pieces, surface, self.contact)):
@@ -301,7 +301,7 @@ def _pin_load(state: State) -> Force:
     return on_pin(state).complex if state.drive.has_force else 0j
 
 
-def _parts(loads: Sequence[Any], shape: tuple[int, ...]) -> Array:
+def _parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
     """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
     return np.stack([np.broadcast_to(part, shape) for one in loads for part in (np.real(one), np.imag(one))])
 

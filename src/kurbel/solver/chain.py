@@ -241,6 +241,8 @@ class ChainEquation:
     spring less its mean, over `order`, and for each mass J ω_n (ω − ω_n).
     """
 
+    noise: Array
+
     def __init__(
         self,
         chain: Chain,

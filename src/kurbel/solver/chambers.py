@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Truth
+from kurbel.arrays import Array, Number, Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
@@ -31,7 +31,7 @@ def _own_pressure(state: Chambers, end: str) -> Array | None:
     return state.pressure(chamber) + spread(gas.base, state.drive.index) if gas and chamber else None
 
 
-def _own_volume(state: Chambers, end: str) -> Any:
+def _own_volume(state: Chambers, end: str) -> Number | None:
     gas, passed = state.drive.own_gas, state.displacement
     if gas is None or _own_end(state, end) is None:
         return None
@@ -120,7 +120,7 @@ class Chambers(MotionColumns):
         left = self.mechanism.remaining(self.posed) / self.mechanism.stroke if end.steep else None
         return end.at(self.z, self.phi, self.within, self.drive.index, left)
 
-    def force_on(self, gas: PistonGas, mean_area: bool = False) -> Any:
+    def force_on(self, gas: PistonGas, mean_area: bool = False) -> Array:
         """Return the gas force p_H A_H − p_C A_C in N on a piston (R 296); mean_area: both ½(A_H + A_C) (R 297)."""
         head, crank = (spread(one, self.drive.index) for one in gas.areas)
         if mean_area:

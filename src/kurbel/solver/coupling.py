@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
@@ -42,7 +42,7 @@ class Harmonic(NamedTuple):
     amplification: float
 
 
-def natural_order(coupling: Coupling, own: Array, omega: Any) -> Array:
+def natural_order(coupling: Coupling, own: Array, omega: Number) -> Array:
     """Return the natural order √(k (1/J₁ + 1/J₂))/ω_n of cranks and driven inertia, J₁ in kg m²."""
     return np.sqrt(coupling.stiffness * (1 / own + 1 / coupling.inertia)) / omega
 
@@ -114,7 +114,7 @@ class ElasticCoupling(SpeedLine):
         super().__init__(effort, pieces, u, 1 + pieces.mean(u), failed, -1.0)
 
     @property
-    def natural_order(self) -> Any:
+    def natural_order(self) -> Number:
         """Natural frequency of both masses on the coupling over ω_n."""
         return self.result(self._order)
 
@@ -128,7 +128,7 @@ class ElasticCoupling(SpeedLine):
         """Largest and smallest torque in the coupling in N m."""
         return self.pieces.extremes(self.torque[1][None]).each(self.result)[0]
 
-    def amplified(self) -> Any:
+    def amplified(self) -> Number | None:
         """Return the swing of the torque over that of J₂ (M − L)/(J₁ + J₂) + L; None where that does not swing."""
         of, (own, driven) = self.effort.pieces.of, self._masses
         rigid = (self._torques[0] * of(driven) - self._torques[1] * of(own)) / of(own + driven)

@@ -116,7 +116,7 @@ class SampledCylinder:
 
 
 def _smoothed(
-    drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Any]]
+    drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Number | None]]
 ) -> tuple[Pieces, State, Samples]:
     """Return the pieces, halved until these columns are polynomials, with the state and the columns on them."""
 
@@ -164,7 +164,7 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
 def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, State]:
     """Return the pieces cut where the guide force, with or without pin friction, changes sign, and the state."""
 
-    def before(some: State) -> tuple[Any, ...]:
+    def before(some: State) -> tuple[Number | None, ...]:
         free = some.without_pin_friction
         return _sense(free), free.curvature, free.P_gas, free.P
 
@@ -199,14 +199,14 @@ def _refuse_locking(state: State, pieces: Pieces) -> None:
             raise NoSolutionError(drive.locks(first))
 
 
-def _smooth(state: State) -> list[Any]:
+def _smooth(state: State) -> list[Number | None]:
     """Return the quantities that decide how often pieces are halved: they must be polynomials on every piece."""
     offered = [one.of(state) for one in state.mechanism.OFFERS if one.quantity.extremes]
     forces = (state.P_gas, state.P, state.N, state.T, *(state.rubbing or ())) if state.drive.has_force else ()
     return [state.curvature, *forces, *offered]
 
 
-def _known(pieces: Pieces, values: Iterable[Any]) -> list[Array]:
+def _known(pieces: Pieces, values: Iterable[Number | None]) -> list[Array]:
     """Return those of the columns that are not None, at the nodes of pieces, each (nodes, pieces)."""
     return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
 

@@ -34,7 +34,7 @@ from kurbel.machine.pumped import Gas, Pipe, Pump, Vessel
 from kurbel.numerics.arithmetic import every, some, total, unless_cancelled, where
 from kurbel.numerics.extreme import Extremes
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import value, values_for
+from kurbel.quantity import Answers, value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort, position
 from kurbel.solver.figures import AtAngles, Results, Searched, result
@@ -234,9 +234,9 @@ class Delivery(Results):
         return dict(zip(found, self.pieces.extremes([*found.values()]).each(self._result))) if found else {}
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The key values that are no extremes."""
-        found, mean = dict[str, Any](), self._mean()
+        found, mean = Answers(), self._mean()
         slip = self.machine.pump.slip if self.machine.pump else 0.0
         found["stroke_volume"] = 2 * math.pi * mean / (1 - slip)
         found["volume_fluctuation"] = swing = self._swing(draws=False)
@@ -313,7 +313,7 @@ class CompressorEnd:
         self.owner = drive.name if piston.number == 0 else f"{drive.name}, {own.name}"
         self.end = end.replace("_", " ")
         self.loaded = not (isinstance(card, Compressor) and card.unloaded)
-        self.figures: dict[str, Any] = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
+        self.figures: Answers = {"stroke_volume": gas.areas[0 if head else 1] * gas.stroke}
         if isinstance(card, Compressor):
             lift = 0.0 if gas.absolute else drive.machine.ambient
             self.suction, self.delivery = card.suction + lift, card.delivery + lift
@@ -370,7 +370,7 @@ class CompressorStage(Results):
         self.suction, self.delivery = ends[0].suction, ends[0].delivery
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The key values; a stage all of whose ends are unloaded delivers nothing."""
         every = [one.figures for one in self.ends]
         loaded = [one.figures for one in self.ends if one.loaded]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -101,7 +101,7 @@ class Drive:
 
         inclination = machine.inclination_of(cylinder)
         self._incline = None if inclination is None else CrankAngle.of(inclination)
-        self.down: Any = self._incline and self._incline.cos
+        self.down = self._incline and self._incline.cos
         self.weight = self.weight_of(self.mass) if self._incline and masses else None
         self.guide_weight: Number = self.weight[1] if self.weight else 0.0
 
@@ -123,7 +123,7 @@ class Drive:
         self.yoke_friction = (0.0 if block is None else block, 0.0 if guides is None else guides)
         self.yoke_rubs = any(some(one != 0) for one in self.yoke_friction)
         guide, rings = (friction.guide, friction.rings) if friction else (None, None)
-        self.guide_area: Any = guide.length * guide.width if guide else None
+        self.guide_area = guide.length * guide.width if guide else None
         self.ring_force: Number = 0.0
         self.ring_surface: Number = 0.0
         if rings:

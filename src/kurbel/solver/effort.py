@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Truth
+from kurbel.arrays import Array, Flags, Number, Truth
 from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
@@ -56,7 +56,7 @@ def torque_of_inertia(state: State) -> Any:
     return torque - state.rod_couple * state.rod_slope
 
 
-def position(forces: CylinderForces) -> Any:
+def position(forces: CylinderForces) -> Number:
     """Return the degrees by which a cylinder follows cylinder 1, without whole cycles, which would cost digits."""
     return np.fmod(forces.drive.cylinder.crank_position, forces.drive.cycle)
 
@@ -70,9 +70,9 @@ def moves(group: Sequence[CylinderForces]) -> bool:
 class Term(NamedTuple):
     """A torque of each of several identical cylinders; factor: a number, or (machines,), by which it is multiplied."""
 
-    factor: Any
+    factor: Number
     cylinders: Sequence[CylinderForces]
-    quantity: Callable[[State], Any] = lambda state: state.M
+    quantity: Callable[[State], Number] = lambda state: state.M
 
 
 class TurningEffort:
@@ -156,7 +156,7 @@ class TurningEffort:
             return self.result(self.mean_of(self.given)) >= 0
         return any_of(group[0].drive.drives for group in self.groups)
 
-    def share(self, drive: Drive | None) -> Any:
+    def share(self, drive: Drive | None) -> Number:
         """Return what the torque of a cylinder, or a given effort, is multiplied by for the losses (R p. 610–613).
 
         η where its pistons drive, 1/η where the machine is driven and no piston drives. In a machine with driving

@@ -244,7 +244,7 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
     found, heading = list[Row](), ""
-    definitions: dict[str, Any] = {}
+    definitions: dict[str, object] = {}
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
     for item in definitions.values():
@@ -292,6 +292,6 @@ def _only(name: str, known: Mapping[str, Row], what: str) -> Row:
     return known[found[0]]
 
 
-def _figure(quantity: Quantity, value: Any) -> Figure:
+def _figure(quantity: Quantity, value: object) -> Figure:
     number, degrees = value if isinstance(value, Extreme) else (value, None)
     return Figure(number, quantity.marked(SI[quantity.kind]), degrees, quantity)

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Swing
@@ -47,7 +47,7 @@ _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
 
 
-def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Computed[Any]:
+def _over_the_angle(id: str, symbol: str, kind: str, text: str, **words: Any) -> Computed[Array | None]:
     """Return a column whose samples are those of `MachineTurning.samples_of`."""
     return value(symbol, kind, text, lambda state: state.course(id), **words)
 
@@ -84,7 +84,7 @@ class TurningState(AtAngles):
     def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
         self._turning, self.phi, self.within = turning, phi, within
 
-    def __getitem__(self, id: str) -> Any:
+    def __getitem__(self, id: str) -> Array | None:
         """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
         return self.course(id) if id == "M_load" else super().__getitem__(id)
 
@@ -236,7 +236,7 @@ class MachineTurning(Results):
     )
 
     @key_value("ΔE/A", "ratio")
-    def energy_fluctuation(self) -> Any:
+    def energy_fluctuation(self) -> Number | None:
         """Coefficient of fluctuation of energy.
 
         None where no work is done, nan for such a machine of many.
@@ -288,7 +288,7 @@ class MachineTurning(Results):
     )
 
     @key_value("A_K", "area")
-    def rim_section(self) -> Any:
+    def rim_section(self) -> Number | None:
         """Cross-section of the rim required for δ, or for J: 4 J/(π ρ D (D² + h²))."""
         wanted = self.J if self.J_needed is None else self.J_needed
         return None if self.rim is None or wanted is None else self.rim.section(wanted)
@@ -311,7 +311,7 @@ class MachineTurning(Results):
         """Whether J is J_δ: no other moment of inertia is given."""
         return self._given is None or (self.J_needed is not None and every(self.J_needed == self._given))
 
-    def textbook_inertia(self) -> Any:
+    def textbook_inertia(self) -> Number | None:
         """Return ΔE/(δ ω²) in kg m², less the inertia beyond a rigid coupling; None without a required δ or a speed."""
         if self._wanted is None or not self.turns:
             return None
@@ -336,7 +336,7 @@ class MachineTurning(Results):
             raise self._stalled(self.J, stop) from None
 
     @key_value("δ_0", "ratio", after="delta")
-    def delta_book(self) -> Any:
+    def delta_book(self) -> Number | None:
         """The same by the textbook formula, ΔE/(J ω²)."""
         driven = self.machine.coupling.inertia if self.machine.coupling and self.rigid else 0.0
         inertia = (0.0 if self.J is None else self.J) + driven
@@ -345,7 +345,7 @@ class MachineTurning(Results):
         return self.dE / (where(inertia == 0, math.nan, inertia) * self.omega**2)
 
     @key_value("μ", "ratio")
-    def multiplier(self) -> Any:
+    def multiplier(self) -> Number | None:
         """Floquet multiplier: part of a disturbance that remains after one cycle; stable below 1.
 
         μ = exp(−∮ ∂M_load/∂ω/(J ω) dφ), or the largest float; None where the load does not depend on the speed.
@@ -367,7 +367,7 @@ class MachineTurning(Results):
         uniform = not self.effort.inertia_terms and not self.excess.dE.any()
         return self._wanted is not None and uniform and not some(self.J != 0)
 
-    def _line(self, flywheel: Any) -> SpeedLine:
+    def _line(self, flywheel: Number) -> SpeedLine:
         """Return the speed line with a flywheel in kg m²; raises Unsettled, NoSolutionError, UsageError."""
         coupling, effort = self.machine.coupling, self.effort
         if effort.swing is not None:
@@ -433,7 +433,7 @@ class MachineTurning(Results):
     # coupling
 
     @key_value("n_e", "ratio")
-    def natural_order(self) -> Any:
+    def natural_order(self) -> Number | None:
         """Natural frequency of the coupled masses, relative to the angular velocity."""
         if self.machine.coupling is None or not self.turns or (self._given is None and self._wanted is None):
             return None

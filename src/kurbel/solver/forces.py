@@ -95,7 +95,7 @@ class PistonWork(Results):
         "p_i", "pressure", "Mean indicated pressure of the piston", lambda one: one.gas.work / one.gas.swept_volume
     )
 
-    def __init__(self, name: str, gas: PistonGas, rate: Any) -> None:
+    def __init__(self, name: str, gas: PistonGas, rate: Number | None) -> None:
         """Take the name, the pressures, and cycles per second, None without a speed."""
         self.name, self.gas, self.rate = name, gas, rate
 
@@ -378,7 +378,7 @@ class CylinderForces(SampledCylinder, Results):
             self.extremes_of("N")
 
     @cached_property
-    def changes_of_force(self) -> tuple[tuple[Any, ...] | None, int]:
+    def changes_of_force(self) -> tuple[tuple[object, ...] | None, int]:
         """The crank angles in degrees at which P changes sign, through zero or by a jump, None without P.
 
         Changes that are noise of a trace count once, at the middle one; with them, how many of them are not listed. For
@@ -413,8 +413,7 @@ class CylinderForces(SampledCylinder, Results):
     def on_guide(self) -> dict[str, object]:
         """The key values of the shoe; the means over its path there and back, or over time, only with friction."""
         drive, found = self.drive, dict[str, object]()
-        side = None if drive.guide_area is None else self.extremes_of("N")
-        if side is not None:
+        if drive.guide_area is not None and (side := self.extremes_of("N")):
             most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))
             found["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
         if drive.guide_area is not None and drive.has_force and (wear := self.extremes_over(("wear",))):
@@ -471,7 +470,7 @@ class CylinderForces(SampledCylinder, Results):
             found["guides"] = over_cycle(samples.drag_of_guides * (samples.slope * samples.direction))
         return found
 
-    def energy_left(self) -> Any:
+    def energy_left(self) -> Number | None:
         """Return the energy balance (∮ T R dφ − `work_left`) over ∮ |T| R dφ: quadrature against work in closed form.
 
         With a measured trace at equal angles the quadrature follows the straight lines between the samples, the

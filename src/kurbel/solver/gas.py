@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Union
+from typing import Union
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
-from kurbel.machine.indicator import STROKES, Card, Rectangle
+from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, total
@@ -377,7 +377,7 @@ class PistonGas:
         return math.hypot(*(end.noise * area for end, area in self._traces))
 
 
-def _pressure_in(chamber: Any, setting: Setting, count: int | None) -> Pressure | None:
+def _pressure_in(chamber: Chamber | None, setting: Setting, count: int | None) -> Pressure | None:
     if chamber is None:
         return None
     if isinstance(chamber, Trace):

@@ -163,7 +163,7 @@ class MachineOrders(Results):
     )
 
     @key_value("Σ|M_ν|²/2", "ratio", plain="sum M_nu2/2")
-    def orders_share(self) -> Any:
+    def orders_share(self) -> Number | None:
         """Share of the variance of the torque contained in these orders (Parseval).
 
         None where the torque is uniform.

@@ -235,7 +235,7 @@ class Motion(Results):
         found["b_max"], found["b_min"] = self._times_omega(self._searched[1], 2)
         return found
 
-    def roots_of_the_book(self) -> tuple[Any, ...] | None:
+    def roots_of_the_book(self) -> tuple[object, ...] | None:
         """Return where the acceleration of first order is zero, in degrees: cos φ = 2λ/(1 + √(1 + 8λ²)).
 
         None where the book has none, and with the infinite rod, of which it is exact.

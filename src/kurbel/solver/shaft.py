@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Number
+from kurbel.arrays import Array, Indices, Number, Truth
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.units import GRAVITY
 from kurbel.errors import UsageError
@@ -183,7 +183,7 @@ class SupportedShaft:
             throws[number] = one._replace(at_A=one.at_A + along - at_B, at_B=one.at_B + at_B)
         self.throws, self.bearings = tuple(throws), 2 if overhung else len(throws) + 1
 
-    def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Any, Any]]:
+    def _turning(self, throws: Sequence[Throw]) -> Iterator[tuple[int, Force, Number]]:
         """Yield of each rotating weight the index of the throw whose bearings carry it, mass times radius, and u in m.
 
         The masses times radii in kg m are complex, as angles of throws count. A weight is between the bearings of the
@@ -258,7 +258,7 @@ def throws_of(cylinders: Sequence[Cylinder]) -> list[Throw]:
     return found
 
 
-def _decided(condition: Any) -> Any:
+def _decided(condition: Truth | Indices) -> bool | int:
     """Return what is so in every machine. Raises UsageError where it differs: such machines are computed one by one."""
     every = np.ravel(condition)
     if (every != every[0]).any():

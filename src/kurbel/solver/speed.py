@@ -133,7 +133,7 @@ class SwingLine(SpeedLine):
 
     alpha = None
 
-    def __init__(self, effort: TurningEffort, swing: Array, flywheel: Any) -> None:
+    def __init__(self, effort: TurningEffort, swing: Array, flywheel: Number) -> None:
         self.effort, self.pieces, self.mean = effort, effort.pieces, np.ones(effort.pieces.count)
         energy = np.ones(effort.pieces.count) * (flywheel * effort.omega**2)
         if effort.count is None and not energy[0]:

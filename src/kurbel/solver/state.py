@@ -178,7 +178,7 @@ class State(Chambers):
         working = self.direction == (1.0 if self.mechanism.works_outward else -1.0)
         return self.filled(-self.direction * np.where(working, resistance.work, resistance.back))
 
-    def rod_load(self, crosshead: bool = True) -> Any:
+    def rod_load(self, crosshead: bool = True) -> Array | None:
         """Return the force in N of the gas, with inertia and weight of the moving parts, toward the shaft (API 618).
 
         The connecting rod is left out. crosshead: whether the crosshead is included; without it its mass must be known.
@@ -207,7 +207,7 @@ class State(Chambers):
         return self.along_rod / self.rod_angle[1] - self._rod_side * self.rod_angle[0]
 
     @column("S_H", "force", extremes=("forces",), called="force along the rod at the crosshead pin")
-    def S_crosshead(self) -> Any:
+    def S_crosshead(self) -> Array | None:
         """Force along an exact rod at the crosshead pin, compression positive.
 
         Inertia and weight of the rod's own mass at this end are excluded: they do not pass through the pin.
@@ -218,7 +218,7 @@ class State(Chambers):
         return push * self.rod_angle[1] + lift * self.rod_angle[0]
 
     @column("S_Z", "force", extremes=("forces",), called="force along the rod at the crank pin")
-    def S_crank(self) -> Any:
+    def S_crank(self) -> Array | None:
         """Force along an exact rod at the crank pin, compression positive.
 
         T sin(φ+ψ) + D cos(φ+ψ).

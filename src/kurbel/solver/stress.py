@@ -40,7 +40,7 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, magnitude, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
-from kurbel.quantity import Heading, value, values_for
+from kurbel.quantity import Answers, Heading, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import Force, FreeBody, flywheel_weight
@@ -99,7 +99,7 @@ class Place(NamedTuple):
         """Equivalent stress √(σ² + 3 τ²) in Pa after von Mises."""
         return np.hypot(self.normal, 0.0 if self.torsion is None else math.sqrt(3) * self.torsion)
 
-    def one_of(self, number: Any, degrees: Any) -> Place:
+    def one_of(self, number: int, degrees: float) -> Place:
         """Return the place at a crank angle in one of several states."""
         own: dict[str, Any] = {name: float(each[number]) for name, each in self._asdict().items() if np.ndim(each)}
         return self._replace(**own, degrees=degrees)
@@ -181,7 +181,7 @@ class StressColumns(AtAngles):
         self.phi, self._state, self._body = phi, state, body
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The columns by id; of the stresses those of the parts that are examined."""
         A, B = self._body.A, self._body.B
         found = {"D": self._state.D, "T": self._state.T, "A_D": A.real, "A_T": A.imag, "B_D": B.real, "B_T": B.imag}
@@ -344,7 +344,7 @@ class CrankshaftStrength(Results):
         return [Extreme(*map(self.forces.result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
         shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
         found = self._of_loads()
@@ -364,7 +364,7 @@ class CrankshaftStrength(Results):
                 found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return found
 
-    def _of_loads(self) -> dict[str, Any]:
+    def _of_loads(self) -> Answers:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
@@ -373,7 +373,7 @@ class CrankshaftStrength(Results):
         extremes = pieces.extremes(loads[:3])
         most = [Extreme(*map(self.forces.result, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
         mean_A, mean_B, of_rod = map(self.forces.result, pieces.mean(loads[1:]))
-        found: dict[str, Any] = {"A_max": most[1], "B_max": most[2]}
+        found: Answers = {"A_max": most[1], "B_max": most[2]}
         for part, load, mean in zip(_BEARINGS, most, (of_rod, mean_A, mean_B)):
             diameter, length = shaft.journal_diameter, shaft.journal_length
             if part == "pin":
@@ -384,7 +384,7 @@ class CrankshaftStrength(Results):
                 found[f"k_{part}"] = None if speed is None else pressure * math.pi * diameter * speed
         return found
 
-    def unbalanced(self) -> Any:
+    def unbalanced(self) -> Number:
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state).complex, state.angle, pieces)

@@ -35,7 +35,7 @@ class CylinderThrow(NamedTuple):
     number: int
     name: str
     cylinder: Cylinder
-    place: Number | None
+    place: Any
     bank: Number
     arm: Any
     rotating: Number

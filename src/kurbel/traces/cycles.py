@@ -6,11 +6,11 @@ restart, a lap is one turn, and two make a four-stroke cycle. Incomplete cycles 
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
 from kurbel.errors import Fault, RuleError
@@ -43,7 +43,7 @@ class Recording:
         self._place = place
         self.notes: list[str] = []
 
-    def keep(self, which: Any) -> None:
+    def keep(self, which: slice | Indices) -> None:
         """Keep only these samples, in the order of their indices."""
         self.angles, self.values, self.rows = self.angles[which], self.values[:, which], self.rows[which]
 

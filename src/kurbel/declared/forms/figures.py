@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
@@ -80,12 +79,12 @@ class Figures(Form):
         number = NumberForm(quantity.kind)
         return FigureForm(number) if self.tolerated else number
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read every figure by the form of its quantity."""
         if not isinstance(value, dict):  # an empty one, as --set limits={} writes it, takes off those of the file
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         known = reading.key_values()
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for name, written in value.items():
             ids = called(name, known.values())
             scope, own = ("", name) if ids else scoped(name)
@@ -134,7 +133,7 @@ class FigureForm(Form):
         either = f"a figure and its tolerance, such as '{sample}' or '{self.absolute}'"
         super().__init__(f"{either}, or two bounds in a list", sample)
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a figure with its tolerance, or two bounds."""
         if isinstance(value, list) and len(value) == 2:
             low, high = (self.size.read(reading, one, (*path, index)) for index, one in enumerate(value))
@@ -174,13 +173,13 @@ class ByKey(Form):
         super().__init__(expected, schema={"type": "object", "minProperties": 1, **values})
         self.spreads = spreads
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read uncertainties; the values of a load case are read when they replace those of the file."""
         if not isinstance(value, dict) or not value:
             refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
         if not self.spreads:
             return tuple(value.items())
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for name, one in value.items():
             short = isinstance(one, str) and len(one) <= LONGEST_VALUE
             wrong = f"expected a standard uncertainty above 0, such as {_SPREADS}, got {kind_of(one)}"

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from kurbel.arrays import Indivisible
+from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
 from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
 from kurbel.declared.numerals import NUMBER
@@ -57,7 +57,7 @@ class RecordForm(Form):
                     found |= case.names(mapping)
         return found
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the values of the keys of a mapping."""
         if not isinstance(value, dict):
             no_mapping(self, value)
@@ -70,7 +70,7 @@ class RecordForm(Form):
         own = [name for name, key in self.keys.items() if not isinstance(key.form, Inline)]
         rest = {name: value for name, value in mapping.items() if name not in own}
         missing = required(self.keys)
-        values: dict[str, Any] = {}
+        values: dict[str, object] = {}
         for name, key in self.keys.items():
             form = key.form
             if isinstance(form, Inline):
@@ -161,7 +161,7 @@ class Given:
     form: RecordForm
     mapping: Tree
     path: Path
-    values: dict[str, Any]
+    values: dict[str, object]
     made: Any = None
 
 
@@ -198,14 +198,14 @@ def records(form: Form, word: str) -> Iterator[tuple[str, RecordForm]]:
         yield from records(inner, name or ("card" if isinstance(form, Keyed) else word))
 
 
-def too_extreme(record: Any, values: Tree) -> Any:
+def too_extreme(record: object, values: Mapping[str, object]) -> Truth:
     """Return whether a number of a record has overflowed, for many machines as an array (machines,).
 
     values: of its keys. A number may be infinite if one of these is, as `rod: infinite`, or by default.
     """
     defaults = [vars(type(record)).get(name) for name in vars(record)]
     infinite = any(one == math.inf for one in (*values.values(), *defaults) if is_number(one))
-    broken: Any = False
+    broken: Truth = False
     for value in vars(record).values():
         if is_number(value) or (isinstance(value, np.ndarray) and not isinstance(record, Indivisible)):
             broken = broken | ~(np.isfinite(value) | (infinite & (value == math.inf)))
@@ -221,7 +221,7 @@ class Maker:
     def __init__(self, reading: Reading, count: int = 0) -> None:
         self.reading, self.broken = reading, np.zeros(count, dtype=bool)
 
-    def made(self, value: Any) -> Any:
+    def made(self, value: object) -> Any:
         """Return the record, tuple or value that was read; REFUSED after reporting what is wrong with it."""
         if isinstance(value, Given):
             values = {name: self.made(one) for name, one in value.values.items()}
@@ -236,7 +236,7 @@ class Maker:
             return tuple(map(self.made, value))
         return value
 
-    def _record(self, form: RecordForm, values: dict[str, Any]) -> Any:
+    def _record(self, form: RecordForm, values: dict[str, object]) -> Any:
         """Return the record of values by key; REFUSED after its rules have judged those that could be read."""
         unread = [
             name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
@@ -292,7 +292,7 @@ class Listing(Form):
         super().__init__("a list, each item after '- '", written=item_text, parts=[("", item)])
         self.item, self.kind, self.called = item, item.kind, called
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a list into a tuple, with REFUSED in place of what could not be read."""
         if isinstance(value, Plain) and not value:
             refused("no value here; write a list below it, each item after '- '")
@@ -346,7 +346,7 @@ class OneOf(Form):
         self.number = next((form.number for form in forms if form.number), None)
         self.unread = next((form.unread for form in forms if form.unread is not None), None)
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a value by the first form that has its shape."""
         if isinstance(value, dict):
             words = {word for form in self.forms if isinstance(form, Choice) for word in form.words}
@@ -380,7 +380,7 @@ class Keyed(Form):
         self.cases, self.otherwise, self.beside = cases, otherwise, beside
         self.single = {name: Key(one, texts.get(name, "")) for name, one in cases.items() if one.shape is not dict}
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read a mapping by the key that decides its form."""
         if not isinstance(value, dict):
             no_mapping(self, value)

@@ -49,7 +49,7 @@ class Form(ABC):
     """Of the tree: str, list or dict."""
     kind: str = ""
     number: "NumberForm | None" = None
-    unread: Any = None
+    unread: object = None
     inline: tuple[Any, ...] = ()
 
     def __init__(
@@ -68,7 +68,7 @@ class Form(ABC):
         return self.kind
 
     @abstractmethod
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Return what a value of the tree becomes; faults are reported, or raised as RuleError."""
 
     def read(self, reading: Reading, value: Node, path: Path) -> Any:
@@ -155,7 +155,7 @@ class NumberForm(Form):
     whole: bool = False
     share_of: str = ""
     or_else: str = ""
-    becomes: Callable[[Any, str], Any] | None = None
+    becomes: Callable[[Any, str], object] | None = None
     apart: bool = False
 
     def __post_init__(self) -> None:
@@ -172,7 +172,7 @@ class NumberForm(Form):
         self.number = None if self.whole or self.apart else self
         self.unread = None if self.number is None or self.becomes else math.nan
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the number, and compare it with its bounds."""
         text = one_line(value, self.expected)
         if text in self.words:
@@ -211,7 +211,7 @@ class NumberForm(Form):
             return None
         return found
 
-    def of_numbers(self, numbers: Any) -> Any:
+    def of_numbers(self, numbers: object) -> object:
         """Return what a number in the base of its kind, or those of many machines, becomes."""
         return self.becomes(numbers, "") if self.becomes else numbers
 
@@ -243,14 +243,14 @@ class Choice(Form):
     """
 
     def __init__(
-        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, Any] | None = None
+        self, words: tuple[str, ...], also: dict[str, str] | None = None, means: dict[str, object] | None = None
     ) -> None:
         self.words, self.also, self.means = words, also or {}, means or {}
         every, written = (f"'{word}'" for word in words), ", ".join(f"`{word}`" for word in words)
         schema: Schema = {"type": "boolean"} if words == ("true", "false") else {"enum": list(words)}
         super().__init__(" or ".join(every), words[0], written, schema)
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Return the word, unchanged: a blank or a tab can be one."""
         if isinstance(value, str) and value in self.words:
             return self.means.get(value, str(value))
@@ -270,7 +270,7 @@ class Text(Form):
     def __init__(
         self,
         expected: str,
-        become: Callable[[str, str], Any],
+        become: Callable[[str, str], object],
         example: str = "…",
         written: str = "",
         schema: Schema | None = None,
@@ -282,7 +282,7 @@ class Text(Form):
         self.become, self.pattern, self.unit_of = become, pattern, unit_of
         self.unread = (math.nan, 1.0) if unit_of else None
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the text."""
         text = one_line(value, self.expected)
         if self.pattern and not re.fullmatch(self.pattern, plain(text)):
@@ -382,7 +382,7 @@ class Points(Form):
         schema = {"type": "array", "items": one, "minItems": least, "maxItems": MOST_POINTS}
         super().__init__(f"a list of {self._called}s [{self._one}, …]", sample, f"`[{self._one}, …]`", schema)
 
-    def take(self, reading: Reading, value: Node, path: Path) -> Any:
+    def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the pairs, and report the first few wrong ones."""
         if isinstance(value, Plain) and not value:
             refused(f"a value is missing; write {self.expected}")
