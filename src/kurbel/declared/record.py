@@ -15,7 +15,11 @@ from kurbel.arrays import Truth
 from kurbel.declared.forms.structures import form_of
 from kurbel.declared.keys import Key, Record, Rule, Values
 
-__all__ = ["Record", "Rule", "Values", "alternative", "field", "first_of"]
+__all__ = ["Entry", "Record", "Rule", "Values", "alternative", "field", "first_of"]
+
+
+Entry = Any
+"""What `field` returns: to a type checker, a value of whatever type its attribute is said to have."""
 
 
 def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
@@ -26,7 +30,7 @@ def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
         before = before | rule.broken
 
 
-def field(form: Any, text: str, symbol: str = "", *, default: Any = None, absent: str = "", **more: Any) -> Any:
+def field(form: Any, text: str, symbol: str = "", *, default: object = None, absent: str = "", **more: Any) -> Entry:
     """Declare an attribute of a record that is an entry of the machine file.
 
     form: see `form_of`; text: its meaning in one sentence; symbol: of the textbooks; default: its value if the file has

@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.record import Record, Rule, Values, alternative, field, first_of
+from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.balance import Counterweight, SharedCounterweights
 from kurbel.machine.parts import (
     ConnectingRod,
@@ -43,7 +43,7 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
-def counterweights() -> Any:
+def counterweights() -> Entry:
     """Return the field of the counterweights of a cylinder, next to its throw, or of the whole machine."""
     return field(
         OneOf(RecordForm(SharedCounterweights), Listing(RecordForm(Counterweight))),

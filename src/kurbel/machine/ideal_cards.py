@@ -13,7 +13,7 @@ import numpy as np
 
 from kurbel.arrays import Number
 from kurbel.declared.forms.values import NumberForm
-from kurbel.declared.record import Record, Rule, alternative, field
+from kurbel.declared.record import Entry, Record, Rule, alternative, field
 
 CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
 """A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
@@ -24,12 +24,12 @@ AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
 
 
-def _pressure(text: str, **more: Any) -> Any:
+def _pressure(text: str, **more: Any) -> Entry:
     # beyond any machine; powers of the volume ratio, up to 1e60, cannot make it overflow
     return field("pressure", text, most=1e15, **more)
 
 
-def _exponent(text: str, absent: str, default: float | None = None, **more: Any) -> Any:
+def _exponent(text: str, absent: str, default: float | None = None, **more: Any) -> Entry:
     return field("ratio", text, "n", default=default, above=0, most=10, absent=absent, example="1.3", **more)
 
 
@@ -61,7 +61,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
             yield Rule((), pressure + lift <= 0, sentence, {"pressure": pressure})
 
 
-def _diagram_factor() -> Any:
+def _diagram_factor() -> Entry:
     text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
     return field("ratio", text, "κ_d", default=1.0, above=0, most=1)
 

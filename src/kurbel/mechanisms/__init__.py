@@ -15,7 +15,7 @@ import numpy as np
 
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
-from kurbel.declared.record import Record, field
+from kurbel.declared.record import Entry, Record, field
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.roots import bracketed_roots
 from kurbel.quantity import Condition, Formula, Quantity
@@ -362,13 +362,13 @@ F_COUPLER = force_column(
 """Of a mechanism with `coupler_force_factor`, the force in 1/m over the moment on the swinging member."""
 
 
-def pin_diameter() -> Any:
+def pin_diameter() -> Entry:
     """Return the field of the diameter of the crank pin."""
     text = "Diameter of the crank pin; needs `pin_length`"
     return field("length", text, "d_z", above=0, absent="no pin pressure", needs="pin_length")
 
 
-def pin_length() -> Any:
+def pin_length() -> Entry:
     """Return the field of the length of the crank pin."""
     text = "Length of the crank pin in its block; needs `pin_diameter`"
     return field("length", text, "l_z", above=0, absent="same", needs="pin_diameter")

@@ -10,19 +10,20 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.record import Rule, Values, alternative, field
+from kurbel.declared.keys import Key
+from kurbel.declared.record import Entry, Rule, Values, alternative, field
 from kurbel.mechanisms import PIN, TURNING, Mechanism, Offer, Sketch, Turning, requested_column
 from kurbel.numerics.arithmetic import bearing, every, magnitude, sqrt, total, ulp, where
 
 _INFINITE = {"infinite": math.inf}
 
 
-def crank_field() -> Any:
+def crank_field() -> Entry:
     """Return the field of the crank radius of a mechanism that can be given by its stroke."""
     return field("length", "Crank radius; or give `stroke`", "R", above=0, required=True, example="400 mm")
 
 
-def stroke_instead(gives: Callable[[Values], dict[str, Any]]) -> Any:
+def stroke_instead(gives: Callable[[Values], dict[str, object]]) -> Key:
     """Return the field of the stroke, given instead of the crank; gives: the crank, from all values by key."""
     return alternative("length", "Stroke; or give `crank`", "s", above=0, instead="crank", gives=gives, key="stroke")
 
@@ -278,7 +279,7 @@ def yoke_sketch(crank: float, angle: CrankAngle) -> Sketch:
     )
 
 
-def _crank_of_stroke(given: Values) -> Any:
+def _crank_of_stroke(given: Values) -> Number:
     """Solve s = √((L+R)² − e²) − √((L−R)² − e²) for R, with L given or L = kR; nan where there is none."""
     half, rod, k, offset = given["stroke"] / 2, given.get("rod"), given.get("rod_ratio"), given.get("offset") or 0.0
     length: Any = k if rod is None else rod

@@ -15,6 +15,8 @@ from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
 from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
 
+Content = dict[str, Any]
+"""What becomes an object of JSON."""
 FORMAT = 1
 """Number of the format of JSON; it changes when a script that reads it would break."""
 _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
@@ -128,7 +130,7 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
     """Yield one JSON object in pieces, each column on a line of its own. Raises UsageError for a decimal comma."""
     if look.comma:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
-    content: dict[str, Any] = {"kurbel": __version__, "format": FORMAT, "command": report.command}
+    content: Content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
         content |= {"machine": report.machine, **_made_from(report.provenance)}
     if report.head:
@@ -159,7 +161,7 @@ def _made_from(given: Provenance | None) -> dict[str, object]:
     return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
 
 
-def _named(part: Part, ratio: bool, look: Look) -> dict[str, Any]:
+def _named(part: Part, ratio: bool, look: Look) -> Content:
     """Return a part with its name, or with its L/R, where empty results are left out."""
     results = _results(part, look)
     if not ratio:
@@ -168,7 +170,7 @@ def _named(part: Part, ratio: bool, look: Look) -> dict[str, Any]:
     return {"rod_ratio": name, **{key: value for key, value in results.items() if value}}
 
 
-def _results(part: Part, look: Look) -> dict[str, Any]:
+def _results(part: Part, look: Look) -> Content:
     """Return what JSON has of a part; its columns are still to be written, one after another."""
 
     def number(value: Value) -> Value:
@@ -177,7 +179,7 @@ def _results(part: Part, look: Look) -> dict[str, Any]:
     def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
         return {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **more}
 
-    found: dict[str, Any] = {"columns": list(part.columns), "place_tables": [], "key_values": [], "pistons": []}
+    found: Content = {"columns": list(part.columns), "place_tables": [], "key_values": [], "pistons": []}
     for table in part.place_tables:
         if table.id == _PISTONS:
             for names, *values in zip(table.names, *(one.values for one in table.columns)):
