@@ -17,7 +17,7 @@ from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.record import Entry, Record, field
 from kurbel.numerics.extreme import Extreme
-from kurbel.numerics.roots import bracketed_roots
+from kurbel.numerics.search import bracketed_roots
 from kurbel.quantity import Condition, Formula, Quantity
 
 Factor = Callable[[Any, CrankAngle], Any]

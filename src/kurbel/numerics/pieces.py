@@ -20,7 +20,7 @@ from kurbel.arrays import Array, Flags, Indices, Number
 from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import LobattoRule, rule, series_at, slope_of_series
-from kurbel.numerics.roots import bracketed_roots
+from kurbel.numerics.search import bracketed_roots
 
 ROUNDING = 1e-14
 """Relative to the largest value of a quantity: a smaller value counts as zero."""
