@@ -13,9 +13,8 @@ import numpy as np
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.mechanisms.yoke_frame import YokeFrame
 
 Expected = dict[str, Any]
 """Id of a column -> its values (n,); c_block and the like over ω, accelerations over ω²."""

@@ -18,9 +18,8 @@ from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.report.commands import report_of
 from kurbel.report.frame import Frame
 from kurbel.solver.case import Case

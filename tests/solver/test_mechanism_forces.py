@@ -13,9 +13,8 @@ from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.mechanisms.parallel_crank import ParallelCrank
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
-from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.mechanisms.yoke_frame import YokeFrame
 from kurbel.solver.forces import CylinderForces
 from machines import AT, STEAM_CARD
 from representative import law_of_each
