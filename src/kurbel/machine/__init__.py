@@ -21,8 +21,7 @@ from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, shown
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.errors import Fault, RuleError, UsageError, refuse
-from kurbel.machine.balance import BalanceShaft, Counterweight, Locomotive, SharedCounterweights
-from kurbel.machine.crankshaft import Crankshaft
+from kurbel.machine.crankshaft import BalanceShaft, Counterweight, Crankshaft, Locomotive, SharedCounterweights
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.ideal_cards import Diesel, Otto
 from kurbel.machine.indicator import Rectangle

@@ -12,7 +12,7 @@ import numpy as np
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
-from kurbel.machine.balance import Counterweight, SharedCounterweights
+from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
