@@ -9,8 +9,7 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
-from kurbel.traces.correct import Setting, Trace, corrected, noise_of
-from kurbel.traces.work import by_straight_lines, by_trapezoid, work_weights
+from kurbel.traces.correct import Setting, Trace, by_straight_lines, by_trapezoid, corrected, noise_of, work_weights
 
 
 def spread(number: Any, machine: Indices | None) -> Any:

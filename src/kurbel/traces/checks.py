@@ -25,8 +25,8 @@ from kurbel.traces.correct import (
     parabola_peak,
     sides_of,
     without_drift,
+    work_weights,
 )
-from kurbel.traces.work import work_weights
 
 _LOW = 0.15
 """Share of the cycle that is below the low level, so that a few noisy samples do not define it."""
