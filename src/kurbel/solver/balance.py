@@ -36,8 +36,7 @@ from kurbel.quantity import Computed, Heading, value
 from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.state import State
-from kurbel.solver.weights import (
+from kurbel.solver.shaft import (
     CylinderThrow,
     Weight,
     counterweights_of,
@@ -46,6 +45,7 @@ from kurbel.solver.weights import (
     throws_with_masses,
     wheels_of,
 )
+from kurbel.solver.state import State
 
 _SAMPLES = 256
 """Samples of a revolution for the Fourier analysis of a mechanism; repeatedly four times as many for a short rod, …"""
