@@ -23,8 +23,7 @@ import numpy as np
 from kurbel.designs.answers import Answer, answered_alone, answers_of, requested_answers
 from kurbel.designs.binding import Batch, Binder
 from kurbel.designs.plan import read_axis
-from kurbel.designs.sweep import Spec, Sweep
-from kurbel.designs.workers import rows_of
+from kurbel.designs.sweep import Spec, Sweep, rows_of
 from kurbel.machine_file import source
 from kurbel.machine_file.reader import read_machine
 from kurbel.render import Look

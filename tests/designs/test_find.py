@@ -12,7 +12,7 @@ from kurbel.arrays import Array
 from kurbel.designs.find import Solutions, find
 from kurbel.machine_file.source import decode, read
 from kurbel.numerics.search import lowest
-from kurbel.render.findings import picture
+from kurbel.render.sweep_rows import picture
 from kurbel.solver.flywheel import MachineTurning
 from representative import CONFIGS
 

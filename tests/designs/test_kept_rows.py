@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from command import run
-from kurbel.designs.study import Design
+from kurbel.designs.answers import Design
 from kurbel.designs.sweep import Sweep
 from kurbel.errors import KurbelError
 from representative import CONFIGS

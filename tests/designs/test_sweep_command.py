@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs import workers
+from kurbel.designs import sweep as sweeps
 from swept_rows import CONFIGS, WATERWORKS, rows, run, until_written
 
 
@@ -198,7 +198,7 @@ def test_who_is_killed_leaves_no_process_and_the_old_file(end: int, suffix: str,
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tls://127.0.0.1:1", "http://x"])
 def test_an_address_that_does_not_answer(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr(workers, "_ANSWERS_WITHIN", 0.5)
+    monkeypatch.setattr(sweeps, "_ANSWERS_WITHIN", 0.5)
     result = run("--vary", "rod_ratio=3,4", "--dask", address)
     assert "no scheduler responds there" in result.output
     assert result.exit_code == 2

@@ -96,9 +96,9 @@ def sweep(**options: Any) -> None:
     Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
     gives 'limits', each row shows whether it keeps them, and the first one that it breaks.
     """
-    from kurbel.cli.sweeping import run
+    from kurbel.cli.sweeping import run_sweep
 
-    run(**options)
+    run_sweep(**options)
 
 
 @kurbel.command()
@@ -129,6 +129,6 @@ def find(**options: Any) -> None:
     none. Places where the key value jumps over the wanted one, and parts of the range in which designs fail, are
     reported. With --write, FILE is printed with what was found; comments stay.
     """
-    from kurbel.cli.finding import run
+    from kurbel.cli.sweeping import run_find
 
-    run(**options)
+    run_find(**options)

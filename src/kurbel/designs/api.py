@@ -2,18 +2,17 @@
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array
 from kurbel.declared.unit_systems import SI
+from kurbel.designs.answers import Design
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
-from kurbel.designs.study import Design
-from kurbel.designs.sweep import Spec, Sweep
-from kurbel.designs.workers import rows_of
+from kurbel.designs.sweep import Spec, Sweep, rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
@@ -22,10 +21,10 @@ from kurbel.machine_file.reader import machine_of
 
 def sweep(
     machine: Machine | str | os.PathLike[str],
-    inputs: Mapping[str, object],
+    inputs: Mapping[str, Any],
     columns: Sequence[str] | str = (),
     with_angles: bool = False,
-) -> dict[str, Array]:
+) -> dict[str, Any]:
     """Return key values of many designs of a machine as arrays (n,), in SI, by their ids.
 
     machine: as `load` or `loads` returned it, or what these take; inputs: dotted key of its file -> numbers (n,) in SI
@@ -91,7 +90,7 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
+def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
     """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)
@@ -103,8 +102,8 @@ def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
         yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
 
 
-def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Array]:
-    arrays: dict[str, Array] = {}
+def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
+    arrays: dict[str, Any] = {}
     for head, values in zip(found.heads, zip(*(row.values for row in rows))):
         if not head.input:
             listed = any(isinstance(one, tuple) for one in values)

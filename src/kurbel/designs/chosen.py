@@ -13,8 +13,7 @@ from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import parts_of_name
-from kurbel.designs.study import Cell, Design, Head
+from kurbel.designs.answers import Cell, Design, Head, parts_of_name
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity

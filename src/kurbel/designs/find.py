@@ -13,10 +13,9 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, texts_of
+from kurbel.designs.answers import Answer, Design, Head, Study, texts_of
 from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
-from kurbel.designs.study import Design, Head, Study
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import path_of
