@@ -166,7 +166,7 @@ def _loaded(case: Case) -> list[Subject]:
             one,
             one.at,
             left_out=bearing_left_out(*one.size, one.omega),
-            of=one.followed[0].drive.name if one.of_rod else "",
+            of=one.cylinders[0].drive.name if one.of_rod else "",
         )
         for one in case.bearings.parts
     ]
