@@ -22,7 +22,7 @@ _HIGHEST = 12
 _LEAST_BARS = 6
 """How many there is room for at least, so that one alone is no block."""
 _MODES = 4
-_FASTEST, _MOST_ORDERS = 1.25, 8
+_FASTEST, _MOST_ORDERS = 1.25, 6
 """Of a Campbell diagram: its highest speed over the working speed, and how many orders it has."""
 _MOST_CRANKS = 4
 """Each has a stroke of its own, next to the sum with and without losses."""
@@ -183,7 +183,7 @@ def _frequencies(source: Source) -> list[tuple[int, float]]:
 
 def campbell(source: Source) -> Iterator[Panel]:
     """Natural frequencies against the speed with the lines of the orders that excite them; where they cross the speed
-    is critical. The upright line is the working speed."""
+    is critical, and written with the order ν. The upright line is the working speed."""
     found, modes = source.results, _frequencies(source)
     working = found.machine.speed
     if not modes or not working:
@@ -202,10 +202,10 @@ def campbell(source: Source) -> Iterator[Panel]:
     ]
     for order in orders:
         end = min(fastest, top / order)
-        curves.append(curve("faint", 0j, complex(end, order * end), name=Words(f"ν = {order:g}")))
+        curves.append(curve("faint", 0j, complex(end, order * end)))
     curves.append(curve("faint", complex(working), complex(working, top), name=Words("working speed")))
     marks = [
-        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed, kind="speed"))
+        Mark(one.speed, one.order * one.speed, PageFigure(Words(f"ν = {one.order:g}:"), one.speed, kind="speed"))
         for one in strongest
         if one.order in orders
     ]
