@@ -44,7 +44,7 @@ h4{font-size:1rem;margin-bottom:.3rem}a{color:var(--link)}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 caption{text-align:left;font-weight:600;padding:.3rem 0}
 th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}
-td.r,th.r{text-align:right}td.r,tbody th.r,thead small,.n{white-space:nowrap}
+td.r,th.r{text-align:right}td.r,td.r+td:nth-child(3),tbody th.r,thead small,.n{white-space:nowrap}
 thead th{border-bottom:1px solid var(--ink);vertical-align:bottom}
 tbody tr>*{border-bottom:1px solid var(--rule)}tbody th{font-weight:400}td.l{max-width:14rem}
 @media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}

@@ -138,7 +138,7 @@ def torque_orders(source: Source) -> Iterator[Panel]:
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
-    """The circles of each order, with the rotation and against it."""
+    """Radii of the circles on which unbalanced force and moment turn, order by order, with the shaft and against it."""
     omega, free, panels = source.results.omega, source.results.free, list[Panel]()
     for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
         if source.having("F_x") and vector is not None and free.orders:
