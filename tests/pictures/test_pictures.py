@@ -178,6 +178,7 @@ def test_where_an_order_meets_a_mode_the_speed_is_critical() -> None:
         slopes = [60 * one.y[1] / one.x[1] for one in panel.curves if one.kind == "faint" and not one.name.symbol]
         orders = {float(mark.figure.name.symbol.removeprefix("ν = ").removesuffix(":")) for mark in panel.marks}
         assert sorted(orders) == pytest.approx(sorted(slopes))  # periods per turn times turns per second
+        assert orders >= {one.order for one in case.torsion.critical_speeds(2, 12) if one.near}
         met = 0
         for mark in panel.marks:
             mode = min(frequencies, key=lambda frequency: abs(frequency - mark.y))
