@@ -78,7 +78,8 @@ footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
 figure svg{width:100%;min-width:30rem;height:auto;display:block}
 #summary figure svg{min-width:0}
-@media print{main{padding:0}figure svg{min-width:0;max-height:23cm}nav{display:none}
+@media print{main{padding:0}figure svg{min-width:0;max-height:23cm}#summary figure svg{max-height:7.5cm}
+nav{display:none}
 h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
 a{color:inherit;text-decoration:none}}
 """
