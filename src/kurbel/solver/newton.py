@@ -102,7 +102,7 @@ def _rod_of(drive: Drive) -> _Rod:
 
 
 def _motion_of(state: State) -> _Motion:
-    """Return the motion of pins and rod, from the positions k: Any = R e^{iφ} and k − c = −L e^{−iψ}."""
+    """Return the motion of pins and rod, from the positions k = R e^{iφ} and k − c = −L e^{−iψ}."""
     mechanism, sin, cos, (sin_psi, cos_psi) = state.mechanism, state.angle.sin, state.angle.cos, state.rod_angle
     R, L = mechanism.crank, mechanism.rod_length
     turn = R * cos / (L * cos_psi)

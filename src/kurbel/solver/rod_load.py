@@ -7,7 +7,6 @@ kurbel finds the angles of reversal exactly.
 from __future__ import annotations
 
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from kurbel.arrays import Array
 from kurbel.numerics.arithmetic import some, where
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Pieces
-from kurbel.quantity import value, values_for
+from kurbel.quantity import Answers, value, values_for
 from kurbel.solver.cycle import reversals
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, result
@@ -60,9 +59,9 @@ class RodLoads(Results):
         self.drive, self.pieces, self.loads = drive, pieces, loads
 
     @cached_property
-    def answers(self) -> dict[str, Any]:
+    def answers(self) -> Answers:
         """The key values."""
-        found, count = dict[str, Any](), self.drive.count
+        found, count = Answers(), self.drive.count
         extremes = self.pieces.extremes([*self.loads.values()]).each(partial(result, count=count))
         peaks = dict(zip(self.loads, extremes))
         for load in _LOADS:
