@@ -242,7 +242,7 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     each = "  " + f"stroke: 100 mm{body}".replace("\n", "\n    ")
     four = f"{brake}{head}cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  each:\n  {each}"
     assert notes_of(four) == []
-    (note,) = notes_of("brake_power: 500 kW\n" + machine_text(written(tmp_path, *motored(0.0)), cycle="two-stroke"))
+    (note,) = notes_of("brake_power: 500 kW\n" + machine_text(written(tmp_path, *motored(-0.5)), cycle="two-stroke"))
     assert "far below what the driven shaft takes, 500 kW" in note
 
 
