@@ -208,7 +208,7 @@ def test_the_best_share_of_one_cylinder() -> None:
 
 
 def test_no_counterweight_has_no_direction() -> None:
-    """Seen from the crank the largest forces, at 90 and 270 deg, are opposite: a weight that lessens one adds to another."""
+    """The largest forces, at 90 and 270 deg, are opposite in the frame of the crank: no weight lessens both."""
     opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace("position: 90", "position: 180")
     found = balance_of(opposite.replace("rod_ratio: 4", "rod_ratio: 1.55"))
     assert (found.counterweight_least, found.counterweight_least_angle) == (0, None)

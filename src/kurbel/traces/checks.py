@@ -262,7 +262,7 @@ def _unit(reading: TraceReading) -> str:
     usable = [one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and in_range(one[0])]
     # of what no unit makes an engine, a peak that no cylinder has is reported nevertheless
     others = [one for one in usable if compresses(one[0])] or ([] if in_range(1.0) else usable)
-    if in_range(1.0) and compresses(1.0) or not others:
+    if (in_range(1.0) and compresses(1.0)) or not others:
         return ""
     factor, unit, _ = min(others, key=lambda one: away(one[0]) + one[2])
     peak = reading.peak + setting.lift
