@@ -124,7 +124,7 @@ def wrong(
 
 
 HALVES, SUNK = np.arange(0.0, 720.0, 0.5), late(0) - AMBIENT
-UNIT = "times too small? mend 'unit' (unit: bar fits)"
+UNIT = "times too small? correct 'unit' (unit: bar fits)"
 CLEARED = ", clearance: 1/14"
 WRONG = {
     "90 deg late": wrong(late(90), "the peak is 103.6 deg after the firing dead centre"),
@@ -133,7 +133,7 @@ WRONG = {
     "by no quarter": wrong(late(61.2), "the peak is 74.8 deg after the firing dead centre"),
     "gauge as absolute": wrong(SUNK, "these look like gauge pressures"),
     "absolute as gauge": wrong(late(0), "about the ambient: absolute?", pressures="gauge"),
-    "ten times": wrong(late(0) * 10, "pressures 10 times too large? mend 'unit', or write"),
+    "ten times": wrong(late(0) * 10, "pressures 10 times too large? correct 'unit', or write"),
     "hundred times": wrong(late(0) * 100, "100 times too large", CLEARED),
     "a tenth": wrong(late(0) / 10, "10 times too small"),
     "a tenth, pegged": wrong(late(0) / 10, "10 times too small", ", pegging: ambient"),
@@ -164,7 +164,7 @@ WRONG = {
     ),
     "pegged at its peak": wrong(
         late(0),
-        "the perfect vacuum being at 0 bar; mend 'pegging'; p_i stays",
+        "the perfect vacuum being at 0 bar; correct 'pegging'; p_i stays",
         ", pegging: {angle: 10 deg, pressure: 0.95 bar}",
     ),
     **{f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}") for unit in ("Pa", "psi")},

@@ -49,7 +49,9 @@ def test_rows_are_chosen_by_printed_symbols() -> None:
     asked = (*RATIOS, "--columns", "dE,P_start_max")
     assert numbers(*asked, "--sort", "-ΔE", "--top", "1") == numbers(*asked, "--pareto", "-ΔE") == [2]
     assert numbers(*asked, "--where", "P_0,max ≥ 1 N", "--where", "rod_ratio ≤ 4") == [2, 3]
-    assert numbers(*RATIOS, "--columns", "machine.T_max", "--sort", "-machine.T_max", "--top", "1") == [2]
+    of_machine = rows(*RATIOS, "--columns", "machine.T_max", "--sort", "-machine.T_max", "--top", "1")
+    assert [(one["row"], "machine.T_max_N" in one) for one in of_machine] == [(2, True)]
+    assert numbers(*RATIOS, "--columns", "machine.dE", "--sort", "-machine.ΔE", "--top", "1") == [2]
     compressor = str(CONFIGS["compressor-two-stage"])
     by_symbol = ("--vary", "speed=300,500 rpm", "--columns", "p_i", "--sort", "low pressure.p_i")
     assert [one["row"] for one in rows(*by_symbol, file=compressor)]

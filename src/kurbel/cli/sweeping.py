@@ -61,10 +61,7 @@ def run(
         (top and not sort, "--top N takes the first rows of --sort ID; give --sort too."),
         (resume and not resumable, "--resume goes on in csv or json lines, rows in order; give --output FILE.csv."),
         (written == "parquet" and not named, "Parquet is a file; give --output FILE.parquet."),
-        (
-            summarised and (shard or written == "parquet"),
-            "--summary is of all rows, as text; leave --shard, parquet out.",
-        ),
+        (summarised and (shard or written == "parquet"), "--summary is of all rows, as text; no --shard, no parquet."),
         (dask and jobs, "give only one of --dask and --jobs."),
     ):
         if wrong:

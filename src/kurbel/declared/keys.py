@@ -91,6 +91,7 @@ class Rule(NamedTuple):
 
     broken: true if the condition holds, for many machines an array (machines,); an unknown number (NaN) breaks no rule.
     sentence: the message; braces hold entries and numbers: `{bore}` is written with its unit, `{x:length}` as a length.
+    at_key: the key itself is wrong, where the message points, and not its value.
     """
 
     place: Union[str, Path]

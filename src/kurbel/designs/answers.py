@@ -23,6 +23,8 @@ from kurbel.report.frame import Subject, too_large
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 
+_WHOLE = "whole machine"
+"""The whole machine, as a report names it."""
 _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
@@ -54,6 +56,11 @@ class Answer(NamedTuple):
     def kind(self) -> str:
         """The kind of the quantity, which decides the unit."""
         return "angle" if self.angle else self.quantity.kind
+
+    @property
+    def owner(self) -> str:
+        """The word that requests it for this subject only: `machine` of `machine.T_max`, or the name of the subject."""
+        return MACHINE if self.subject == _WHOLE else self.subject
 
 
 # which key values are requested
@@ -88,7 +95,8 @@ def requested_answers(
 def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
-    owner, own = parts_of_name(name)
+    prefix, _, own = name.rpartition(".")
+    owner = _WHOLE if prefix == MACHINE else prefix
     ids = called(own, declared)
     if not ids or ambiguity(own, ids):
         near = in_sentences(name, declared) or did_you_mean(name, tuple(one.id for one in declared))
@@ -98,16 +106,6 @@ def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
         if found := [*_holding(case, command, ids[0], owner)]:
             return found
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
-
-
-def parts_of_name(name: str) -> tuple[str, str]:
-    """Return the subject, '' for none, and the key value of `LP.c_max`, as a report names the subject.
-
-    >>> parts_of_name("machine.T_max")
-    ('whole machine', 'T_max')
-    """
-    owner, _, own = name.rpartition(".")
-    return ("whole machine" if owner == MACHINE else owner), own
 
 
 def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:

@@ -13,7 +13,6 @@ from kurbel.declared.numerals import plain
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import parts_of_name
 from kurbel.designs.study import Cell, Design, Head
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
@@ -84,7 +83,7 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
 def place_of(name: str, heads: Sequence[Head], option: str) -> int:
     """Return which column of single values a name or a printed symbol is; raises UsageError."""
     ids = tuple(one.id for one in heads)
-    owner, own = parts_of_name(name)
+    owner, _, own = name.rpartition(".")
     meant = (name, *(f"{owner}.{id}".lstrip(".") for id in called(own, every_quantity().all_key_values)))
     place = next((ids.index(one) for one in meant if one in ids), None)
     if place is None:

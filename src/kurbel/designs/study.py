@@ -113,7 +113,7 @@ class Study:
         for one, unit in zip(self.answers, units):
             id = f"{one.quantity.id}_at" if one.angle else one.quantity.id
             owned = one.alone or ids.count(one.quantity.id) > 1
-            heads.append(Head(f"{one.subject}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
+            heads.append(Head(f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
         return heads
 
     def of(self, rows: Sequence[Sequence[str]]) -> list[Found]:

@@ -145,7 +145,9 @@ def _step(node: Node, one: Override, place: int) -> Any:
     above = dotted(one.path[:place])
     if isinstance(node, list):
         if not isinstance(step, int) or step >= len(node):
-            instead = dotted((*one.path[:place], len(node) - 1, *one.path[place + 1 :]))
+            names = [item.get("name") if isinstance(item, dict) else None for item in node]
+            meant = names.index(step) if step in names else len(node) - 1
+            instead = dotted((*one.path[:place], meant, *one.path[place + 1 :]))
             _refused(one.given, f"'{above}' is a list; its items are 0 to {len(node) - 1}: write {instead}=…")
         if last:
             node[step] = one.value

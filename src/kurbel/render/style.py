@@ -44,7 +44,7 @@ h4{font-size:1rem;margin-bottom:.3rem}a{color:var(--link)}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 caption{text-align:left;font-weight:600;padding:.3rem 0}
 th,td{padding:.12rem .5rem;text-align:left;vertical-align:top;overflow-wrap:normal}
-td.r,th.r{text-align:right}td.r,tbody th.r,thead small,.n{white-space:nowrap}
+td.r,th.r{text-align:right}td.r,td.r+td:nth-child(3),tbody th.r,thead small,.n{white-space:nowrap}
 thead th{border-bottom:1px solid var(--ink);vertical-align:bottom}
 tbody tr>*{border-bottom:1px solid var(--rule)}tbody th{font-weight:400}td.l{max-width:14rem}
 @media screen and (max-width:40rem){.wide td:not(.r):last-child{min-width:12rem}}
@@ -78,7 +78,8 @@ footer{border-top:2px solid var(--ink);margin-top:2.6rem}
 figure{margin:1.2rem 0}
 figure svg{width:100%;min-width:30rem;height:auto;display:block}
 #summary figure svg{min-width:0}
-@media print{main{padding:0}figure svg{min-width:0;max-height:23cm}nav{display:none}
+@media print{main{padding:0}figure svg{min-width:0;max-height:23cm}#summary figure svg{max-height:7.5cm}
+nav{display:none}
 h1{font-size:18pt}h2{margin-top:1.2rem}#summary{break-after:page}
 a{color:inherit;text-decoration:none}}
 """

@@ -40,8 +40,8 @@ _LONGEST_BAR, _NOTE = 110.0, 7.0
 """Length of the longest bar that shows a scale, and width of a character of a note."""
 _CLEAR = 4.0
 """How far labels are at least from the upright axis."""
-_SHORTEST = 2.0
-"""Length of an arrow below which it has no name, where it does not move."""
+_NAMED, _SHORTEST = 11.0, 2.0
+"""How far the name of an arrow is from its end; length below which it has none, where it does not move."""
 _STRAIGHT = 0.1
 """How far a point that is left out may be from the line between its neighbours."""
 _POINTS = {"joint": ("o", 4.0), "fixed": ("i", 4.0), "beads": ("i", 1.6), "pole": ("i", 3.0)}
@@ -94,10 +94,12 @@ def _drawn(picture: Picture, look: Look, paper: bool, headed: bool = True) -> tu
     """Return the height of a picture and its items; headed: with its heading."""
     heading = folded(look.text(picture.heading), int(WIDTH / _BOLD)) if headed else []
     items = "".join(_text((16 + 17 * number) * 1j, text, "h") for number, text in enumerate(heading))
-    below, each = 7.0 * headed + 17 * len(heading), (WIDTH + _GUTTER) / picture.across - _GUTTER
+    below, last = 7.0 * headed + 17 * len(heading), len(picture.panels) - 1
     top, tall = below, _TALL if len(picture.panels) < 3 else _SHORT
     for number, panel in enumerate(picture.panels):
         column = number % picture.across
+        # what is alone in the last row has all of it
+        each = WIDTH if number == last and column == 0 else (WIDTH + _GUTTER) / picture.across - _GUTTER
         if number and column == 0:
             top = below + 4
         left, right, above, under = (0.0, 0.0, 18.0, 8.0) if panel.plain else (48.0, 12.0, 20.0, 18.0)
@@ -277,7 +279,7 @@ def _arrow(frame: PanelFrame, moments: Sequence[Curve]) -> str:
         paths.append(_path(np.array([*(side + half), tip, *(side - half)[::-1]])) + "Z")
         # a force is named at its end away from the shaft, where nothing else is
         inward = force and np.hypot(curve.x[0], curve.y[0]) > np.hypot(curve.x[1], curve.y[1])
-        names.append((tail - 9.0 * along if inward else tip + 9.0 * along) + 3.5j)
+        names.append((tail - _NAMED * along if inward else tip + _NAMED * along) + 3.5j)
     name, look = symbol(moments[0].name, frame.look), "halo force" if force else "halo"
     return _shape("c0" if force else "c1", *paths) + _text(names[0], name, look, "middle", names)
 

@@ -153,7 +153,7 @@ _HYPHEN = re.compile(r"(?<![\w.-])-(?=\d)")
 _DEGREE = re.compile(r"(?<=\d) deg\b")
 _SQUARE = re.compile(r"(?<=[a-z])\^2")
 _SUBSCRIPT = re.compile(
-    "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;]+?)(?=[,.]?\\s|[,.]?$|[|()/;])"
+    "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;²³]+?)(?=[,.:]?\\s|[,.:]?$|[|()/;²³])"
 )
 
 
@@ -323,7 +323,7 @@ def measures() -> re.Pattern[str]:
 def subscripts(text: str) -> list[str]:
     """Return what is on the line and what is below it as subscripts, in turn.
 
-    >>> subscripts("T_max 5.1 kN"), subscripts("F_x, F_y in N"), subscripts("my_engine")
-    (['T', 'max', ' 5.1 kN'], ['F', 'x', ', F', 'y', ' in N'], ['my_engine'])
+    >>> subscripts("T_max 5.1 kN"), subscripts("F_x², F_y: forces"), subscripts("my_engine")
+    (['T', 'max', ' 5.1 kN'], ['F', 'x', '², F', 'y', ': forces'], ['my_engine'])
     """
     return _SUBSCRIPT.split(text)

@@ -1,7 +1,8 @@
 """Every command, one row each: the command line, exit statuses, the whole report, sweeps and the documents read it.
 
-A command on a machine has a function here that names those it computes with: its docstring is the help of the command,
-and what it imports is loaded when the command is called, so that help and completion need neither numpy nor the solver.
+A command on a machine has a function here: its docstring is the help of the command, and what it imports and returns,
+the `Functions` of a report, is loaded when the command is called. So help and completion need neither numpy nor the
+solver.
 """
 
 from collections.abc import Callable
@@ -19,10 +20,10 @@ BROKEN, NO_SOLUTION = 1, 3
 class Command(NamedTuple):
     """A command: its word, its summary in `kurbel --help`, and the statuses that only some commands return.
 
-    of: of a command that reports on a machine, a function that returns its functions; section: the title of its section
-    in the whole report, and the place of that; over_angle: whether it has columns over the crank angle.
-    first: ids of the columns, key values and tables that are shown on a terminal with too few lines for all; in_cases:
-    of the key values in its table of load cases, '' for a command that has none.
+    of: of a command that reports on a machine, the function in this file that has its help and returns its `Functions`;
+    section: place and title of its section in the whole report; over_angle: whether it has columns over the crank
+    angle. first: ids of the columns, key values and tables that are shown on a terminal with too few lines for all;
+    in_cases: ids of the key values in its table of load cases, '' for a command that has none.
     """
 
     word: str

@@ -166,7 +166,7 @@ def _loaded(case: Case) -> list[Subject]:
             one,
             one.at,
             left_out=bearing_left_out(*one.size, one.omega),
-            of=one.followed[0].drive.name if one.of_rod else "",
+            of=one.cylinders[0].drive.name if one.of_rod else "",
         )
         for one in case.bearings.parts
     ]
@@ -242,8 +242,8 @@ def _stress_notes(case: Case) -> Iterator[str]:
     )
     if case.stress.C_rod:
         yield (
-            "The part of the connecting rod that turns with the crank pin pulls it outward with C_rod: pin and "
-            "bearings carry D less C_rod."
+            "The part of the connecting rod that turns with the crank pin pulls it outward with C_r: pin and "
+            "bearings carry D less C_r."
         )
     cool, verdict = shells(case)
     if cool and verdict:

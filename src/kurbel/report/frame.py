@@ -173,11 +173,11 @@ def report_on(
 
 
 class Functions(NamedTuple):
-    """What a command computes with; its functions raise as `report` does.
+    """What a command on a machine consists of: a title, and functions of a case, which raise as `report` does.
 
     title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
-    below the tables; end: returns the crank angle at which the table ends; own: a report of its own, which takes the
-    case, the frame, and options of the command by their names.
+    below the tables; end: returns the crank angle at which the table ends; own: a function that returns a report of
+    another layout than `report_on`, from the case, the frame, and options of the command by their names.
     """
 
     title: str

@@ -22,8 +22,9 @@ _HIGHEST = 12
 _LEAST_BARS = 6
 """How many there is room for at least, so that one alone is no block."""
 _MODES = 4
-_FASTEST, _MOST_ORDERS = 1.25, 8
-"""Of a Campbell diagram: its highest speed over the working speed, and how many orders it has."""
+_FASTEST, _STRONGEST = 1.25, 6
+"""Of a Campbell diagram: its highest speed over the working speed, and how many critical speeds are marked besides
+those near the working speed."""
 _MOST_CRANKS = 4
 """Each has a stroke of its own, next to the sum with and without losses."""
 _SLENDEREST = 15.0
@@ -138,7 +139,7 @@ def torque_orders(source: Source) -> Iterator[Panel]:
 
 
 def unbalanced_orders(source: Source) -> Iterator[Panel]:
-    """The circles of each order, with the rotation and against it."""
+    """Radii of the circles on which unbalanced force and moment turn, order by order, with the shaft and against it."""
     omega, free, panels = source.results.omega, source.results.free, list[Panel]()
     for name, kind, vector in (("F", "force", free.force), ("M", "torque", free.moment)):
         if source.having("F_x") and vector is not None and free.orders:
@@ -183,7 +184,7 @@ def _frequencies(source: Source) -> list[tuple[int, float]]:
 
 def campbell(source: Source) -> Iterator[Panel]:
     """Natural frequencies against the speed with the lines of the orders that excite them; where they cross the speed
-    is critical. The upright line is the working speed."""
+    is critical: the strongest, and those near the working speed, the upright line, are marked with the order ν."""
     found, modes = source.results, _frequencies(source)
     working = found.machine.speed
     if not modes or not working:
@@ -191,7 +192,8 @@ def campbell(source: Source) -> Iterator[Panel]:
     fastest = _FASTEST * working
     every = [one for one in found.critical_speeds(_MODES, _HIGHEST) if one.speed <= fastest and one.share > 0]
     strongest = sorted(every, key=lambda one: -one.share)
-    orders = sorted({one.order for one in strongest[:_MOST_ORDERS]})
+    marked = [one for number, one in enumerate(strongest) if number < _STRONGEST or one.near]
+    orders = sorted({one.order for one in marked})
     reached = [frequency for _, frequency in modes if frequency <= fastest * max(orders, default=0.0)]
     top = 1.15 * max(reached, default=modes[0][1])
 
@@ -202,12 +204,11 @@ def campbell(source: Source) -> Iterator[Panel]:
     ]
     for order in orders:
         end = min(fastest, top / order)
-        curves.append(curve("faint", 0j, complex(end, order * end), name=Words(f"ν = {order:g}")))
+        curves.append(curve("faint", 0j, complex(end, order * end)))
     curves.append(curve("faint", complex(working), complex(working, top), name=Words("working speed")))
     marks = [
-        Mark(one.speed, one.order * one.speed, PageFigure(Words("n_k"), one.speed, kind="speed"))
-        for one in strongest
-        if one.order in orders
+        Mark(one.speed, one.order * one.speed, PageFigure(Words(f"ν = {one.order:g}:"), one.speed, kind="speed"))
+        for one in marked
     ]
     x, y = Axis(Words("n", words="speed"), "speed", low=0.0), Axis(Words("f", words="frequency"), "frequency", low=0.0)
     yield Panel(x, y, tuple(curves), marks=tuple(marks))

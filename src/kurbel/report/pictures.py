@@ -77,7 +77,8 @@ def _remaining_force(source: Source) -> list[Line]:
 
 
 def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
-    """The same over the displacement of the piston, stroke by stroke (R Abb. 1055)."""
+    """Piston force over the displacement, stroke by stroke; with inertia it is what is between P_0 and the inertia line
+    (R Abb. 1055)."""
     if len(source.having("P", "x")) < 2 or source.results.drive.mechanism.turns:
         return
     lines, reversals = _remaining_force(source), source.results.phi_reversal or ()
@@ -88,6 +89,7 @@ def piston_force_over_stroke(source: Source) -> Iterator[Panel]:
     # one scale for all, or the noise of a traced gas exchange would have its own
     heights = np.concatenate([one for panel in panels for one in panel.places[1]])
     low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+    low -= 0.1 * (high - low)  # or a lowest line that is level would be on the axis
     yield from (panel._replace(y=panel.y._replace(low=low, high=high)) for panel in panels)
 
 
@@ -326,8 +328,7 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
     found = []
     for source, name in _sources(case, kind, options):
         if panels := tuple(in_units(panel, options.system) for panel in kind.panels(source)):
-            # three of which two are next to each other would leave a quadrant empty
-            across = 3 if kind.across > 1 and len(panels) == 3 else min(kind.across, len(panels))
+            across = min(kind.across, len(panels))
             found.append(Picture(kind.id, kind.title, kind.text, panels, case.machine.name, name, across))
     return found
 

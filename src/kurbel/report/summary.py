@@ -15,7 +15,7 @@ from kurbel.machine import Machine, firings
 from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
-from kurbel.numerics.extreme import number_of
+from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.cases import name_of
@@ -190,7 +190,8 @@ def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Found | None
         with suppress(KurbelError):
             value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
-                each.append(Found(_LABELS[command][id], number, quantity, one.name, getattr(value, "degrees", None)))
+                degrees = value.degrees if isinstance(value, Extreme) else None
+                each.append(Found(_LABELS[command][id], number, quantity, one.name, degrees))
     if not each:
         return None
     whole = [one for one in each if one.where == "whole machine"]

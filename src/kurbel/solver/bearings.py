@@ -67,7 +67,7 @@ def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
 
 
 def carried(pieces: Pieces, forces: CylinderForces, *values: Any) -> ComplexArray:
-    """Return quantities sampled on the pieces of a cylinder at the nodes of common ones, (q, nodes, pieces)."""
+    """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
     source = forces.pieces
     parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
     return parts[::2] + 1j * parts[1::2]
@@ -101,10 +101,11 @@ class BearingColumns(AtAngles):
 class Bearing(Results):
     """A pin or a main bearing at the angles of crank 1. Attributes are named by the ids of the key values, in SI.
 
-    name: as it is printed; followed: the cylinders that load it; size: diameter and length in m, None where they are
-    not given; journal, shell: the frames in which its two surfaces stand still; contact: degrees from the
-    direction of the load to where they touch; of_rod: whether a rod of a cylinder turns on it. Of many machines all key
-    values are arrays (machines,).
+    name: as it is printed; cylinders: those that load it; size: diameter and length in m, None where they are not
+    given; journal, shell: the frames in which its two surfaces are at rest; contact: where they touch, in degrees from
+    the direction of the load: a load to the right presses the left side of a crank pin (180°), but the right side of
+    the shell of a main bearing (0°); of_rod: whether a rod turns on it. Of many machines all key values are arrays
+    (machines,).
     """
 
     command = "bearings"
@@ -127,13 +128,13 @@ class Bearing(Results):
     pressure_velocity = value("k_L", "pressure_velocity", "Mean pressure times mean speed, p v")
     work_rubbing = value("A_f,L", "energy", "Friction work per cycle", lambda one: one.friction_work())
 
-    def __init__(self, name: str, followed: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]) -> None:
-        self.name, self.followed, self.size = name, tuple(followed), size
+    def __init__(self, name: str, cylinders: Sequence[CylinderForces], size: Size, surfaces: tuple[str, str]) -> None:
+        self.name, self.cylinders, self.size = name, tuple(cylinders), size
         self.journal, self.shell = surfaces
-        drive = followed[0].drive
+        drive = cylinders[0].drive
         self.machine, self.count, self.omega = drive.machine, drive.count, drive.omega
         cycle = 360.0 * self.machine.revolutions
-        self._common = common([(one.pieces, position(one)) for one in followed], cycle)
+        self._common = common([(one.pieces, position(one)) for one in cylinders], cycle)
 
     @abstractmethod
     def _frames(self, degrees: Array, within: Array) -> Frames:
@@ -144,7 +145,7 @@ class Bearing(Results):
         """Return the load in the frames of both surfaces on the common pieces, (nodes, pieces) each."""
 
     def turning(self) -> tuple[Extreme, Number]:
-        """Return the largest and the mean relative rotation of the surfaces, over that of the crank."""
+        """Return the largest and the mean speed at which the surfaces turn on each other, as a multiple of ω."""
         return Extreme(1.0, self._result(np.zeros(self.count or 1))), 1.0
 
     @abstractmethod
@@ -156,6 +157,7 @@ class Bearing(Results):
 
     @cached_property
     def _cycle(self) -> tuple[Pieces, Array, ComplexArray]:
+        """Pieces on which the magnitude of the load is a polynomial, the magnitude, and the load of both surfaces."""
         return with_magnitude(self._common, self._samples())
 
     @property
@@ -175,8 +177,8 @@ class Bearing(Results):
         found["load_high"] = self._result(mean_of_high(pieces, load, np.atleast_1d(ends.largest.value)))
         for surface, ending in zip(surfaces, ("", "_shell")):
             for id, degrees in zip(("unloaded_arc", "unloaded_middle"), unloaded(pieces, surface, self.contact)):
-                only = self.count is None and math.isnan(degrees[0])
-                found[id + ending] = None if only else self._result(degrees)
+                none = self.count is None and math.isnan(degrees[0])
+                found[id + ending] = None if none else self._result(degrees)
 
         diameter, length = self.size
         if diameter is not None and length is not None:
@@ -204,7 +206,7 @@ class RodPin(Bearing):
         self._own, self._pin, self._bank = own, pin, unit_vector(own.drive.cylinder.bank_angle)
 
     def _seen(self, state: State, bank: Any) -> Frames:
-        """Return the load; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
+        """Return the load in each frame; bank: e^{iγ} of its stroke line. N > 0 presses toward −i."""
         sin_psi, cos_psi = state.rod_angle or (0.0, 1.0)
         found = {}
         if self._pin == "crank_pin":
@@ -224,7 +226,7 @@ class RodPin(Bearing):
         return [*carried(self._common, self._own, frames[self.journal], frames[self.shell])]
 
     def turning(self) -> tuple[Extreme, Number]:
-        """Of the crank pin 1 + dψ/dφ, of the crosshead pin dψ/dφ; see `Bearing`."""
+        """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
         state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
@@ -233,7 +235,7 @@ class RodPin(Bearing):
         return fastest, self._result(pieces.mean(np.abs(rate[0])))
 
     def friction_work(self) -> Number | None:
-        """As the forces of the cylinder have it; see `Bearing`."""
+        """That of `kurbel forces`, over the cycle of the machine; see `Bearing`."""
         work = self._own.friction_works.get(self._pin)
         return None if work is None else work * (self.machine.revolutions // self._own.drive.revolutions)
 
@@ -288,8 +290,8 @@ class MainBearing(Bearing):
         return force, force * unit_vector(self._common.degrees)
 
     def friction_work(self) -> Number | None:
-        """f |F| d/2 dφ, of the force without the friction of the pins; see `Bearing`."""
-        given = [one.drive.cylinder.friction for one in self.followed]
+        """∮ f |F| d/2 dφ with the force F without the friction of the pins; see `Bearing`."""
+        given = [one.drive.cylinder.friction for one in self.cylinders]
         coefficient = next((one.journals for one in given if one and one.journals is not None), None)
         if coefficient is None or self.size[0] is None:
             return None

@@ -259,12 +259,12 @@ class TurningEffort:
 
     @property
     def missing_inertia(self) -> list[Term]:
-        """The terms that the losses take off the torque of the moving masses, which turn all the same."""
+        """What the losses take off the torque of the moving masses: η holds for it, too, but not for kinetic energy."""
         return [Term(1 - share, one, quantity) for share, one, quantity in self.inertia_terms if some(share != 1)]
 
     @cached_property
     def true_excess(self) -> ExcessWork:
-        """The excess that changes the kinetic energy: with the losses of the effort, but none of the inertia torque."""
+        """The excess that changes the kinetic energy: losses do not reduce its share of the moving masses."""
         missing = self.missing_inertia
         return ExcessWork(self, self.excess.torque + self.sampled(missing)) if missing else self.excess
 

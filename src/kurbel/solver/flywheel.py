@@ -99,7 +99,8 @@ class MachineTurning(Results):
 
     Attributes are named by the ids of the key values, in SI; None where the machine does not have one. Forces T are
     referred to the radius of crank 1. Key values of many machines are arrays (machines,), nan where a machine has none.
-    Raises UsageError where no torque acts, NoSolutionError where the machine cannot run.
+    turns: a speed is given that is not 0. Raises UsageError where no torque acts, NoSolutionError where the machine
+    cannot run.
     """
 
     command, state = "flywheel", TurningState

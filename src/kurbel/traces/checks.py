@@ -270,7 +270,7 @@ def _unit(reading: TraceReading) -> str:
         can = f"four strokes compress more than from {in_bar(reading.low + setting.lift)}"
     return (
         f"the peak is {in_bar(peak)} absolute, where {can}: pressures {max(factor, 1 / factor):.4g} times too "
-        f"{'large' if factor < 1 else 'small'}? mend 'unit'{unit}, or write 'scale: {trace.scale * factor:g}'; "
+        f"{'large' if factor < 1 else 'small'}? correct 'unit'{unit}, or write 'scale: {trace.scale * factor:g}'; "
         f"{reading.then(times=factor)}"
     )
 
@@ -358,7 +358,7 @@ def _level(reading: TraceReading) -> str:
     if setting.absolute and -_BELOW * setting.ambient <= low < _NEAR_VACUUM * setting.ambient:
         return f"{seen} absolute: these look like gauge pressures; write 'pressures: gauge'; {stays}"
     if low < vacuum:
-        remedy = "mend 'pegging'" if reading.trace.pegging else "write 'pegging: ambient'"
+        remedy = "correct 'pegging'" if reading.trace.pegging else "write 'pegging: ambient'"
         return f"{seen}, the perfect vacuum being at {in_bar(vacuum)}; {remedy}; {stays}"
     near = _NEAR_AMBIENT[0] < low / max(setting.ambient, 1.0) < _NEAR_AMBIENT[1]
     if setting.absolute or not near or _is_sensible(reading.exponent(COMPRESSION)):
@@ -392,7 +392,7 @@ def _exponents(reading: TraceReading) -> str:
     if abs(later) <= _LATEST and _is_sensible(reading.exponent(COMPRESSION, later)):
         key, effect = reading.put_later(-later)
         return f"{seen}: a dead centre {abs(later):.2g} deg off does that; write {key}; {effect}"
-    return "" if sensible else f"{seen}: mend the level ('pegging', 'offset'; p_i stays), or the clearance"
+    return "" if sensible else f"{seen}: correct the level ('pegging', 'offset'; p_i stays), or the clearance"
 
 
 def _apart(reading: TraceReading, later: float) -> float:

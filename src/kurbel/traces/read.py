@@ -270,7 +270,7 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
         if not _FIGURES.fullmatch(cell):  # of headings no cell is one of figures
             return f"{written} if it is a heading"
     if rows[0] and rows[0][0] < number - 1:
-        return "; leave such lines out, or mend them"
+        return "; leave such lines out, or correct them"
     if cell:
         return _PLAIN if any(one.isdigit() for one in cell) else _NO_FIGURES
     if not any(map(_NUMBER.fullmatch, cells)):

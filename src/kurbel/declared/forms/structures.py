@@ -237,18 +237,21 @@ class Maker:
         return value
 
     def _record(self, form: RecordForm, values: dict[str, Any]) -> Any:
-        """Return the record of values by key; REFUSED after its rules have judged those that could be read."""
+        """Return the record of values by key; REFUSED if one could not be read, after judging the others.
+
+        For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
+        """
         unread = [
             name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
         ]
         stand_ins = {name: form.keys[name].form.unread for name in unread}
-        if None in stand_ins.values():
+        if None in stand_ins.values():  # nothing can be in place of a word or a mapping
             raise RuleError(*form.record.faults_of_some(values))
-        if unread:
+        if stand_ins:
             try:
                 form.record.from_keys(**(values | stand_ins))
             except RuleError as error:
-                # what speaks of nan is wrong with a stand-in only
+                # a message with nan is about the value that could not be read
                 known = [one for one in error.faults if not re.search(r"\bnan\b", one.message)]
                 raise RuleError(*known) from None
             except (ArithmeticError, ValueError):  # a formula that takes no nan
