@@ -136,6 +136,8 @@ WRONG = {
     "ten times": wrong(late(0) * 10, "pressures 10 times too large? correct 'unit', or write"),
     "hundred times": wrong(late(0) * 100, "100 times too large", CLEARED),
     "a tenth": wrong(late(0) / 10, "10 times too small"),
+    "a tenth, pegged": wrong(late(0) / 10, "10 times too small", ", pegging: ambient"),
+    "no engine in any unit": wrong(late(0) * 10 + 600, "where cylinders peak at 1 to 300 bar: pressures"),
     "a tenth, gauge": wrong(SUNK / 10, "10 times too small", pressures="gauge"),
     "backward": wrong(absolute(ENGINE, -FINE), "does its angle count against the rotation?"),
     "on its head": wrong(-SUNK, "is it inverted? write 'scale: -1'", pressures="gauge"),
@@ -168,12 +170,13 @@ WRONG = {
     **{f"{unit} meant as bar, absolute": wrong(late(0), UNIT, f"{RATIO}, unit: {unit}") for unit in ("Pa", "psi")},
     **{f"{unit} meant as bar, gauge": wrong(SUNK, UNIT, f"{RATIO}, unit: {unit}", "gauge") for unit in ("Pa", "psi")},
 }
-NO_KEY = "level", "closing sample", "pegged at its peak"
+NO_KEY = "level", "closing sample", "pegged at its peak", "no engine in any unit"
 """Faults whose way out is no key with a value that the note could name."""
 SEEN = [
     *("90 deg late", "one turn late", "gauge as absolute", "ten times", "a tenth, gauge", "backward", "on its head"),
     *("no level", "drift in noise", "half degrees on whole ones", "dead centre", "marks of one turn as degrees"),
     *("closing sample", "pegged at its peak", "Pa meant as bar, gauge", "psi meant as bar, absolute"),
+    *("a tenth, pegged", "no engine in any unit"),
 ]
 
 
@@ -239,7 +242,7 @@ def test_the_brake_of_an_engine_of_four(tmp_path: Path) -> None:
     each = "  " + f"stroke: 100 mm{body}".replace("\n", "\n    ")
     four = f"{brake}{head}cylinders:\n  count: 4\n  firing_order: 1-3-4-2\n  each:\n  {each}"
     assert notes_of(four) == []
-    (note,) = notes_of("brake_power: 500 kW\n" + machine_text(written(tmp_path, *motored(0.0)), cycle="two-stroke"))
+    (note,) = notes_of("brake_power: 500 kW\n" + machine_text(written(tmp_path, *motored(-0.5)), cycle="two-stroke"))
     assert "far below what the driven shaft takes, 500 kW" in note
 
 

@@ -181,6 +181,11 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     (broken(1, "angle,bar"), "", "line 1: column 1 holds no number; write 'skip_rows: 1' if it is a heading"),
     ("0;1,5\n180;2\n360;1\n", "", "line 1: '0;1' is no number; write 'delimiter: semicolon'"),
     ("0;1,5\n180;2,5\n360;1,5\n", ", delimiter: semicolon", "line 1: '1,5' is no number; write 'decimal: comma'"),
+    (
+        "".join(f"{a};2\n" for a in range(720)) + "720;1,5\n",
+        ", delimiter: semicolon",
+        "line 721: '1,5' is no number; write 'decimal: comma'",
+    ),
     ("", "", "p.csv has no figures"),
     ("# nothing\n\n", "", "p.csv has no figures"),
     *(

@@ -12,7 +12,7 @@ import test_every_mechanism as laws
 
 SLIPS = [
     ("slider_crank", "rod_angle", "angle.sin - self.offset", "angle.sin + self.offset"),
-    ("slider_crank", "coordinate", "sin_psi + sin_start", "sin_psi - sin_start"),
+    ("slider_crank", "coordinate", "middle_sin + middle_cos", "middle_sin - middle_cos"),
     ("slider_crank", "slope", "(angle.sin + angle.cos", "(angle.sin - angle.cos"),
     ("slider_crank", "curvature", "+ bend", "- bend"),
     ("slider_crank", "radial", "cos - angle.sin", "cos + angle.sin"),

@@ -6,6 +6,7 @@ import math
 import mpmath as mp
 import pytest
 
+from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.slider_crank import SliderCrank
 from machines import one_cylinder
 
@@ -48,3 +49,13 @@ def test_the_stroke_gives_the_crank(offset, by_ratio):
     machine = SliderCrank.from_keys(stroke=0.6, offset=offset, **size)
     assert machine.stroke == pytest.approx(0.6, rel=1e-14)
     assert not by_ratio or machine.rod / machine.crank == pytest.approx(4, rel=1e-15)
+
+
+@pytest.mark.parametrize("offset", [0.05, -0.3])
+def test_displacement_keeps_its_digits_beside_the_inner_dead_centre(offset: float) -> None:
+    """A thousandth of a degree away it is 1e-10 of the crank, of which small clearances need every digit."""
+    mechanism, degrees = SliderCrank(0.4, 2.0, offset), SliderCrank(0.4, 2.0, offset).dead_centres()[0] + 1e-3
+    with mp.workdps(40):
+        R, L, e, phi = mp.mpf(0.4), mp.mpf(2), mp.mpf(offset), mp.radians(mp.mpf(degrees))
+        true = mp.sqrt((L + R) ** 2 - e**2) - R * mp.cos(phi) - mp.sqrt(L**2 - (R * mp.sin(phi) - e) ** 2)
+    assert float(mechanism.coordinate(CrankAngle.of(degrees))) == pytest.approx(float(true), rel=1e-9)

@@ -207,6 +207,13 @@ def test_the_best_share_of_one_cylinder() -> None:
     assert (found.counterweight_least, found.counterweight_least_angle) == pytest.approx((0.1 * float(share), 180.0))
 
 
+def test_no_counterweight_has_no_direction() -> None:
+    """The largest forces, at 90 and 270 deg, are opposite in the frame of the crank: no weight lessens both."""
+    opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace("position: 90", "position: 180")
+    found = balance_of(opposite.replace("rod_ratio: 4", "rod_ratio: 1.55"))
+    assert (found.counterweight_least, found.counterweight_least_angle) == (0, None)
+
+
 @pytest.mark.parametrize(("share", "left"), [("0", 1.25), ("0.5", 0.75), ("2/3", 0.722784)])
 def test_what_a_share_leaves(share: str, left: float) -> None:
     found = balance_of(single(4, f", counterweights: {{share: {share}}}"))

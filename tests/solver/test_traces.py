@@ -62,6 +62,14 @@ def solved(
     return CylinderForces(Machine((own,), speed=3.0, cycle=cycle), own)
 
 
+@pytest.mark.parametrize("angles", [np.arange(0.0, 720.5, 0.5), np.array([0.0, 100.0, 300.0, 720.0])])
+def test_a_constant_pressure_does_no_work(angles: Any) -> None:
+    """Not even its rounding, by which a brake power would be divided."""
+    points = [(angle, 2.3) for angle in angles.tolist()]
+    found = solved(Measured.from_keys(unit=(BAR, 1), points=points), cycle="four-stroke")
+    assert found["work"].value == 0
+
+
 @cache
 def precise_area() -> float:
     """∮ p dx of the smooth pressure, by scipy's Gauss and Kronrod."""

@@ -97,7 +97,8 @@ class FourBar(Mechanism):
         # lengths that were written in decimals meet a change point only within their rounding
         flat = gap <= 2 * math.ulp(links[longest])
         numbers = links | {"ends": links[shortest] + links[longest], "pair": sum(links[name] for name in others)}
-        longer = "{crank} is not the shortest link, nor is the frame ({frame}): the crank cannot turn fully"
+        longer = f"{{crank}} is longer than the {shortest} ({{{shortest}}}), and so is the frame ({{frame}}): "
+        longer += "the crank turns fully only where it or the frame is the shortest link"
         yield Rule("crank", shortest not in ("crank", "frame"), longer)
         sums = f"{shortest} + {longest}, {{ends:length}}, must be less than {' + '.join(others)}, {{pair:length}}"
         grashof = f"it cannot turn fully: {sums} (Grashof; where they are equal, it folds flat: a change point)"

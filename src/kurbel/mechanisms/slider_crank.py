@@ -204,14 +204,28 @@ class SliderCrank(Mechanism):
     def coordinate(self, angle: CrankAngle) -> Number:
         """Return x = √((L+R)² − e²) − R cos φ − L cos ψ in m, R 285 where e = 0.
 
-        As R [cos φ_i − cos φ + (sin φ − sin φ_i)(sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)], of which no term is as long as L.
+        With θ = φ − φ_i, m = (φ + φ_i)/2:  x = 2R sin(θ/2) [sin m + cos m (sin ψ + sin ψ_i)/(cos ψ + cos ψ_i)].
         """
         sin_psi, cos_psi = self.rod_angle(angle)
-        if self.straight:
+        if self.straight:  # (1 − cos φ) + (1 − cos ψ)/λ, as a sum of positive terms
             return self.crank * (angle.versine + self.lam * (angle.sin * angle.sin) / (1 + cos_psi))
         start, (sin_start, cos_start) = self._start, self._start_rod
+        # sine and cosine of θ/2, both possibly with the opposite sign, which cancels in the products below
+        sin, cos = angle.sin * start.cos - angle.cos * start.sin, angle.cos * start.cos + angle.sin * start.sin
+        large = sqrt((1 + magnitude(cos)) / 2)
+        small = sin / (2 * large)
+        half_sin, half_cos = where(cos >= 0, small, large), where(cos >= 0, large, small)
+        middle_sin = start.sin * half_cos + start.cos * half_sin
+        middle_cos = start.cos * half_cos - start.sin * half_sin
         lead = (sin_psi + sin_start) / (cos_psi + cos_start)
-        return self.crank * (start.cos - angle.cos + (angle.sin - start.sin) * lead)
+        return self.crank * (2 * half_sin * (middle_sin + middle_cos * lead))
+
+    def remaining(self, angle: CrankAngle) -> Number:
+        """Return s − x in m; without offset R(1 + cos φ)(1 − λ(1 − cos φ)/(1 + cos ψ)), without cancellation."""
+        if not self.straight:
+            return super().remaining(angle)
+        lead = self.lam * angle.versine / (1 + self.rod_angle(angle)[1])
+        return self.crank * (angle.vercosine * (1 - lead))
 
     def _lead(self, angle: CrankAngle, cos_psi: Number) -> Number:
         """Return cos ψ + λ cos φ without cancellation, for e = 0; for cos φ < 0 as (1 − λ²)/(cos ψ − λ cos φ)."""

@@ -446,7 +446,7 @@ class MachineBalance(Results):
         u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
         encloses the curve.
         """
-        return -(self.forward + self._circle[0])
+        return -np.asarray(unless_cancelled(self.forward + self._circle[0], np.abs(self.forward)))
 
     @property
     def force_with_least(self) -> Extreme | None:

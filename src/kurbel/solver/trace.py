@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array, Indices
+from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.traces.correct import Setting, Trace, by_straight_lines, by_trapezoid, corrected, noise_of, work_weights
@@ -89,7 +90,8 @@ class TracePressure:
     @property
     def area(self) -> float:
         """∮ p dz in Pa per cycle, of the mean of the measured cycles."""
-        return math.fsum((self.weights * self.pressures).tolist())
+        terms = self.weights * self.pressures
+        return float(unless_cancelled(math.fsum(terms.tolist()), np.abs(terms).sum()))
 
     @property
     def area_by_angle(self) -> float:

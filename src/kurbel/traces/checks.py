@@ -238,20 +238,31 @@ def _unit(reading: TraceReading) -> str:
         least, most = _TO_COMPRESSION[0] * compressed, max(_TO_COMPRESSION[1] * compressed, _SMALLEST_PEAK)
         can = f"compression gives about {in_bar(compressed)}"
 
-    def fits(factor: float) -> bool:
-        peak, low = (factor * one + setting.lift for one in (reading.peak, reading.low))
+    # a pegged trace keeps its level in whatever unit
+    kept = reading.low if trace.pegging else 0.0
+
+    def then(factor: float, pressure: float) -> float:
+        return kept + factor * (pressure - kept) + setting.lift
+
+    def in_range(factor: float) -> bool:
+        return least <= then(factor, reading.peak) <= max(most, ambient)
+
+    def compresses(factor: float) -> bool:
+        low = then(factor, reading.low)
         base = ambient if 0 < low < _NEAR_VACUUM * ambient else low
-        return least <= peak <= max(most, ambient) and (setting.cycle == 360 or peak > _ENGINE * base)
+        return setting.cycle == 360 or then(factor, reading.peak) > _ENGINE * base
 
     def away(factor: float) -> float:
         """Return by how much, in logarithms, the peak then is not the usual one, and a level not the ambient."""
-        level = 1.0 if setting.lift else max(reading.low * factor / max(ambient, 1.0), 1e-3)
-        peak = (factor * reading.peak + setting.lift) / max(2 * compressed, 1.0)
+        level = 1.0 if setting.lift else max(then(factor, reading.low) / max(ambient, 1.0), 1e-3)
+        peak = then(factor, reading.peak) / max(2 * compressed, 1.0)
         return abs(math.log(peak)) + abs(math.log(level))
 
     units = [(size / trace.unit, f" (unit: {name} fits)", 0.0) for name, size in _UNITS.items()]
-    others = [one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and fits(one[0])]
-    if fits(1.0) or not others:
+    usable = [one for one in (*units, *_POWERS) if abs(one[0] - 1) > _SAME_UNIT and in_range(one[0])]
+    # of what no unit makes an engine, a peak that no cylinder has is reported nevertheless
+    others = [one for one in usable if compresses(one[0])] or ([] if in_range(1.0) else usable)
+    if (in_range(1.0) and compresses(1.0)) or not others:
         return ""
     factor, unit, _ = min(others, key=lambda one: away(one[0]) + one[2])
     peak = reading.peak + setting.lift

@@ -257,7 +257,9 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
     if layout.angle_step:
         tried = [one._replace(columns=columns) for one in tried for columns in (one.columns, (1,))]
     rows = [[i for i, line in enumerate(lines) if line and not one.read(line)[1]] for one in tried]
-    found = max(range(len(tried)), key=lambda i: len(rows[i]))
+    # of layouts that read as many lines, one that reads the faulty line too
+    faulty = text.split("\n", number)[number - 1].partition("#")[0].strip()
+    found = max(range(len(tried)), key=lambda i: (len(rows[i]), not tried[i].read(faulty)[1]))
     begin = rows[found][0] if len(rows[found]) > 1 else 0
     best = tried[found]._replace(skip_rows=begin if number <= begin else layout.skip_rows)
     cell = cells[column - 1] if column <= len(cells) else ""
