@@ -185,13 +185,11 @@ class Vibration:
     @property
     def vibratory(self) -> Array:
         """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        torques = self.swings[1]
-        segments, speeds, nodes, _ = torques.shape
-        # each segment at each speed is searched as a machine of its own
-        rows = np.moveaxis(torques, 2, 0).reshape(nodes, -1)
-        ends = self._turns(segments * speeds).extremes(rows[None])
-        known = np.isfinite(self.torques).all(axis=2)
-        return np.where(known, ((ends.largest - ends.smallest) / 2).reshape(segments, speeds), math.nan)
+        torques, turns = self.swings[1], self._turns(self.swings[1].shape[1])
+        # each speed is searched as a machine of its own; (s, nodes, pieces) -> (1, nodes, s · pieces)
+        rows = (np.swapaxes(one, 0, 1).reshape(1, one.shape[1], -1) for one in torques)
+        half = [(ends.largest[0] - ends.smallest[0]) / 2 for ends in map(turns.extremes, rows)]
+        return np.where(np.isfinite(self.torques).all(axis=2), half, math.nan)
 
     @property
     def loss(self) -> Array:
