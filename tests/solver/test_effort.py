@@ -13,11 +13,14 @@ from kurbel.declared.units import GRAVITY
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, Indicator
 from kurbel.machine.parts import ConnectingRod, Friction, Masses, Piston, Rings
+from kurbel.machine_file import load
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.quantity import value
 from kurbel.solver.case import Case
-from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.flywheel import MachineTurning, TurningState
 from machines import STEAM_CARD, constant_pressure
+from representative import CONFIGS
 from turning_machines import of_points
 
 STEAM = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
@@ -111,3 +114,22 @@ def test_jumps_are_crossings_and_have_both_their_values() -> None:
     assert machine.phi_crossing == (0.0, 90.0)
     assert (machine.M_max.value, machine.M_min.value) == (300, -100)
     assert machine.dE == pytest.approx(300 * math.pi / 2, rel=1e-15)
+
+
+class _WithPower(TurningState):
+    commands = ("flywheel",)
+    N = value("N", "power", "Power at the shaft", lambda one: one.M * one.omega, extremes=("flywheel",), called="power")
+
+
+class _Powered(MachineTurning):
+    state = _WithPower
+
+
+def test_a_column_that_is_a_product_of_others_has_its_extremes() -> None:
+    """Torque times speed of an engine with a light flywheel, against ten thousand angles."""
+    found = _Powered(Case(load(CONFIGS["four-cylinder-generator"])).effort)
+    columns = found.columns(np.linspace(0.0, found.effort.cycle, 10_001), "M", "omega")
+    power = columns["M"] * columns["omega"]
+    assert power.max() <= found["N_max"].value * (1 + 1e-12)
+    assert found["N_max"].value == pytest.approx(power.max(), rel=1e-6)
+    assert found["N_min"].value == pytest.approx(power.min(), rel=1e-6)

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Number, Truth
+from kurbel.arrays import Array, Flags, Indices, Number, Truth
 from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
@@ -134,13 +134,13 @@ class TurningEffort:
         lasting = unless_cancelled(pieces.largest(whole), size, _CANCELLED) != 0
         return np.where(pieces.of(lasting), whole, 0.0)
 
-    def at(self, pieces: Pieces, values: Array, degrees: Array, within: Array) -> Array:
-        """Return samples of the only machine at crank angles (k,), on the sides of jumps that hold `within`.
+    def at(self, pieces: Pieces, values: Array, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
+        """Return samples at crank angles (k,), on the sides of jumps that hold `within`.
 
-        What is rounding of their largest value is 0.
+        machine: of each angle, (k,), where there are many. What is rounding of their largest value is 0.
         """
-        found = pieces.at(values, np.zeros(len(degrees), dtype=np.intp), degrees, within)
-        return unless_cancelled(found, pieces.largest(values)[0], _CANCELLED)
+        own = np.zeros(len(degrees), dtype=np.intp) if machine is None else machine
+        return unless_cancelled(pieces.at(values, own, degrees, within), pieces.largest(values)[own], _CANCELLED)
 
     # the effort
 

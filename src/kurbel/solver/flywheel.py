@@ -17,14 +17,14 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Number
+from kurbel.arrays import Array, Indices, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine.turning import Swing
 from kurbel.numerics.arithmetic import every, some, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
-from kurbel.numerics.pieces import Pieces
+from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
 from kurbel.solver.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
@@ -81,8 +81,9 @@ class TurningState(AtAngles):
     )
     M_coupling = _over_the_angle("M_coupling", "M_K", "torque", "Torque in the elastic coupling")
 
-    def __init__(self, turning: MachineTurning, phi: Array, within: Array) -> None:
-        self._turning, self.phi, self.within = turning, phi, within
+    def __init__(self, turning: MachineTurning, phi: Array, within: Array, machine: Indices | None = None) -> None:
+        """Take the results, the angles, and the machine of each (n,), where there are many."""
+        self._turning, self.phi, self.within, self._machine = turning, phi, within, machine
 
     def __getitem__(self, id: str) -> Array | None:
         """Return a column by its id, or the load `M_load` in N m at the nominal speed; None for another name."""
@@ -91,7 +92,7 @@ class TurningState(AtAngles):
     def course(self, id: str) -> Array | None:
         """Return a quantity of `MachineTurning.samples_of` at the angles, (n,); None for what is left out."""
         found = self._turning.samples_of(id)
-        return None if found is None else self._turning.effort.at(*found, self.phi, self.within)
+        return None if found is None else self._turning.effort.at(*found, self.phi, self.within, self._machine)
 
 
 class MachineTurning(Results):
@@ -119,26 +120,50 @@ class MachineTurning(Results):
     # over the crank angle
 
     def _columns(self, phi: Array, within: Array) -> TurningState:
-        return TurningState(self, phi, within)
+        return self.state(self, phi, within)
 
     def samples_of(self, column: str) -> tuple[Pieces, Array] | None:
         """Return a column at the nodes of pieces; None for one that is left out."""
-        effort, found = self.effort, None
+        effort = self.effort
         if effort.swing is not None:
             return None
-        if column in ("omega", "alpha"):
-            return None if self.speed is None else self.speed.omega if column == "omega" else self.speed.alpha
-        if column == "M_coupling":
-            return None if self.elastic is None else self.elastic.torque
-        if column == "M" or (column == "T" and self.crank is not None):
-            found = effort.M
-        elif column == "T_inertia" and self.crank is not None and effort.inertia_terms:
-            found = effort.sampled(effort.inertia_terms)
-        elif column in ("E", "M_load"):
-            found = self.excess.E if column == "E" else effort.load
-        if found is None:
+        match column:
+            case "M":
+                return effort.pieces, effort.M
+            case "T":
+                return self._at_crank(effort.M)
+            case "T_inertia":
+                return self._at_crank(effort.sampled(effort.inertia_terms)) if effort.inertia_terms else None
+            case "E":
+                return effort.pieces, self.excess.E
+            case "M_load":
+                return effort.pieces, effort.load
+            case "omega":
+                return None if self.speed is None else self.speed.omega
+            case "alpha":
+                return None if self.speed is None else self.speed.alpha
+            case "M_coupling":
+                return None if self.elastic is None else self.elastic.torque
+        return self._from_others(column)
+
+    def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
+        """Return the force of a torque at the radius of crank 1; None without a crank."""
+        pieces = self.effort.pieces
+        return None if self.crank is None else (pieces, torque / pieces.of(self.crank))
+
+    def _from_others(self, column: str) -> tuple[Pieces, Array] | None:
+        """Return a column that is computed from other columns, on pieces halved until it is a polynomial."""
+        row, start = self.rows.columns.get(column), np.zeros(1)
+        if row is None or row.of(self.state(self, start, start)) is None:
             return None
-        return effort.pieces, found / effort.pieces.of(self.crank) if column.startswith("T") else found
+
+        def sample(pieces: Pieces) -> Array:
+            shape, machine = pieces.degrees.shape, np.tile(pieces.machine, len(pieces.degrees))
+            within = np.broadcast_to(pieces.middle, shape).ravel()
+            return row.of(self.state(self, pieces.degrees.ravel(), within, machine)).reshape(1, *shape)
+
+        pieces, (values,) = refined(self.effort.pieces if self.speed is None else self.speed.pieces, sample)
+        return pieces, values
 
     @property
     def breaks(self) -> Array:
