@@ -198,9 +198,10 @@ class TextbookCylinder:
     def _piece_of(self, within: Number) -> tuple[int, list[tuple[Point, Point]]]:
         """Return the direction of the crosshead on a piece, and between which points of its card each chamber is."""
         inner, outer, _ = self.motion.ends
-        turn, since = divmod((within - inner) % (360 * self.turns), 360)
-        back, share = since > outer - inner, self.motion.at(within).x / self.motion.stroke
-        lines = (chamber.points(2 * int(turn) + back) for chamber in self._chambers)
+        since = (within - inner) % (360 * self.turns)
+        turn = int(since / 360)
+        back, share = since - 360 * turn > outer - inner, self.motion.at(within).x / self.motion.stroke
+        lines = (chamber.points(2 * turn + back) for chamber in self._chambers)
         held = [next(two for two in pairwise(line) if (two[0][0] - share) * (two[1][0] - share) < 0) for line in lines]
         return -1 if back else 1, held
 

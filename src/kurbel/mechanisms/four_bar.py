@@ -99,7 +99,7 @@ class FourBar(Mechanism):
         numbers = links | {"ends": links[shortest] + links[longest], "pair": sum(links[name] for name in others)}
         longer = f"{{crank}} is longer than the {shortest} ({{{shortest}}}), and so is the frame ({{frame}}): "
         longer += "the crank turns fully only where it or the frame is the shortest link"
-        yield Rule("crank", shortest not in ("crank", "frame"), longer)
+        yield Rule("crank", shortest not in ("crank", "frame") and gap == gap, longer)  # of an unread length gap is nan
         sums = f"{shortest} + {longest}, {{ends:length}}, must be less than {' + '.join(others)}, {{pair:length}}"
         grashof = f"it cannot turn fully: {sums} (Grashof; where they are equal, it folds flat: a change point)"
         yield Rule("crank", flat and shortest in ("crank", "frame"), grashof, numbers)
