@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from kurbel.solver.drive import Drive
 from kurbel.solver.figures import result
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
 
+T = TypeVar("T")
+
 _SURE = 4.0
 """Number of standard deviations that the noise of thousands of samples does not exceed."""
 
@@ -35,10 +37,23 @@ class Where(NamedTuple):
     span: tuple[float, float]
 
 
+class shared(cached_property[T]):
+    """A cached property that equal cylinders have in common: that of the twin, where a cylinder has one."""
+
+    @overload
+    def __get__(self, instance: None, owner: type | None = None) -> shared[T]: ...
+    @overload
+    def __get__(self, instance: object, owner: type | None = None) -> T: ...
+    def __get__(self, instance: object | None, owner: type | None = None) -> shared[T] | T:
+        if not isinstance(instance, SampledCylinder):
+            return self
+        return super().__get__(instance.twin or instance, owner)
+
+
 class SampledCylinder:
     """A cylinder with its cycle in pieces, and the extremes and zeros of its columns.
 
-    twin: an equal cylinder elsewhere along the shaft, which has the same cycle.
+    twin: an equal cylinder elsewhere along the shaft, whose `shared` properties are its own, too.
     """
 
     drive: Drive
@@ -60,19 +75,15 @@ class SampledCylinder:
         """The state at the nodes of the pieces."""
         return self._cycle[1]
 
-    @cached_property
+    @shared
     def _cycle(self) -> tuple[Pieces, State]:
-        if self.twin:
-            return self.twin._cycle
         drive, (cut, state) = self.drive, self._cut
         _refuse_locking(state, cut)
         return _smoothed(drive, cut, state, _smooth)[:2]
 
-    @cached_property
+    @shared
     def _cut(self) -> tuple[Pieces, State]:
         """The cycle cut at kinks, jumps and multiples of 45° only, and the state there."""
-        if self.twin:
-            return self.twin._cut
         drive, pieces = self.drive, self.drive.pieces
         state = State.on(drive, pieces)
         if drive.has_force and some(drive.ring_surface != 0):

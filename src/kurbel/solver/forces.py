@@ -16,7 +16,7 @@ from kurbel.mechanisms import KeyOffer, Mechanism, Offer
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.extreme import Extreme, Extremes, largest, smallest
 from kurbel.quantity import Heading, Quantity, value, values_for
-from kurbel.solver.cycle import SampledCylinder, reversals
+from kurbel.solver.cycle import SampledCylinder, reversals, shared
 from kurbel.solver.drive import Drive
 from kurbel.solver.figures import Results, Rows, Searched, column_rows, crank_angles, part, rows_of
 from kurbel.solver.gas import PistonGas
@@ -305,11 +305,9 @@ class CylinderForces(SampledCylinder, Results):
         loads = {name: values for name in columns if (values := self.sampled(name)) is not None}
         return RodLoads(self.drive, self.pieces, loads) if loads else None
 
-    @cached_property
+    @shared
     def answers(self) -> dict[str, object]:
         """The key values that follow from dimensions and pressures alone, without samples of forces."""
-        if self.twin:
-            return self.twin.answers
         drive, pistons, found = self.drive, self.drive.cylinder.pistons, dict[str, object]()
         found["m"] = drive.mass if drive.cylinder.masses else None
         found["resistance_work"] = drive.resistance_work
@@ -364,11 +362,9 @@ class CylinderForces(SampledCylinder, Results):
         found = self._extremes.get(column) if self.drive.has_force else None
         return found or self.motion.extremes_of(column)
 
-    @cached_property
+    @shared
     def _extremes(self) -> dict[str, Extremes]:
         """Extremes of the columns that are declared to have them, by id."""
-        if self.twin:
-            return self.twin._extremes
         declared = column_rows(State, self.mechanism.OFFERS)
         return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
 
@@ -377,15 +373,13 @@ class CylinderForces(SampledCylinder, Results):
         if self.drive.count is None and may_lock(self.drive.cylinder):
             self.extremes_of("N")
 
-    @cached_property
+    @shared
     def changes_of_force(self) -> tuple[tuple[object, ...] | None, int]:
         """The crank angles in degrees at which P changes sign, through zero or by a jump, None without P.
 
         Changes that are noise of a trace count once, at the middle one; with them, how many of them are not listed. For
         many machines one tuple each.
         """
-        if self.twin:
-            return self.twin.changes_of_force
         P = self.sampled("P") if self.drive.has_force else None
         if P is None:
             return None, 0
@@ -437,14 +431,12 @@ class CylinderForces(SampledCylinder, Results):
         work, lost, resisted = (0.0 if one is None else one for one in terms)
         return total(work, -lost, resisted)
 
-    @cached_property
+    @shared
     def friction_works(self) -> dict[str, Any]:
         """Works of friction in J per cycle, by the keys given in `friction`; ∮ f |N| |dx| at the crosshead.
 
         Constant forces act over the whole path.
         """
-        if self.twin:
-            return self.twin.friction_works
         drive, friction, found = self.drive, self.drive.cylinder.friction, dict[str, Any]()
         if friction is None:
             return found
