@@ -138,7 +138,7 @@ def own_answer(machine: Machine, quantity: str) -> Any:
 
 
 def force_methods(machine: Machine, quantity: str, edges: Array) -> Iterator[Method]:
-    """Yield methods for what is computed from forces; edges: of smooth pieces in degrees, which kurbel is not told."""
+    """Yield methods for what is computed from forces; edges: of smooth pieces in degrees, unknown to kurbel."""
 
     def rival(method: Callable[..., Found], count: int) -> Found:
         cylinders = [(CylinderForces(machine, one).at, one.crank_position) for one in taking_part(machine, quantity)]

@@ -1,7 +1,8 @@
 """The rows of a sweep as csv, json lines, Markdown, a table or Parquet, where they go, and what `kurbel find` prints.
 
-Whole lines are written, the first ones at once, to a file FILE.part that becomes FILE when it has all: the old file
-stays until then, and an interrupted run leaves what it has, which `--resume` continues.
+A table and Markdown are written when all rows are there. Of csv and JSON whole lines are written, the first ones at
+once, to a file FILE.part that becomes FILE when it has all: the old file stays until then, and an interrupted run
+leaves what it has, which `--resume` continues.
 """
 
 import codecs
