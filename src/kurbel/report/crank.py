@@ -53,14 +53,7 @@ def mechanism_notes(case: Case) -> Iterable[str]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(
-            one.drive.name,
-            one.motion,
-            one.at,
-            one.lists,
-            source=one,
-            left_out=motion_left_out(case.machine, one.drive.cylinder),
-        )
+        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
         for one in case.cylinders
     ]
 
@@ -74,11 +67,9 @@ def _with_forces(case: Case) -> list[Subject]:
             one.drive.name,
             one,
             one.at,
-            one.lists,
-            source=one,
             left_out=forces_left_out(case.machine, one),
             tables=partial(_piston_table, one),
-            pistons=[Subject(piston.name, piston, lists=piston.lists) for piston in one.pistons],
+            pistons=[Subject(piston.name, piston) for piston in one.pistons],
         )
         for one in case.cylinders
     ]

@@ -33,11 +33,11 @@ _COARSE = 0.5
 def _delivering(case: Case) -> list[Subject]:
     found, whole = case.delivery, Subject("whole machine")
     if found.pump:
-        whole = Subject("whole machine", found.pump, found.pump.at, source=found.pump)
+        whole = Subject("whole machine", found.pump, found.pump.at)
     warnings = chain(of_machine(case), delivery_warnings(found))
     return [
         *(Subject(one.name, one, tables=partial(_ends_tables, one)) for one in found.stages),
-        *(Subject(one.name, one, one.at, source=one) for one in found.pistons),
+        *(Subject(one.name, one, one.at) for one in found.pistons),
         replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
 

@@ -3,7 +3,7 @@
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any, NamedTuple
 
@@ -43,8 +43,7 @@ class Subject:
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
-    state with the columns, None without columns; lists: the quantities that it can have; source: has `angles_where`,
-    which `--where` searches, None without rows; of: the cylinder that a pin belongs to; pistons: those of a cylinder
+    state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
     whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
     warnings; tables: a function of the system of units that returns tables of places.
     """
@@ -52,14 +51,17 @@ class Subject:
     name: str
     results: Results | None = None
     at: Callable[[Array], Any] | None = None
-    lists: Lists = field(default_factory=every_quantity)
     left_out: Iterable[LeftOut] = ()
     warnings: Iterable[str] = ()
     tables: Callable[[str], Iterable[PlaceTable]] = lambda system: ()
-    source: Any = None
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that it can have."""
+        return self.results.lists if self.results else every_quantity()
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -211,7 +213,9 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
         chosen = [*(known[name] for name in frame.columns if name in known), *added]
     else:
         usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
-        chosen = [one for one in usual if subject.is_printed(one)]
+        # what adds nothing to forces may be what motion is about
+        elsewhere = subject.results and subject.results.command != frame.command
+        chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
     return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
 
 

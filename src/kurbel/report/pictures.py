@@ -351,4 +351,4 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
             if named:
                 several = command == "bearings" or len(case.cylinders) > 1
                 names = together([one.name for one in named]) if several else ""
-                yield Source(named[0].source or named[0].results, options.angles), names
+                yield Source(named[0].results, options.angles), names

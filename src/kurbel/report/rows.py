@@ -16,6 +16,8 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called
 from kurbel.report.frame import Subject
 from kurbel.report.tables import stepped
+from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.forces import CylinderForces
 
 _SAME = 1e-9
 """Degrees by which angles differ by rounding only."""
@@ -30,7 +32,8 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
     fractions = np.asarray(stepped(step, 100.0)) / 100
 
     def angles(subject: Subject) -> Sequence[float]:
-        mechanism = subject.source.drive.mechanism
+        assert isinstance(subject.results, CylinderForces)
+        mechanism = subject.results.mechanism
         if mechanism.turns:
             raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
         x = mechanism.stroke * fractions
@@ -70,10 +73,12 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
             raise UsageError(f"--where: {wrong}")
         column = own.get(ids[0])  # None for one that only other machines have
         wanted = _value(subject, command, column, factor, of, text) if column else 0.0
-        found = column and subject.source.angles_where(column.id, wanted)
+        results = subject.results
+        assert isinstance(results, (CylinderForces, MachineTurning))
+        found = column and results.angles_where(column.id, wanted)
         if column is None or found is None:
             why = "; kurbel check shows why"
-            if column and column.kind in _OF_SPEED and subject.source.omega is None:
+            if column and column.kind in _OF_SPEED and results.omega is None:
                 why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
             raise UsageError(f"--where: '{name}' is left out for this machine{why}")
         if not found.angles:

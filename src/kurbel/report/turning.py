@@ -93,7 +93,6 @@ def _turned(case: Case) -> list[Subject]:
         turning.at if effort.swing is None else None,
         left_out=flywheel_left_out(case.machine),
         warnings=of_machine(case),
-        source=turning,
         whole=True,
     )
     return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
