@@ -92,7 +92,7 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
     found = checked(Case(machine), cases)
-    errors = [one.error for one in found.unjudged]
+    errors = [one.error for one in found.unjudged if one.error]
     # all errors of a machine as one of the gravest kind
     gravest = type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors))) if errors else None
     return Outcome(file, gravest, machine, found)

@@ -13,7 +13,7 @@ from kurbel.machine.turning import Harmonics
 from kurbel.report.alike import grouped, together
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.limits import Entry, Unjudged, compared
+from kurbel.report.limits import Entry, compared
 from kurbel.report.tables import LeftOut
 from kurbel.report.turning import torsion_left_out, torsion_warnings
 from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
@@ -38,7 +38,7 @@ class Checked(NamedTuple):
     title: str
     sections: tuple[Topic, ...]
     broken: bool
-    unjudged: tuple[Unjudged, ...]
+    unjudged: tuple[Entry, ...]
 
     @property
     def shown_once(self) -> list[Topic]:
@@ -53,8 +53,8 @@ class Checked(NamedTuple):
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
-    machine, notes = case.machine, machine_notes(case)
-    figures, unjudged = compared(case, cases)
+    machine, notes, every = case.machine, machine_notes(case), compared(case, cases)
+    figures = [one for one in every if not one.error]
     of_whole = (Entry("note", text, "warning") for name, text in notes if name is None)
     topics: dict[str, Iterable[Entry]] = {
         "Cranks": _crank_entries(machine),
@@ -76,7 +76,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     )
     sections = tuple(one for one in found if one.entries)
     broken = any(one.severity == "error" for one in figures)
-    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(unjudged))
+    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(one for one in every if one.error))
 
 
 def _machine_entries(machine: Machine) -> Iterator[Entry]:
@@ -100,10 +100,11 @@ def _machine_entries(machine: Machine) -> Iterator[Entry]:
 def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[Entry]:
     cylinder = machine.cylinders[number]
     mechanism, path = cylinder.mechanism, ("cylinders", number) if len(machine.cylinders) > 1 else ()
+    given = {"stroke": mechanism.stroke, **vars(mechanism)}  # the stroke may be given instead of the crank
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
-        if key.form.kind != "ratio" and isinstance(size := getattr(mechanism, name, None), float) and size
+        if key.form.kind != "ratio" and isinstance(size := given.get(name), float) and size
     ]
     yield Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
     for piston in cylinder.pistons:
@@ -254,7 +255,7 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding
     for section in checked.sections:
         head = f"{section.title}: " if several and section.cylinder else ""
         found += [(one.path, f"{head}{one.what}: {one.text}", one.severity) for one in section.entries if one.severity]
-    found += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
+    found += [(one.path, str(one.error).removeprefix(f"{path_text(one.path)}: "), "error") for one in checked.unjudged]
 
     at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
     located = locate(origin.text, at_keys) if origin and at_keys else ()

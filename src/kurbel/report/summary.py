@@ -236,8 +236,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
 
 def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    judged, unjudged = compared(case, cases)
-    rows, marks = list[tuple[Shown, ...]](), list[str]()
+    judged, rows, marks = compared(case, cases), list[tuple[Shown, ...]](), list[str]()
     for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
         # in several load cases all that fail, or the one that is nearest to its bound
         nearest = (min if equal[0].bound.startswith("≥") else max)(equal, key=lambda one: one.value or 0.0)
@@ -251,8 +250,8 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(one.error), "bad") for one in unjudged)
-    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
+    yield from (Notice(str(one.error), "bad") for one in judged if one.error)
+    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not (one.bound or one.error))
 
 
 def firing_order(machine: Machine) -> Iterator[Grid]:

@@ -15,8 +15,9 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.ideal_cards import Diesel, Otto, Steam
+from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, Line
+from kurbel.machine.turning import Effort
 from kurbel.report.alike import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
@@ -40,7 +41,8 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
-    add(f"effort: {text}" for text in getattr(machine.effort, "notes", ()))
+    if isinstance(machine.effort, Effort):
+        add(f"effort: {text}" for text in machine.effort.notes)
     add(_speed_warnings(machine))
     for cylinder in machine.cylinders:
         add(_size_warnings(cylinder), cylinder.name)
@@ -148,9 +150,12 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (f"{place}: {text}" for text in getattr(chamber, "notes", ()))
+            yield from (f"{place}: {text}" for text in (() if isinstance(chamber, Compressor) else chamber.notes))
+            exponents = {chamber.exponent} if isinstance(chamber, (Steam, Compressor, Otto, Diesel)) else set()
+            if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
+                exponents.add(chamber.expansion_exponent)
             least, most = _EXPONENTS
-            for value in {getattr(chamber, key, None) or least for key in ("exponent", "expansion_exponent")}:
+            for value in exponents:
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [_asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)]
