@@ -20,6 +20,7 @@ from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, called, in_sentences
 from kurbel.report.alike import equal_loads, grouped
 from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
+from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.figures import Results
 
@@ -197,6 +198,18 @@ class Functions(NamedTuple):
         if self.own:
             return self.own(case, frame, **options)
         return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
+
+
+def plain(title: str, command: str) -> Functions:
+    """Return the functions of a command that prints the results of the whole machine, and no tables of its own."""
+
+    def subjects(case: Case) -> list[Subject]:
+        (found,) = case.results(command)
+        return [
+            Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
+        ]
+
+    return Functions(title, subjects)
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
