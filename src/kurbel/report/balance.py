@@ -3,15 +3,15 @@
 import cmath
 import math
 from collections.abc import Iterator
-from itertools import groupby
+from itertools import chain, groupby
 
 import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on
 from kurbel.report.left_out import balance_left_out
-from kurbel.report.tables import PlaceTable, Report
+from kurbel.report.tables import Report
 from kurbel.report.warnings import pin_warnings
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
@@ -78,7 +78,7 @@ def _balanced(case: Case, compare: bool = False) -> list[Subject]:
             None if case.machine.speed is None else balance.at,
             left_out=balance_left_out(case, compare),
             warnings=pin_warnings(case.machine),
-            tables=lambda system: [*_orders(case.balance, system, compare), *_weights(case.balance, system)],
+            tables=chain(_orders(case.balance, compare), _weights(case.balance)),
             whole=True,
         )
     ]
@@ -108,7 +108,7 @@ def _notes(case: Case) -> Iterator[str]:
 BALANCE = Functions("Balancing", _balanced, _notes, lambda case: case.balance.cycle, balance_report)
 
 
-def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[PlaceTable]:
+def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
     """Yield the orders of the unbalanced force and moment, as two circles and as an ellipse; none without a speed.
 
     An order is a circle with the crank, of complex radius f at φ = 0, and one against it, g; together an ellipse.
@@ -142,12 +142,12 @@ def _orders(balance: MachineBalance, system: str, compare: bool) -> Iterator[Pla
         circles.append(((), circle))
         ellipses.append(((), ellipse))
     title = "Orders: circles with the crank (+) and against it (−)"
-    yield place_table("orders", title, (), ORDERS, circles, system, alone=_DIGITS)
+    yield Places("orders", title, (), ORDERS, circles, alone=_DIGITS)
     title = "Orders: ellipses, and phases of the rotating components at φ = 0"
-    yield place_table("ellipses", title, (), ELLIPSES, ellipses, system, alone=_DIGITS)
+    yield Places("ellipses", title, (), ELLIPSES, ellipses, alone=_DIGITS)
 
 
-def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
+def _weights(balance: MachineBalance) -> Iterator[Places]:
     """Yield the best weights, and what the wheels of a locomotive carry besides the rotating masses."""
 
     def row(name: str, place: float | None, product: complex) -> tuple[tuple[str], dict[str, float | None]]:
@@ -162,7 +162,7 @@ def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
             rows.append(row(f"{name}: {end}" if len(given) > 1 else name, one.place, one.product))
     if rows:
         title = "Counterweights in two planes, and balance shafts"
-        yield place_table("best_weights", title, ("weight",), WEIGHTS, rows, system)
+        yield Places("best_weights", title, ("weight",), WEIGHTS, rows)
     if balance.machine.locomotive:
         rows, square = [], (balance.omega or 0.0) ** 2
         wheels = zip("AB", balance.wheels, balance.in_wheels(), balance.in_wheels("counterweights"))
@@ -172,7 +172,7 @@ def _weights(balance: MachineBalance, system: str) -> Iterator[PlaceTable]:
             values |= {"counterweight": abs(weight), "counterweight_angle": _direction(weight)} if weight else {}
             rows.append((head, values))
         title = "In the wheels: what they carry beyond the rotating masses, and the whole counterweights"
-        yield place_table("wheels", title, ("wheel",), WEIGHTS, rows, system)
+        yield Places("wheels", title, ("wheel",), WEIGHTS, rows)
 
 
 def _direction(circle: complex) -> float | None:

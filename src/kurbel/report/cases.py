@@ -1,7 +1,6 @@
 """The tables of load cases: a row for each case, of the key values of a command."""
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 
@@ -13,8 +12,8 @@ from kurbel.numerics.extreme import number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import called
 from kurbel.report.commands import COMMANDS, subjects_of
-from kurbel.report.frame import Frame, Row, Subject, place_table, report_on
-from kurbel.report.tables import PlaceTable, Report
+from kurbel.report.frame import Frame, Places, Row, Subject, report_on
+from kurbel.report.tables import Report
 from kurbel.solver.case import Case
 
 
@@ -53,9 +52,8 @@ def cases_report(
         raise UsageError("; ".join(notes) or f"{base.name}: no case has any of {', '.join(ids)}")
     chosen = {id: declared[id] for id in ids}
 
-    def tables(name: str, system: str) -> list[PlaceTable]:
+    parts = []
+    for name, of_part in rows.items():
         title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
-        return [place_table("cases", title, ("case",), chosen, rows[name], system, True)]
-
-    parts = [Subject(name, tables=partial(tables, name)) for name in rows]
+        parts.append(Subject(name, tables=[Places("cases", title, ("case",), chosen, of_part, headed=True)]))
     return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)

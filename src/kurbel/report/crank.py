@@ -2,12 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from functools import partial
 from itertools import chain
 
 from kurbel.errors import UsageError
 from kurbel.quantity import PHI, Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on
 from kurbel.report.left_out import (
     bearing_left_out,
     bearings_left_out,
@@ -16,7 +15,7 @@ from kurbel.report.left_out import (
     motion_left_out,
     strength_left_out,
 )
-from kurbel.report.tables import PlaceTable, Report
+from kurbel.report.tables import Report
 from kurbel.report.warnings import (
     as_far_as_solved,
     bearing_warnings,
@@ -68,7 +67,7 @@ def _with_forces(case: Case) -> list[Subject]:
             one,
             one.at,
             left_out=forces_left_out(case.machine, one),
-            tables=partial(_piston_table, one),
+            tables=_piston_table(one),
             pistons=[Subject(piston.name, piston) for piston in one.pistons],
         )
         for one in case.cylinders
@@ -89,28 +88,28 @@ def forces_report(case: Case, frame: Frame) -> Report:
     if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
     each = zip(cylinders, case.cylinders)
-    cylinders = [replace(one, tables=partial(_cycle_table, forces)) for one, forces in each]
+    cylinders = [replace(one, tables=_cycle_table(forces)) for one, forces in each]
     return report_on(frame, case.machine, FORCES.title, cylinders)
 
 
-def _piston_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
-    """Return work, power and mean pressure of each piston of a rod that has several."""
+def _piston_table(forces: CylinderForces) -> Iterator[Places]:
+    """Yield work, power and mean pressure of each piston of a rod that has several."""
     if not forces.pistons:
-        return []
+        return
     declared, scope = forces.pistons[0].lists.key_values("forces"), f"{forces.drive.name}."
     each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
     rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
-    return [place_table("pistons", "Each piston", ("piston",), declared, rows, system, headed=True)]
+    yield Places("pistons", "Each piston", ("piston",), declared, rows, headed=True)
 
 
-def _cycle_table(forces: CylinderForces, system: str) -> list[PlaceTable]:
+def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if not cycles:
-        return []
+        return
     declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
     columns = zip(*(one.tolist() for one in cycles))
     rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
-    return [place_table("cycles", "Measured cycles", ("cycle",), declared, rows, system, headed=True)]
+    yield Places("cycles", "Measured cycles", ("cycle",), declared, rows, headed=True)
 
 
 def _forces_notes(case: Case) -> Iterator[str]:
@@ -201,13 +200,13 @@ def _stressed(case: Case) -> list[Subject]:
             case.stress.at,
             left_out=chain(left_out(case.machine, case.machine.cylinders[0]), strength_left_out(case.machine)),
             warnings=of_machine(case),
-            tables=partial(_stress_tables, case.stress),
+            tables=_stress_tables(case.stress),
             whole=True,
         )
     ]
 
 
-def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceTable]:
+def _stress_tables(strength: CrankshaftStrength) -> Iterator[Places]:
     for id, title, places in (
         ("dead_centre", "Dead centre, full piston force without inertia", strength.at_dead_centre),
         ("largest_torque", "Position of the largest torque", strength.at_largest_torque),
@@ -219,7 +218,7 @@ def _stress_tables(strength: CrankshaftStrength, system: str) -> Iterator[PlaceT
             values = (one.degrees, *stresses, one.combined, one.von_mises)
             numbers = (None if value is None else float(value) for value in values)
             rows.append(((one.part, one.name), dict(zip(("phi", *STRESSES), numbers))))
-        yield place_table(id, title, ("part", "place"), {"phi": PHI, **STRESSES}, rows, system)
+        yield Places(id, title, ("part", "place"), {"phi": PHI, **STRESSES}, rows)
 
 
 def _stress_notes(case: Case) -> Iterator[str]:

@@ -46,7 +46,7 @@ class Subject:
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
     whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
-    warnings; tables: a function of the system of units that returns tables of places.
+    warnings, tables.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Subject:
     at: Callable[[Array], Any] | None = None
     left_out: Iterable[LeftOut] = ()
     warnings: Iterable[str] = ()
-    tables: Callable[[str], Iterable[PlaceTable]] = lambda system: ()
+    tables: "Iterable[Places]" = ()
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
@@ -134,7 +134,7 @@ def report_on(
     """
     if not subjects:
         raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
-    tables_of = {one: tuple(one.tables(frame.system)) for one in subjects}
+    tables_of = {one: tuple(table.shown(frame.system) for table in one.tables) for one in subjects}
     subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
     columns = [_columns(frame, one) for one in subjects]
     printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
@@ -318,38 +318,44 @@ Row = tuple[tuple[str, ...], Mapping[str, float | None]]
 """A row of a table of places: its names, and its values in SI by the ids of their quantities."""
 
 
-def place_table(
-    id: str,
-    title: str,
-    heads: tuple[str, ...],
-    declared: Mapping[str, Quantity],
-    rows: Sequence[Row],
-    system: str,
-    headed: bool = False,
-    alone: int = 0,
-) -> PlaceTable:
-    """Return a table of places; declared: its quantities by id; one that no row has is left out.
+class Places(NamedTuple):
+    """A table of places with its values in SI; see `PlaceTable`.
 
-    Orders and mode numbers have as many decimals as they need (1.5, but 1 and 2), distances three. alone: the digits
-    to which every value is rounded by itself; values of one kind then have one unit. headed: the names of the rows are
-    texts for people; otherwise spaces in them become underscores.
+    declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
+    otherwise spaces in them become underscores. alone: the digits to which every value is rounded by itself; values of
+    one kind then have one unit.
     """
-    found = {id: [values.get(id) for _, values in rows] for id in declared if any(id in values for _, values in rows)}
-    largest: dict[str, float] = {}
-    for id_, each in found.items() if alone else ():
-        kind = declared[id_].kind
-        largest[kind] = max(largest.get(kind, 0.0), *(abs(value or 0.0) for value in each))
 
-    columns = []
-    for id_, each in found.items():
-        kind, decimals = declared[id_].kind, 3 if id_ == "distance" else None
-        if id_ in ("order", "mode"):
-            needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
-            decimals = max(needed, default=0)
-        column = shown_column(declared[id_], each, system, largest=largest.get(kind, 0.0))
-        columns.append(column._replace(decimals=decimals, alone=0 if kind == "angle" else alone))
-    names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
-    return PlaceTable(id, title, heads, names, tuple(columns), headed)
+    id: str
+    title: str
+    heads: tuple[str, ...]
+    declared: Mapping[str, Quantity]
+    rows: Sequence[Row]
+    headed: bool = False
+    alone: int = 0
+    in_note: bool = False
+
+    def shown(self, system: str) -> PlaceTable:
+        """Return the table in units; orders and modes have as many decimals as they need, distances three."""
+        found = {
+            quantity: [values.get(id) for _, values in self.rows]
+            for id, quantity in self.declared.items()
+            if any(id in values for _, values in self.rows)
+        }
+        largest: dict[str, float] = {}
+        for quantity, each in found.items() if self.alone else ():
+            largest[quantity.kind] = max(largest.get(quantity.kind, 0.0), *(abs(value or 0.0) for value in each))
+
+        columns = []
+        for quantity, each in found.items():
+            decimals = 3 if quantity.id == "distance" else None
+            if quantity.id in ("order", "mode"):
+                needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
+                decimals = max(needed, default=0)
+            column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
+            columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone))
+        names = [names if self.headed else tuple(name.replace(" ", "_") for name in names) for names, _ in self.rows]
+        return PlaceTable(self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:

@@ -20,7 +20,7 @@ from kurbel.quantity import Quantity
 from kurbel.report.alike import grouped, together
 from kurbel.report.cases import name_of
 from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Row, Subject, place_table
+from kurbel.report.frame import Places, Row, Subject
 from kurbel.report.limits import compared
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
 from kurbel.solver.case import Case
@@ -228,7 +228,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
         for one in cases:
             rows.append(((name_of(one),), {id: found.number for id, found in facts_of(one, facts).items()}))
         declared = {id: one.quantity for id, one in facts.items()}
-        yield place_table("cases", "Load cases", ("case",), declared, rows, system, headed=True)
+        yield Places("cases", "Load cases", ("case",), declared, rows, headed=True).shown(system)
     yield from (Notice(text, "warning") for text in warnings)
     if not warnings:
         yield Notice("No warnings.", "good")

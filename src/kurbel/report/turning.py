@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -13,9 +12,9 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
-from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.tables import LeftOut, Report
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chain import holzer_at
@@ -145,7 +144,7 @@ def harmonics_report(
         Subject(
             one.forces.drive.name,
             left_out=left_out(machine, one.forces.drive.cylinder),
-            tables=partial(_orders_of_cylinder, one),
+            tables=_orders_of_cylinder(one),
         )
         for one in found.cylinders
     ]
@@ -156,7 +155,7 @@ def harmonics_report(
         found,
         left_out=chain(flywheel_left_out(machine), apart),
         warnings=of_machine(case),
-        tables=partial(_orders_of_machine, found, speeds or (), machine.speed),
+        tables=_orders_of_machine(found, speeds or (), machine.speed),
         whole=True,
     )
     notes = _harmonics_notes(found)
@@ -204,32 +203,29 @@ def _uniform(torque: Orders) -> bool:
     return not any(one.any() for one in (torque.gas, torque.inertia) if one is not None)
 
 
-def _orders_of_cylinder(cylinder: CylinderOrders, system: str) -> Iterator[PlaceTable]:
+def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
     name, torque = cylinder.forces.drive.name, cylinder.own
     rows = _order_rows(torque)
     for (_, values), amplitude in zip(rows, torque.whole.tolist()):
         if cylinder.area:
             values["t_order"] = abs(amplitude) / cylinder.area
     title = f"Orders of the torque of {name}, φ from its own inner dead centre"
-    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
-    yield table._replace(in_note=_uniform(torque))
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
 
 
-def _orders_of_machine(
-    found: MachineOrders, speeds: Sequence[float], working: float | None, system: str
-) -> Iterator[PlaceTable]:
+def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: float | None) -> Iterator[Places]:
     """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
     torque, uniform = found.machine, _uniform(found.machine)
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
     rows = _order_rows(torque, found.major_orders or ())
-    yield place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
     rows = []
     for speed in speeds:
         each = zip(torque.orders.tolist(), torque.at_speed(speed / (working or speed)).tolist())
         rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
     if speeds:
         title = "Orders of the turning effort at other speeds"
-        yield place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+        yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
 
 
 def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, float | None]]]:
@@ -290,19 +286,19 @@ def torsion_report(
     """
     if mode is not None and at is not None:
         raise UsageError("--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out")
-    found, system = case.torsion_of(_orders(case.machine, orders)), frame.system
+    found = case.torsion_of(_orders(case.machine, orders))
     critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
     _limited(found)
     rows = _critical_rows(found, critical)
     tables = [
-        _modes_table(found, system),
-        _holzer_table(found, mode or 1, at, system),
-        place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system),
+        _modes_table(found),
+        _holzer_table(found, mode or 1, at),
+        Places("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows),
     ]
     if found.pieces:
         title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
         of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
-        tables.append(place_table("pieces", title, ("piece",), PIECES, of_pieces, system))
+        tables.append(Places("pieces", title, ("piece",), PIECES, of_pieces))
     if speeds is not None and not found.obstacle:
         by_speed: list[Row] = [
             ((found.piece_name(number),), {"speed": speed, **amplitudes})
@@ -310,14 +306,14 @@ def torsion_report(
             for speed, amplitudes in zip(speeds, piece)
         ]
         title = "Vibratory torque over the speed, all these orders together"
-        tables.append(place_table("speeds", title, ("piece",), SPEEDS, by_speed, system))
+        tables.append(Places("speeds", title, ("piece",), SPEEDS, by_speed))
 
     whole = Subject(
         "shaft line",
         found,
         left_out=torsion_left_out(found),
         warnings=chain(_near_speeds(found, critical), of_machine(case)),
-        tables=lambda _: tables,
+        tables=tables,
         whole=True,
     )
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
@@ -344,7 +340,7 @@ def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[
     return rows
 
 
-def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
+def _modes_table(found: ShaftVibration) -> Places:
     """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
     rows: list[Row] = []
     names, modes = [mass.name for mass in found.line.masses], found.modes
@@ -359,10 +355,10 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
             nodes += f": {', '.join(where)}" if len(where) <= 2 else ""
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
         rows.append(((nodes,), values))
-    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
+    return Places("modes", "Natural frequencies", ("nodes",), MODES, rows)
 
 
-def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: str) -> PlaceTable:
+def _holzer_table(found: ShaftVibration, mode: int, at: float | None) -> Places:
     """Return Holzer's table of a mode, or at a frequency in Hz: each mass with the segment after it.
 
     At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
@@ -384,7 +380,7 @@ def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: st
         values |= {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
     if at is not None and not last:
         rows[-1][1]["torque_sum"] = left
-    return place_table("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows, system)
+    return Places("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows)
 
 
 def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:
