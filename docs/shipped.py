@@ -16,7 +16,7 @@ import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
 from kurbel.machine.cylinder import gathered
 from kurbel.render.text import Look
-from kurbel.report.alike import together
+from kurbel.report.tables import together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {

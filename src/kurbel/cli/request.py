@@ -13,10 +13,9 @@ from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import load_cases
 from kurbel.render.output import refuse_overwriting
-from kurbel.report.cases import cases_report
 from kurbel.report.commands import COMMANDS
-from kurbel.report.frame import Frame, Subject
-from kurbel.report.rows import over_stroke, rows_where
+from kurbel.report.frame import Frame, Subject, over_stroke, rows_where
+from kurbel.report.limits import cases_report
 from kurbel.report.tables import Report, crank_angles
 from kurbel.solver.case import Case
 

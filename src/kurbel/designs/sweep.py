@@ -24,7 +24,7 @@ from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
-from kurbel.report.alike import grouped, together
+from kurbel.report.tables import grouped, together
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""

@@ -12,8 +12,7 @@ from kurbel.render.markup import Latex, Markdown, document, html
 from kurbel.render.output import stdout_look, write_lines, write_out
 from kurbel.render.page import page
 from kurbel.render.text import Line, plain
-from kurbel.report.alike import first_selection
-from kurbel.report.tables import Report
+from kurbel.report.tables import Report, first_selection
 
 _SIDE, _CELL = 14, 8
 """Width in characters of symbol and unit of a row, and of each number."""

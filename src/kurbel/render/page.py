@@ -8,8 +8,7 @@ from kurbel.render import Look
 from kurbel.render.output import stdout_look, write_out
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, plain, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
-from kurbel.report.alike import shown_once
-from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report, shown_once
 
 _NINE = 9  # angles to a block: the book breaks after 80°
 _GAP, _ROW_GAP = 2, 3

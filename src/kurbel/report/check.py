@@ -10,11 +10,10 @@ from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
-from kurbel.report.alike import grouped, together
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.report.limits import Entry, compared
-from kurbel.report.tables import LeftOut
+from kurbel.report.tables import LeftOut, grouped, together
 from kurbel.report.turning import torsion_left_out, torsion_warnings
 from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
 from kurbel.solver.case import Case

@@ -128,7 +128,7 @@ def _balance() -> "Functions":
     it. Each order is a vector that turns with the crank and one that turns against it; an order that cancels is
     exactly 0. The best counterweights replace those of FILE.
     """
-    from kurbel.report.balance import BALANCE
+    from kurbel.report.crank import BALANCE
 
     return BALANCE
 

@@ -14,7 +14,6 @@ from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
-from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.constructions import construction, polar_force
 from kurbel.report.frame import equal_parts
@@ -46,7 +45,7 @@ from kurbel.report.picture_source import (
     level,
 )
 from kurbel.report.section import mechanism
-from kurbel.report.tables import cylinder_meant
+from kurbel.report.tables import cylinder_meant, grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State

@@ -17,12 +17,11 @@ from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantity import Quantity
-from kurbel.report.alike import grouped, together
-from kurbel.report.cases import name_of
 from kurbel.report.commands import subjects_of
 from kurbel.report.frame import Places, Row, Subject
-from kurbel.report.limits import compared
+from kurbel.report.limits import compared, name_of
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
+from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 
 Thing = TypeVar("Thing")

@@ -18,7 +18,7 @@ from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, Line
 from kurbel.machine.turning import Effort
-from kurbel.report.alike import grouped, together
+from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
