@@ -216,10 +216,10 @@ class Lists(NamedTuple):
         return tuple(dict.fromkeys(word for one in self.all_key_values if one.id == id for word in one.commands))
 
 
-Condition = Callable[[Any], bool]
-"""Takes the results of a command; see `Row`."""
-Formula = Callable[[Any], Any]
+Of = Callable[[Any], V]
 """Takes the results of a command, or the state at crank angles; see `Row`."""
+Condition = Of[bool]
+Formula = Of[Any]
 FormulaOfPart = Callable[[Any, str], Any]
 """Takes the results of a command and the name of one of their parts."""
 Answers = dict[str, Any]
@@ -250,11 +250,9 @@ class Computed(Generic[V]):
     Its id is its name in the class. function: takes the object; None where the value is in its mapping `answers`.
     """
 
-    def __init__(
-        self, function: Callable[[Any], V] | None, quantity: Quantity, unless: Condition | None = None
-    ) -> None:
-        self.function = function or (lambda one: one.answers.get(self.name))
+    def __init__(self, function: Of[V] | None, quantity: Quantity, unless: Condition | None = None) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
+        self.function = function or (lambda one: one.answers.get(self.name))
         self.rows: tuple[Row, ...] = (Row(quantity, self.__get__, unless),)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -276,13 +274,13 @@ class Computed(Generic[V]):
 
 def key_value(
     symbol: str, kind: str, *, unless: Condition | None = None, **words: Any
-) -> Callable[[Callable[[Any], V]], Computed[V]]:
+) -> Callable[[Of[V]], Computed[V]]:
     """Return what makes a method a key value or column of its class; the words are those of `Quantity`.
 
     The first paragraph of its docstring is the sentence that users read.
     """
 
-    def made(function: Callable[[Any], V]) -> Computed[V]:
+    def made(function: Of[V]) -> Computed[V]:
         text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
         return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
 
@@ -338,13 +336,12 @@ def values_for(
     `Quantity`, the same for all.
     """
 
-    def answer(one: Any, part: str) -> Any:
-        return of(one, part) if of else one.answers.get(id.replace("*", part))
+    answer: FormulaOfPart = of or (lambda one, part: one.answers.get(id.replace("*", part)))
 
     def row(part: str, index: str, called: str) -> Row:
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
         own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
         quantity = Quantity(*texts, **(own | words))
-        return Computed(partial(answer, part=part), quantity).rows[0]  # computed once, as any other
+        return Computed(lambda one: answer(one, part), quantity).rows[0]  # computed once, as any other
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))

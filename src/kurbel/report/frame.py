@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from kurbel.report.tables import (
 )
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
 
@@ -67,7 +67,7 @@ class Subject:
 
     name: str
     results: Results | None = None
-    at: Callable[[Array], Any] | None = None
+    at: Callable[[Array], AtAngles] | None = None
     left_out: Iterable[LeftOut] = ()
     warnings: Iterable[str] = ()
     tables: "Iterable[Places]" = ()
@@ -88,12 +88,12 @@ class Subject:
         row = rows.key_values.get(quantity.id) or rows.columns.get(quantity.id)
         return not (row and row.unless and row.unless(self.results))
 
-    def answer(self, quantity: Quantity) -> Any:
+    def answer(self, quantity: Quantity) -> object:
         """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 
-    def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
+    def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
         for quantity in self.lists.key_values(command).values():
             value = self.answer(quantity) if command not in quantity.on_request and self.is_printed(quantity) else None
@@ -286,7 +286,7 @@ def too_large(quantity: Quantity) -> UsageError:
 
 
 def shown_columns(
-    at: Callable[[Array], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
+    at: Callable[[Array], AtAngles], quantities: Sequence[Quantity], angles: Sequence[float], system: str
 ) -> tuple[Column, ...]:
     """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
 
@@ -374,7 +374,7 @@ class Places(NamedTuple):
         return PlaceTable(self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note)
 
 
-def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
+def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
     """Return key values in the units of the system; found: see `Subject.key_values`.
 
     The maximum and the minimum of a column have the same unit. Raises UsageError if one is not finite.
@@ -383,7 +383,7 @@ def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list
     units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
     shown_values = []
     for (quantity, value), unit in zip(given, units):
-        raw, at = value if isinstance(value, Extreme) else (value, None)
+        raw, at = number_of(value), value.degrees if isinstance(value, Extreme) else None
         each = raw if isinstance(raw, tuple) else (raw,)
         if not np.isfinite(each).all():
             raise too_large(quantity)

@@ -29,6 +29,7 @@ from kurbel.quantity import (
     Formula,
     Heading,
     Lists,
+    Of,
     Quantity,
     Row,
     ambiguity,
@@ -63,7 +64,7 @@ class Figure(NamedTuple):
 class Shown:
     """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
 
-    as_html: ClassVar[Callable[[Any], str] | None] = None
+    as_html: ClassVar[Of[str] | None] = None
 
     def _repr_html_(self) -> str | None:
         return Shown.as_html(self) if Shown.as_html else None
@@ -153,7 +154,7 @@ class Rows(NamedTuple):
 class PartResults(Computed[V]):
     """Results that are a part of others; their rows are printed in the place of the attribute."""
 
-    def __init__(self, function: Callable[[Any], V], kind: type[Results], unless: Condition | None) -> None:
+    def __init__(self, function: Of[V], kind: type[Results], unless: Condition | None) -> None:
         super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
         self.kind, self.unless = kind, unless
 
@@ -168,7 +169,7 @@ class PartResults(Computed[V]):
             yield Row(quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless)))
 
 
-def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], PartResults[V]]:
+def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V]], PartResults[V]]:
     """Return a decorator for a method that returns results of this class, or None where there is no such part.
 
     unless: takes the results; where it is true, all of the part says nothing new.
@@ -259,7 +260,7 @@ class Results(Shown):
         angles = crank_angles(degrees)
         return self._columns(angles, angles if within is None else within)
 
-    def _columns(self, phi: Array, within: Array) -> Any:
+    def _columns(self, phi: Array, within: Array) -> AtAngles:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
         raise NotImplementedError
 
