@@ -110,11 +110,6 @@ def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]
     return grouped(having, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
 
 
-def cycle_of(case: Case) -> float:
-    """Return the working cycle of a machine in degrees."""
-    return 360.0 * case.machine.revolutions
-
-
 # the request and its report
 
 
@@ -153,8 +148,8 @@ def report_on(
     tables_of = {one: tuple(table.shown(frame.system) for table in one.tables) for one in subjects}
     subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
     columns = [_columns(frame, one) for one in subjects]
-    printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
-    nowhere = [str(one) for one in columns if isinstance(one, Nowhere)]
+    printed = {column.id for of_subject, _ in columns for column in of_subject}
+    nowhere = [why for _, why in columns if why]
     for name in frame.columns or ():
         if name not in printed:
             raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
@@ -165,15 +160,15 @@ def report_on(
     parts = [
         Part(
             one.name,
-            () if isinstance(found, Nowhere) else found,
+            found,
             tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
             tables_of[one],
-            str(found) if isinstance(found, Nowhere) else "",
+            why,
             one.of,
         )
-        for one, found in zip(subjects, columns)
+        for one, (found, why) in zip(subjects, columns)
     ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
@@ -202,7 +197,7 @@ class Functions(NamedTuple):
     title: str
     subjects: Callable[[Case], list[Subject]]
     notes: Callable[[Case], Iterable[str]] = lambda case: ()
-    end: Callable[[Case], float] = cycle_of
+    end: Callable[[Case], float] = lambda case: 360.0 * case.machine.revolutions
     own: Callable[..., Report] | None = None
 
     @np.errstate(all="ignore")  # what overflows is refused by name
@@ -228,14 +223,14 @@ def of_whole_machine(title: str, command: str) -> Functions:
     return Functions(title, subjects)
 
 
-def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
-    """Return the requested columns of a subject, or the usual ones; or why it has no row."""
+def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
+    """Return the requested columns of a subject, or the usual ones; and why it has no row, if it has none."""
     if subject.at is None or not frame.table:
-        return ()
+        return (), ""
     try:
         angles = frame.angles(subject) if callable(frame.angles) else frame.angles
     except Nowhere as error:
-        return error
+        return (), str(error)
     known = subject.lists.columns(frame.command)
     added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
     if frame.columns:
@@ -245,7 +240,7 @@ def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
         # what adds nothing to forces may be what motion is about
         elsewhere = subject.results and subject.results.command != frame.command
         chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
-    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
+    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system), ""
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:

@@ -225,8 +225,8 @@ class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
     The docstring of that function is the caption. It yields nothing if the machine lacks what the picture shows.
-    across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
-    case and those that are wanted.
+    across: panels next to each other. Without a command all cylinders of the machine are in one picture, drawn from
+    the case and those that are wanted.
     """
 
     id: str
@@ -234,7 +234,6 @@ class PictureKind(NamedTuple):
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
-    whole: bool = False
 
     @property
     def text(self) -> str:
@@ -265,7 +264,7 @@ PICTURES = (
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
-    PictureKind("mechanism", "Mechanism", "motion", mechanism, whole=True),
+    PictureKind("mechanism", "Mechanism", "", mechanism),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
@@ -335,7 +334,7 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
 def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:
     """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
     command, wanted = kind.command, [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
-    if kind.whole:
+    if not command:
         yield Source((case, wanted), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""

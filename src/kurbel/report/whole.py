@@ -31,7 +31,7 @@ Given = Sequence[tuple[str, str]]
 Progress = Callable[[str], None]
 """Called with what is computed next."""
 _NONE = "–"
-_MECHANISM = [one for one in PICTURES if one.id == "mechanism"]
+_MECHANISM = [one for one in PICTURES if not one.command]
 
 
 def _pictures(case: Case, kinds: Iterable[PictureKind], system: str, name: str = "") -> Iterator[Picture | str]:
@@ -46,7 +46,7 @@ def _pictures(case: Case, kinds: Iterable[PictureKind], system: str, name: str =
 
 def _kinds_of(command: Command) -> list[PictureKind]:
     """Return the pictures of the section of a command; the mechanism is on the first page."""
-    return [one for one in PICTURES if one.command == command.word and one not in _MECHANISM]
+    return [one for one in PICTURES if one.command == command.word]
 
 
 # one machine
