@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, islice, pairwise
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -126,12 +126,11 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
     for gas in every:
         across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
         curves = list[Curve]()
-        for head, end in ((True, gas.head), (False, gas.crank)):
+        for number, end in enumerate((gas.head, gas.crank)):
             if end:
-                name, _ = source.line("p_head" if head else "p_crank", "head end" if head else "crank end")
-                place = partial(_volume, gas, head) if over_volume else lambda state: state.displacement
-                pressure = partial(_pressure, gas, end)
-                samples = source.samples("P", [(NO_NAME, place), (name, pressure)])
+                name, _ = source.line("p_crank" if number else "p_head", "crank end" if number else "head end")
+                place = partial(_volume, gas, number) if over_volume else attrgetter("displacement")
+                samples = source.samples("P", [(NO_NAME, place), (name, partial(_pressure, gas, end))])
                 curves.append(samples.curve(name, *samples.values).closed())
         marks: tuple[Mark, ...] = ()
         if gas is every[0] and not over_volume and (highest := results.p_max):
@@ -147,10 +146,9 @@ def _pressure(gas: PistonGas, end: Pressure, state: State) -> Array:
     return state.pressure(end) + gas.base
 
 
-def _volume(gas: PistonGas, head: bool, state: State) -> Array:
-    """Return the volume in m³ at an end of a piston, with the clearance where that is known."""
-    passed, number = state.displacement, 0 if head else 1
-    swept = passed if head != gas.turned else gas.stroke - passed
+def _volume(gas: PistonGas, number: int, state: State) -> Array:
+    """Return the volume in m³ at the head end of a piston, 0, or the crank end, 1, with the clearance if known."""
+    swept = gas.stroke - state.displacement if gas.turned != bool(number) else state.displacement
     return np.asarray(swept * gas.areas[number] + gas.clearance_volumes[number])
 
 
