@@ -211,8 +211,8 @@ class Functions(NamedTuple):
         return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
 
 
-def of_whole_machine(title: str, command: str) -> Functions:
-    """Return the functions of a command that prints the results of the whole machine, and no tables of its own."""
+def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
+    """Return the function of a command that has results of the whole machine, and of no part of it."""
 
     def subjects(case: Case) -> list[Subject]:
         (found,) = case.results(command)
@@ -220,7 +220,7 @@ def of_whole_machine(title: str, command: str) -> Functions:
             Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
         ]
 
-    return Functions(title, subjects)
+    return subjects
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:

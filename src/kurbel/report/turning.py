@@ -12,7 +12,7 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on, whole_machine
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
 from kurbel.report.tables import LeftOut, Report
 from kurbel.report.warnings import of_machine
@@ -162,9 +162,7 @@ def harmonics_report(
     return report_on(frame, machine, HARMONICS.title, [*cylinders, whole], notes)
 
 
-HARMONICS = Functions(
-    "Harmonics of the turning effort", lambda case: [Subject("whole machine", case.harmonics())], own=harmonics_report
-)
+HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=harmonics_report)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:

@@ -192,7 +192,7 @@ def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Ite
     ids = dict.fromkeys(id for case in cases for id in facts_of(case))
     facts = [facts_of(case, ids).values() for case in cases]
     titles = {fact.quantity: fact.title for some in facts for fact in some}
-    numbers = [{fact.quantity: fact.number for fact in some} for some in facts]
+    numbers = [{fact.quantity: fact.value for fact in some} for some in facts]
     yield Grid("", _heads(names), _compared(numbers, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
         warnings = [*of_machine(case)]
