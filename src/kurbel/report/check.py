@@ -1,7 +1,7 @@
 """The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations compare."""
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -42,11 +42,9 @@ class Checked(NamedTuple):
     @property
     def shown_once(self) -> list[Topic]:
         """The sections, with one for identical cylinders."""
-
-        def content(section: Topic) -> Hashable:
-            return section.cylinder or section.title, tuple(one[:3] for one in section.entries)
-
-        groups = grouped(self.sections, content)
+        groups = grouped(
+            self.sections, lambda one: (one.cylinder or one.title, tuple(entry[:3] for entry in one.entries))
+        )
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
 
 

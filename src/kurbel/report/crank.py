@@ -11,7 +11,7 @@ import numpy as np
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
 from kurbel.quantity import PHI, Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject
 from kurbel.report.left_out import (
     balance_left_out,
     bearing_left_out,
@@ -21,7 +21,6 @@ from kurbel.report.left_out import (
     motion_left_out,
     strength_left_out,
 )
-from kurbel.report.tables import Report
 from kurbel.report.warnings import (
     as_far_as_solved,
     bearing_warnings,
@@ -82,7 +81,7 @@ def _with_forces(case: Case) -> list[Subject]:
     ]
 
 
-def forces_report(case: Case, frame: Frame) -> Report:
+def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str]]:
     """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
@@ -92,12 +91,11 @@ def forces_report(case: Case, frame: Frame) -> Report:
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
-        return report_on(frame, case.machine, FORCES.title, cylinders, FORCES.notes(case))
+        return cylinders, _forces_notes(case)
     if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
     each = zip(cylinders, case.cylinders)
-    cylinders = [replace(one, tables=_cycle_table(forces)) for one, forces in each]
-    return report_on(frame, case.machine, FORCES.title, cylinders)
+    return [replace(one, tables=_cycle_table(forces)) for one, forces in each], ()
 
 
 def _piston_table(forces: CylinderForces) -> Iterator[Places]:
@@ -149,7 +147,7 @@ def _forces_notes(case: Case) -> Iterator[str]:
         )
 
 
-FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=forces_report)
+FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=_forces_shown)
 
 
 # pins and bearings
@@ -321,11 +319,6 @@ def _balanced(case: Case, compare: bool = False) -> list[Subject]:
     ]
 
 
-def balance_report(case: Case, frame: Frame) -> Report:
-    """Return what is unbalanced and what balances it; raises UsageError if no masses move."""
-    return report_on(frame, case.machine, BALANCE.title, _balanced(case, frame.compare), _notes(case))
-
-
 def _notes(case: Case) -> Iterator[str]:
     balance, free = case.balance, case.balance.free
     yield "φ is the angle of crank 1; F_x and M_x count along the stroke line of cylinder 1, F_y and M_y across it."
@@ -342,7 +335,13 @@ def _notes(case: Case) -> Iterator[str]:
         yield "M_roll is −M of kurbel flywheel, without the torque that accelerates the masses about the shaft."
 
 
-BALANCE = Functions("Balancing", _balanced, _notes, lambda case: case.balance.cycle, balance_report)
+BALANCE = Functions(
+    "Balancing",
+    _balanced,
+    _notes,
+    lambda case: case.balance.cycle,
+    lambda case, frame: (_balanced(case, frame.compare), _notes(case)),
+)
 
 
 def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:

@@ -190,15 +190,15 @@ class Functions(NamedTuple):
     """What a command on a machine consists of: a title, and functions of a case, which raise as `report` does.
 
     title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
-    below the tables; end: returns the crank angle at which the table ends; own: a function that returns a report of
-    another layout than `report_on`, from the case, the frame, and options of the command by their names.
+    below the tables; end: returns the crank angle at which the table ends; own: returns subjects and notes of a report
+    that depends on the frame, or on options of the command, which it takes by their names.
     """
 
     title: str
     subjects: Callable[[Case], list[Subject]]
     notes: Callable[[Case], Iterable[str]] = lambda case: ()
     end: Callable[[Case], float] = lambda case: 360.0 * case.machine.revolutions
-    own: Callable[..., Report] | None = None
+    own: Callable[..., tuple[Sequence[Subject], Iterable[str]]] | None = None
 
     @np.errstate(all="ignore")  # what overflows is refused by name
     def report(self, case: Case, frame: Frame, **options: object) -> Report:
@@ -206,9 +206,8 @@ class Functions(NamedTuple):
 
         Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
         """
-        if self.own:
-            return self.own(case, frame, **options)
-        return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
+        found = self.own(case, frame, **options) if self.own else (self.subjects(case), self.notes(case))
+        return report_on(frame, case.machine, self.title, *found)
 
 
 def whole_machine(command: str) -> Callable[[Case], list[Subject]]:

@@ -12,9 +12,9 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject, report_on, whole_machine
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, whole_machine
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
-from kurbel.report.tables import LeftOut, Report
+from kurbel.report.tables import LeftOut
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chain import holzer_at
@@ -129,9 +129,9 @@ FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)
 _HIGHEST_ORDER = 1000
 
 
-def harmonics_report(
+def _harmonics(
     case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
-) -> Report:
+) -> tuple[list[Subject], Iterator[str]]:
     """Return the orders of the turning effort; orders: those to show, None for all up to 24.
 
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
@@ -158,11 +158,10 @@ def harmonics_report(
         tables=_orders_of_machine(found, speeds or (), machine.speed),
         whole=True,
     )
-    notes = _harmonics_notes(found)
-    return report_on(frame, machine, HARMONICS.title, [*cylinders, whole], notes)
+    return [*cylinders, whole], _harmonics_notes(found)
 
 
-HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=harmonics_report)
+HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -253,10 +252,6 @@ _MODES = 3
 """Modes whose critical speeds are listed unless others are requested."""
 
 
-def _torsion_subjects(case: Case) -> list[Subject]:
-    return [Subject("shaft line", _limited(case.torsion))]
-
-
 def _limited(found: ShaftVibration) -> ShaftVibration:
     """Return the vibration; raises NoSolutionError if it grows without limit."""
     if found.vibration is not None and found.vibration.endless.any():
@@ -267,7 +262,7 @@ def _limited(found: ShaftVibration) -> ShaftVibration:
     return found
 
 
-def torsion_report(
+def _torsion(
     case: Case,
     frame: Frame,
     orders: Sequence[float] | None = None,
@@ -275,7 +270,7 @@ def torsion_report(
     mode: int | None = None,
     speeds: Sequence[float] | None = None,
     at: float | None = None,
-) -> Report:
+) -> tuple[list[Subject], Iterator[str]]:
     """Return the torsional vibration of the shaft line; columns over the crank angle only if the frame has some.
 
     orders: those to count, None for the usual ones; modes: how many have critical speeds; mode, at: of Holzer's table,
@@ -317,10 +312,10 @@ def torsion_report(
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
-    return report_on(frame, case.machine, TORSION.title, [*pieces, whole], notes)
+    return [*pieces, whole], notes
 
 
-TORSION = Functions("Torsional vibration", _torsion_subjects, own=torsion_report)
+TORSION = Functions("Torsional vibration", lambda case: [Subject("shaft line", _limited(case.torsion))], own=_torsion)
 
 
 def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[Row]:
