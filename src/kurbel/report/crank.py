@@ -3,7 +3,6 @@
 import cmath
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from itertools import chain, groupby
 
 import numpy as np
@@ -87,7 +86,7 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
     cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose and case.cylinders else {}
-    cylinders = [replace(one, warnings=warnings.get(one.name, ())) for one in cylinders]
+    cylinders = [one._replace(warnings=warnings.get(one.name, ())) for one in cylinders]
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
@@ -95,7 +94,7 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
     if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
         raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
     each = zip(cylinders, case.cylinders)
-    return [replace(one, tables=_cycle_table(forces)) for one, forces in each], ()
+    return [one._replace(tables=_cycle_table(forces)) for one, forces in each], ()
 
 
 def _piston_table(forces: CylinderForces) -> Iterator[Places]:

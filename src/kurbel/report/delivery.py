@@ -1,7 +1,6 @@
 """The report of `kurbel delivery`: what pumps and compressors deliver."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import chain, pairwise
 
 from kurbel.declared.unit_systems import show
@@ -37,7 +36,7 @@ def _delivering(case: Case) -> list[Subject]:
     return [
         *(Subject(one.name, one, tables=_ends_tables(one)) for one in found.stages),
         *(Subject(one.name, one, one.at) for one in found.pistons),
-        replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True),
+        whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
 
 

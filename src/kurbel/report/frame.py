@@ -2,9 +2,8 @@
 
 import re
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from hashlib import sha256
 from typing import NamedTuple
 
@@ -55,8 +54,7 @@ _UNCOMPARED = (
 # what a command has results of
 
 
-@dataclass(frozen=True, eq=False)
-class Subject:
+class Subject(NamedTuple):
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
@@ -106,15 +104,18 @@ def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]
     having = [one for one in subjects if one.results]
     if len(having) < 2:
         return [having]
-    kinds = {one: (one.name, one.of) if command == "bearings" else ("", "") for one in having}
-    return grouped(having, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
+
+    def load(one: Subject) -> Hashable:
+        name, of = (one.name, one.of) if command == "bearings" else ("", "")
+        return equal_loads(name, of, shown_key_values(one.key_values(command), "si"))
+
+    return grouped(having, load)
 
 
 # the request and its report
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(NamedTuple):
     """What is requested of the report of any command on a machine.
 
     angles: the crank angles (n,) of the rows in degrees, or a function that returns those of a subject; columns: ids
@@ -145,30 +146,32 @@ def report_on(
     """
     if not subjects:
         raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
-    tables_of = {one: tuple(table.shown(frame.system) for table in one.tables) for one in subjects}
-    subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
-    columns = [_columns(frame, one) for one in subjects]
-    printed = {column.id for of_subject, _ in columns for column in of_subject}
-    nowhere = [why for _, why in columns if why]
+    having = list[tuple[Subject, tuple[PlaceTable, ...], tuple[Column, ...], str]]()
+    for one in subjects:
+        tables = tuple(table.shown(frame.system) for table in one.tables)
+        if one.whole or one.at or tables or any(one.key_values(frame.command)):
+            having.append((one, tables, *_columns(frame, one)))
+    printed = {column.id for _, _, columns, _ in having for column in columns}
+    nowhere = [why for *_, why in having if why]
     for name in frame.columns or ():
         if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
+            raise UsageError(f"--columns: {_absent(name, frame.command, [one for one, *_ in having])}")
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
-    with_values = frame.prose or not (printed or any(tables_of.values()))
+    with_values = frame.prose or not (printed or any(tables for _, tables, *_ in having))
     parts = [
         Part(
             one.name,
-            found,
+            columns,
             tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
-            tables_of[one],
+            tables,
             why,
             one.of,
         )
-        for one, (found, why) in zip(subjects, columns)
+        for one, tables, columns, why in having
     ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
@@ -178,7 +181,7 @@ def report_on(
         frame.command,
         machine.name,
         "bearings" if frame.command == "bearings" else "cylinders",
-        whole=parts.pop() if subjects[-1:] and subjects[-1].whole else None,
+        whole=parts.pop() if having and having[-1][0].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),
         provenance=provenance(machine) if frame.prose else None,
