@@ -17,7 +17,8 @@ from kurbel.report.left_out import (
     bearings_left_out,
     forces_left_out,
     left_out,
-    motion_left_out,
+    missing,
+    motion_stages,
     strength_left_out,
 )
 from kurbel.report.warnings import (
@@ -58,7 +59,7 @@ def mechanism_notes(case: Case) -> Iterable[str]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
+        Subject(one.drive.name, one, one.at, left_out=missing(motion_stages(case.machine, one.drive.cylinder)))
         for one in case.cylinders
     ]
 

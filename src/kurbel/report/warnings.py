@@ -7,7 +7,8 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
+from operator import itemgetter
+from typing import Union
 
 import numpy as np
 
@@ -24,12 +25,8 @@ from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
 from kurbel.traces.checks import doubt
 
-
-class Note(NamedTuple):
-    """A sentence, and the name of the cylinder that it is about; None for the whole machine."""
-
-    cylinder: str | None
-    text: str
+Note = tuple[Union[str, None], str]
+"""The name of a cylinder, None for the whole machine, and a sentence about it."""
 
 
 def machine_notes(case: Case) -> tuple[Note, ...]:
@@ -37,7 +34,7 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
     machine, found = case.machine, list[Note]()
 
     def add(texts: Iterable[str], cylinder: str | None = None) -> None:
-        found.extend(Note(cylinder, text) for text in texts)
+        found.extend((cylinder, text) for text in texts)
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
@@ -79,10 +76,9 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
 
 def of_machine(case: Case) -> Iterator[str]:
     """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
-    for notes in grouped(machine_notes(case), lambda note: note.text):
-        names = [note.cylinder for note in notes if note.cylinder is not None]
-        several = names and len(case.machine.cylinders) > 1
-        yield f"{together(names)}: {notes[0].text}" if several else notes[0].text
+    for notes in grouped(machine_notes(case), itemgetter(1)):
+        names, text = [name for name, _ in notes if name is not None], notes[0][1]
+        yield f"{together(names)}: {text}" if names and len(case.machine.cylinders) > 1 else text
 
 
 # what was given: sizes and speeds
