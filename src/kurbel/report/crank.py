@@ -352,10 +352,9 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
     if balance.omega is None:
         return
     square, free, book = balance.omega**2, balance.free, balance.book if compare else None
-    circles, ellipses = list[Row](), list[Row]()
+    rows: list[Row] = []
     for order in free.orders:
-        circle: dict[str, float | None] = {"order": order}
-        ellipse: dict[str, float | None] = {"order": order}
+        values: dict[str, float | None] = {"order": order}
         for name, vector, of_book in (
             ("F", free.force, book.force if book else None),
             ("M", free.moment, book.moment if book else None),
@@ -364,23 +363,22 @@ def _orders(balance: MachineBalance, compare: bool) -> Iterator[Places]:
                 continue
             f, g = (complex(vector.of(one)[0]) * square for one in (order, -order))
             whole = float((np.abs(vector.waves * square) ** 2).sum())
-            circle |= {f"{name}_forward": abs(f), f"{name}_backward": abs(g)}
-            circle[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
+            values |= {f"{name}_forward": abs(f), f"{name}_backward": abs(g)}
+            values[f"{name}_share"] = (abs(f) ** 2 + abs(g) ** 2) / whole if whole else None
             if of_book is not None:
-                circle[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
-                circle[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
-            ellipse |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
+                values[f"{name}_forward_book"] = abs(complex(of_book.of(order)[0])) * square
+                values[f"{name}_backward_book"] = abs(complex(of_book.of(-order)[0])) * square
+            values |= {f"{name}_long": abs(f) + abs(g), f"{name}_short": abs(abs(f) - abs(g))}
             # both circles meet in the middle of their directions, here from 0 to below 180 degrees
             middle = math.degrees(cmath.phase(f * g)) / 2
             middle = middle + 180.0 if middle < -_NOTHING else max(middle, 0.0)
-            ellipse[f"{name}_direction"] = middle if f and g else None
-            ellipse |= {f"{name}_forward_phase": _direction(f), f"{name}_backward_phase": _direction(g)}
-        circles.append(((), circle))
-        ellipses.append(((), ellipse))
+            values[f"{name}_direction"] = middle if f and g else None
+            values |= {f"{name}_forward_phase": _direction(f), f"{name}_backward_phase": _direction(g)}
+        rows.append(((), values))
     title = "Orders: circles with the crank (+) and against it (−)"
-    yield Places("orders", title, (), ORDERS, circles, alone=_DIGITS)
+    yield Places("orders", title, (), ORDERS, rows, alone=_DIGITS)
     title = "Orders: ellipses, and phases of the rotating components at φ = 0"
-    yield Places("ellipses", title, (), ELLIPSES, ellipses, alone=_DIGITS)
+    yield Places("ellipses", title, (), ELLIPSES, rows, alone=_DIGITS)
 
 
 def _weights(balance: MachineBalance) -> Iterator[Places]:

@@ -41,9 +41,7 @@ def _delivering(case: Case) -> list[Subject]:
 
 
 def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
-    rows: list[Row] = [
-        ((one.owner, one.end), {id: one.figures[id] for id in ENDS if id in one.figures}) for one in stage.ends
-    ]
+    rows: list[Row] = [((one.owner, one.end), one.figures) for one in stage.ends]
     pressures = ""
     if stage.suction is not None:
         pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"

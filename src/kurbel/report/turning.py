@@ -202,10 +202,7 @@ def _uniform(torque: Orders) -> bool:
 
 def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
     name, torque = cylinder.forces.drive.name, cylinder.own
-    rows = _order_rows(torque)
-    for (_, values), amplitude in zip(rows, torque.whole.tolist()):
-        if cylinder.area:
-            values["t_order"] = abs(amplitude) / cylinder.area
+    rows = _order_rows(torque, cylinder.area)
     title = f"Orders of the torque of {name}, φ from its own inner dead centre"
     yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
 
@@ -214,7 +211,7 @@ def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: f
     """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
     torque, uniform = found.machine, _uniform(found.machine)
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    rows = _order_rows(torque, found.major_orders or ())
+    rows = _order_rows(torque, major=found.major_orders or ())
     yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
     rows = []
     for speed in speeds:
@@ -225,14 +222,16 @@ def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: f
         yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
 
 
-def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, float | None]]]:
-    """Return the orders of a torque; major: those to mark."""
-    rows = []
+def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
+    """Return the orders of a torque; area: R A of its cylinder in m³, if it has a piston; major: those to mark."""
+    rows = list[Row]()
     for index, order in enumerate(torque.orders.tolist()):
         values = _of_order(order, complex(torque.whole[index]))
         if torque.inertia is not None:
             values["M_gas"] = float(abs(torque.gas[index]))
             values["M_inertia"] = float(abs(torque.inertia[index]))
+        if area:
+            values["t_order"] = abs(torque.whole[index]) / area
         rows.append((("major" if order in major else "",), values))
     return rows
 
@@ -324,9 +323,7 @@ def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[
     of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
     rows: list[Row] = []
     for one in critical:
-        values = {"order": one.order, "mode": float(one.mode), "speed": one.speed, "phase_sum": one.phase_sum}
-        if one.distance is not None:
-            values["distance"] = one.distance
+        values = {id: float(value) for id, value in one._asdict().items() if value is not None}
         for amplitudes in of_reached.get(one, ()):
             values |= {id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()}
         rows.append((("near" if one.near else "",), values))
