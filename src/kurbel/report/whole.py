@@ -129,11 +129,13 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
 def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...], ...]:
     try:
         left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
-        places = {name: place for name, (_, place) in {**SLIDING, **RUBBING}.items()}
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            *((f"Friction {place}", -(friction.get(name) or 0.0)) for name, place in places.items()),
+            *(
+                (f"Friction {place}", -(friction.get(name) or 0.0))
+                for name, (_, place) in {**SLIDING, **RUBBING}.items()
+            ),
             ("Friction given as a force", -(friction.get("constant") or 0.0)),
             ("What the output works against", forces.resistance_work),
         ]
