@@ -36,21 +36,18 @@ def _instead(name: str, text: str) -> Callable[[Callable[..., Any]], Callable[..
     return click.option(name, "instead", is_flag=True, flag_value=name, default="", help=text)
 
 
+_SHARED = {"where": stacked(where_option), "uncertainty": stacked(uncertainty_option)}
+"""What the rows of commands call options that several commands take."""
 _OWN = {
     "motion": row_options,
     "forces": stacked(
-        uncertainty_option,
         row_options,
         click.option(
             "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
         ),
         _instead("--each-cycle", "A line for every measured cycle instead of the table over the angle."),
     ),
-    "flywheel": stacked(where_option, uncertainty_option),
-    "stress": stacked(
-        uncertainty_option,
-        _instead("--places", "Only the stresses place by place; as csv one line each."),
-    ),
+    "stress": stacked(_instead("--places", "Only the stresses place by place; as csv one line each.")),
     "balance": stacked(
         click.option("--compare", is_flag=True, help="Also by the textbook formula cos phi + R/L cos 2phi (R 291)."),
         _instead("--orders", "Only the tables of orders and weights, and key values."),
@@ -87,8 +84,9 @@ def _command(row: Command) -> click.Command:
 
     rows = (angle_options, columns_option) if row.over_angle else ()
     cases = (_cases_option,) if row.in_cases else ()
+    shared = [_SHARED[word] for word in row.options]
     own = (_OWN[row.word],) if row.word in _OWN else ()
-    with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *own)
+    with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
     return click.command(row.word, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(with_options(run))
 
 

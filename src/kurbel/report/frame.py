@@ -5,11 +5,11 @@ from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from hashlib import sha256
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Number
 from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
@@ -35,8 +35,8 @@ from kurbel.report.tables import (
 )
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
+from kurbel.solver.cycle import Where
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.flywheel import MachineTurning
 from kurbel.solver.forces import CylinderForces
 
 _AT_ONCE = 8192
@@ -424,6 +424,16 @@ def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]
     return angles
 
 
+@runtime_checkable
+class Searchable(Protocol):
+    """Results that `--where` searches; omega: of the crank in rad/s, None where no speed is given."""
+
+    omega: Number | None
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
+
+
 def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Sequence[float]]:
     """Return a function that finds the angles, up to `end`, at which a condition such as `b = 1/6 b_max` holds.
 
@@ -451,7 +461,7 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         column = own.get(ids[0])  # None for one that only other machines have
         wanted = _value(subject, command, column, factor, of, text) if column else 0.0
         results = subject.results
-        assert isinstance(results, (CylinderForces, MachineTurning))
+        assert isinstance(results, Searchable)
         found = column and results.angles_where(column.id, wanted)
         if column is None or found is None:
             why = "; kurbel check shows why"
