@@ -17,8 +17,7 @@ from kurbel.report.left_out import (
     bearings_left_out,
     forces_left_out,
     left_out,
-    missing,
-    motion_stages,
+    motion_left_out,
     strength_left_out,
 )
 from kurbel.report.warnings import (
@@ -59,7 +58,7 @@ def mechanism_notes(case: Case) -> Iterable[str]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(one.drive.name, one, one.at, left_out=missing(motion_stages(case.machine, one.drive.cylinder)))
+        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
         for one in case.cylinders
     ]
 

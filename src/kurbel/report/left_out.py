@@ -29,7 +29,7 @@ def _speeds(machine: Machine) -> tuple[str, str]:
 
 def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     """Return all that motion and forces of a cylinder can consist of, with the reason why it is left out, or ""."""
-    mechanism, motion = cylinder.mechanism, motion_stages(machine, cylinder)
+    mechanism, motion = cylinder.mechanism, _motion_stages(machine, cylinder)
     if not mechanism.slides:
         acting = {"moment at the output": "" if cylinder.moment else "no moment given"}
     else:
@@ -52,8 +52,7 @@ def stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     return {**motion, **acting, "forces in the crank train": "", **of_rod, **dict(mechanism.lacks), **works}
 
 
-def motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
-    """Return all that the motion of a cylinder can consist of, with the reason why it is left out, or ""."""
+def _motion_stages(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
     position = "displacement" if cylinder.mechanism.slides else "angle of the output"
     return {position: "", "velocity, acceleration": _speeds(machine)[0]}
 
@@ -83,6 +82,11 @@ def _sliding_forces(machine: Machine, cylinder: Cylinder) -> dict[str, str]:
 def left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
     """Yield everything that motion and forces of this cylinder leave out."""
     yield from missing(stages(machine, cylinder))
+
+
+def motion_left_out(machine: Machine, cylinder: Cylinder) -> Iterator[LeftOut]:
+    """Yield what the motion of this cylinder leaves out."""
+    yield from missing(_motion_stages(machine, cylinder))
 
 
 def forces_left_out(machine: Machine, forces: CylinderForces) -> Iterator[LeftOut]:

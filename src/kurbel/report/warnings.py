@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from operator import itemgetter
-from typing import Union
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,12 @@ from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
 from kurbel.traces.checks import doubt
 
-Note = tuple[Union[str, None], str]
-"""The name of a cylinder, None for the whole machine, and a sentence about it."""
+
+class Note(NamedTuple):
+    """A sentence, and the name of the cylinder that it is about; None for the whole machine."""
+
+    cylinder: str | None
+    text: str
 
 
 def machine_notes(case: Case) -> tuple[Note, ...]:
@@ -34,7 +38,7 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
     machine, found = case.machine, list[Note]()
 
     def add(texts: Iterable[str], cylinder: str | None = None) -> None:
-        found.extend((cylinder, text) for text in texts)
+        found.extend(Note(cylinder, text) for text in texts)
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
