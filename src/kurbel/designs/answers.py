@@ -10,11 +10,11 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Indices
 from kurbel.declared.forms.figures import MACHINE, scoped
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, units_of
-from kurbel.designs.binding import Batch, Binder
+from kurbel.declared.unit_systems import units_of
+from kurbel.designs.binding import Batch, Binder, Column
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -136,21 +136,15 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
 # their values
 
 
-def answered(binder: Binder, rows: Sequence[Sequence[str]], requested: Sequence[Answer]) -> list[Values]:
-    """Return the key values of the designs with these texts (rows, keys) under the keys of a binder.
+def answered(binder: Binder, columns: Sequence[Column], requested: Sequence[Answer]) -> list[Values]:
+    """Return the key values of the designs with these values of the keys of a binder.
 
     In older versions of numpy rounding depends on the length of an array, and so on the designs that are computed
     together: for the same digits of a row in every run, give the same rows each time.
     """
-    bound = binder.bound(rows)
+    bound = binder.bound(columns)
     found = bound.failures | answers_of(bound.batches, requested)
-    return [found[row] for row in range(len(rows))]
-
-
-def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
-    """Return numbers (rows, keys) in SI as texts under the keys of a binder."""
-    units = [SI[kind] for kind in binder.kinds]
-    return [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+    return [found[row] for row in range(len(columns[0].places))]
 
 
 @np.errstate(all="ignore")
@@ -339,14 +333,14 @@ class Study:
             heads.append(Head(f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
         return heads
 
-    def of(self, rows: Sequence[Sequence[str]]) -> list[Found]:
-        """Return what the designs with these texts (rows, keys) give; for the same digits give the same rows."""
+    def of(self, columns: Sequence[Column]) -> list[Found]:
+        """Return what the designs with these values of the keys give; for the same digits give the same rows."""
         count = len(self.answers)
         return [
             Found(failure=values)
             if isinstance(values, str)
             else Found(values[:count], "", *self._judged(values[count:]))
-            for values in answered(self.binder, rows, self.every)
+            for values in answered(self.binder, columns, self.every)
         ]
 
     def _judged(self, values: Sequence[Value]) -> tuple[tuple[str, ...], tuple[str, ...]]:

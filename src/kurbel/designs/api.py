@@ -91,15 +91,18 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
 
 
 def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
+    """Yield the inputs with their values; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)
     if not count or any(column.shape not in ((count,), (1,)) for column in columns):
         each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
     for key, column, kind in zip(inputs, columns, binder.kinds):
-        unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
-        yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
+        values = np.broadcast_to(column, count).tolist()
+        if column.dtype.kind in "fiu":
+            yield Input(key, (), tuple(values), SI.get(kind, ""))
+        else:
+            yield Input(key, tuple(map(str, values)))
 
 
 def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:

@@ -5,18 +5,23 @@ for arrays, too. Words, counts and points of cards are structure: rows that diff
 is each row that breaks a rule, for its message.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Indices, Indivisible
+from kurbel.arrays import Array, Indices, Indivisible
 from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import Plain, Reading, StopReading, Tree, shown
-from kurbel.errors import KurbelError, MachineFileError, Path, UsageError, path_text
+from kurbel.declared.reading import Reading, StopReading, Tree, shown
+from kurbel.declared.unit_systems import SI, in_base
+from kurbel.declared.units import parse_quantity
+from kurbel.designs.plan import Input
+from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
@@ -24,6 +29,24 @@ from kurbel.machine_file.events import parse
 from kurbel.machine_file.overrides import dotted, leaves, path_of, set_over, tree_of, value_at
 from kurbel.machine_file.reader import read_tree, read_values, reading_of
 from kurbel.near_words import did_you_mean
+
+INFINITE = "infinite"
+"""The word for the length of an infinite rod."""
+
+
+class Column(NamedTuple):
+    """The values of a key in rows, by their places (rows,) among those of the input.
+
+    numbers: the values of the input in the base of their kind, nan for a word.
+    """
+
+    input: Input
+    numbers: Array
+    places: Indices
+
+    def text(self, row: int) -> str:
+        """Return the value in a row as the machine file would have it."""
+        return self.input.text(int(self.places[row]))
 
 
 class Batch(NamedTuple):
@@ -66,21 +89,24 @@ class Binder:
             bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
+        self._words: tuple[str, ...] | None = None
+        self._slots: list[list[_Slot]] = []
 
-    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
-        """Return the machines of rows of texts, in batches, and why other rows have none."""
+    def columns(self, numbers: Array) -> list[Column]:
+        """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
+        rows = np.arange(len(numbers))
+        each = zip(self._keys, self.kinds, numbers.T)
+        return [Column(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows) for key, kind, own in each]
+
+    def bound(self, columns: Sequence[Column]) -> Batches:
+        """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
         found = Batches([], {})
-        groups: dict[tuple[str, ...], list[int]] = {}
-        for place, row in enumerate(rows):
-            words = tuple(text for text, number in zip(row, self._numeric) if not number)
-            groups.setdefault(words, []).append(place)
-        for places in groups.values():
-            apart = places
-            if len(places) > 1:
-                batches, apart = self._together(np.array(places), rows)
-                found.batches.extend(batches)
-            for place in apart:
-                self._bind_alone(place, rows[place], found)
+        words = [column.places for column, number in zip(columns, self._numeric) if not number]
+        for places in _alike(words, np.arange(len(columns[0].places))):
+            batches, apart = self._together(columns, places)
+            found.batches.extend(batches)
+            for row in apart.tolist():
+                self._bind_alone(row, [column.text(row) for column in columns], found)
         return found
 
     def _with(self, texts: Sequence[str]) -> Origin:
@@ -102,64 +128,93 @@ class Binder:
         else:
             found.batches.append(Batch(machine, [row]))
 
-    def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Batch], list[int]]:
+    def _together(self, columns: Sequence[Column], places: Indices) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
-        words = rows[places[0]]
-        origin = self._with([one if number else word for one, number, word in zip(self._start, self._numeric, words)])
-        columns = {
-            key: [rows[place][column] for place in places]
-            for column, key in enumerate(self._keys)
-            if self._numeric[column]
-        }
-        reading = reading_of(origin)
         try:
-            tree = parse(origin.text, reading)
-            set_over(tree, origin)
-            every = list(_every(read_tree(tree, origin, reading)))
-            read = _put(columns, every, len(places))
-            maker = Maker(reading, int(read.sum()))
+            self._read(tuple("" if number else one.text(places[0]) for one, number in zip(columns, self._numeric)))
+            numeric = [one.numbers[one.places[places]] for one, number in zip(columns, self._numeric) if number]
+            within = np.ones(len(places), dtype=bool)
+            for numbers, slots in zip(numeric, self._slots):
+                within &= slots[0].number.within(numbers)
+            for numbers, slots in zip(numeric, self._slots):
+                for given, name, number in slots:
+                    given.values[name] = number.of_numbers(numbers[within])
+            read = places[within]
+            maker = Maker(Reading(), len(read))
             with np.errstate(all="ignore"):
-                machine = maker.made(every[-1])
-            if reading.faults or not read.any():
-                return [], places.tolist()
+                machine = maker.made(self._root)
+            if maker.reading.faults or not len(read):
+                return [], places
         # a formula works for a single machine only
         except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
-            return [], places.tolist()
+            return [], places
         batches = []
         for fit in _structures(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
             batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
-            batches.append(Batch(batch, places[read][fit].tolist()))
-        return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
+            batches.append(Batch(batch, read[fit].tolist()))
+        return batches, np.concatenate([places[~within], read[maker.broken]])
+
+    def _read(self, words: tuple[str, ...]) -> None:
+        """Read the file with these words, '' for a number, and find where the numbers belong; raises KurbelError."""
+        if words == self._words:
+            return
+        origin = self._with([word or one for word, one in zip(words, self._start)])
+        reading = reading_of(origin)
+        tree = parse(origin.text, reading)
+        set_over(tree, origin)
+        every = list(_every(read_tree(tree, origin, reading)))
+        if reading.faults:
+            raise KurbelError
+        self._slots = [_slots(path_of(key), every) for key, number in zip(self._keys, self._numeric) if number]
+        self._words, self._root = words, every[-1]
 
 
-def _put(columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int) -> Flags:
-    """Put arrays in place of numbers, of the rows that have all of them; return which rows these are.
+class _Slot(NamedTuple):
+    """A mapping, and the name of a key of it, that has a number of this form."""
 
-    columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
-    UsageError for a key whose value is not a number.
-    """
-    slots: list[tuple[Given, str, NumberForm, Array]] = []
-    read = np.ones(count, dtype=bool)
-    for key, texts in columns.items():
-        owner, name, _ = _owner(path_of(key), every)
-        form = owner.form.keys[name].form
-        if form.number is None:
-            raise UsageError(f"{key}: no number")
-        plain = form.number.numbers(texts)
-        if plain is None:  # one by one, nan for a text that is no number
-            known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
-            plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
-        alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
-        slots += [(one, name, form.number, np.array(plain)) for one in alike]
-        read &= ~np.isnan(plain)
-    for one, name, number, numbers in slots:
-        one.values[name] = number.of_numbers(numbers[read])
-    return read
+    given: Given
+    name: str
+    number: NumberForm
 
 
-def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
-    """Yield places, among those that fit, of machines that take the same branches in the solver.
+def _slots(path: Path, every: Sequence[Given]) -> list[_Slot]:
+    """Return where the number of a key belongs, also in cylinders that are `like` its own; raises UsageError."""
+    owner, name, _ = _owner(path, every)
+    number = owner.form.keys[name].form.number
+    if number is None:
+        raise UsageError(f"{path_text(path)}: no number")
+    return [
+        _Slot(one, name, number)
+        for one in every
+        if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)
+    ]
+
+
+def numbers_of(one: Input, kind: str) -> Array:
+    """Return the values (n,) of an input in the base of their kind; nan for words, and for what cannot be read."""
+    if one.texts:
+        known = {INFINITE: math.inf}
+        for text in dict.fromkeys(one.texts):
+            with suppress(UnitError):
+                known[text] = parse_quantity(text, kind) if kind else math.nan
+        return np.array([known.get(text, math.nan) for text in one.texts])
+    with suppress(UnitError):
+        if kind:
+            return in_base(np.array(one.numbers, dtype=float), kind, one.unit)
+    return np.full(one.length, math.nan)
+
+
+def _alike(columns: Sequence[Array | Indices], places: Indices) -> list[Indices]:
+    """Return places in groups, in each of which every column has one value."""
+    groups = [places] if len(places) else []
+    for column in columns:
+        groups = [group[column[group] == value] for group in groups for value in np.unique(column[group])]
+    return groups
+
+
+def _structures(machine: Machine, fit: Indices) -> list[Indices]:
+    """Return places, among those that fit, of machines that take the same branches in the solver.
 
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
     axial position.
@@ -177,12 +232,7 @@ def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
         for apart in map(np.abs, (one.crank_position - other.crank_position - turned, turned, places[0] - places[1])):
             if np.ndim(apart):
                 codes.append(np.minimum(apart, np.abs(apart - 360.0)) < 1e-9)
-    if not codes:
-        yield from (fit,) if len(fit) else ()
-        return
-    kinds = np.unique(np.stack(codes)[:, fit], axis=1, return_inverse=True)[1].ravel()
-    for kind in range(kinds.max(initial=-1) + 1):
-        yield fit[kinds == kind]
+    return _alike(codes, fit)
 
 
 def _column(values: Array) -> Array | list[object]:

@@ -14,6 +14,7 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Cell, Design, Head
+from kurbel.designs.binding import INFINITE
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
@@ -32,8 +33,6 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "=": operator.eq,
 }
 _OF_WORDS = ("=", "==", "!=", "≠")
-_INFINITE = "infinite"
-"""The text of a row for an infinite rod length."""
 _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
@@ -74,7 +73,7 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
             raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
         return Condition(place, relation, written)
     try:
-        value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
+        value = math.inf if head.input and written == INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
     return Condition(place, relation, float(convert(value, head.kind, head.unit)))
@@ -95,7 +94,7 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
 
 def _number(value: Cell) -> float | None:
     """Return the number in a cell, inf for an infinite rod; None where there is none."""
-    if value == _INFINITE:
+    if value == INFINITE:
         return math.inf
     return value if isinstance(value, (int, float)) else None
 

@@ -13,7 +13,7 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, Design, Head, Study, texts_of
+from kurbel.designs.answers import Answer, Design, Head, Study
 from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
 from kurbel.errors import NoSolutionError, UsageError
@@ -186,7 +186,7 @@ class _Search:
         low, high = np.array([(one.low, one.high) for one in self.varied]).T
         numbers = low * (1 - places) + high * places
         found = []
-        for row, one in zip(numbers.tolist(), self.study.of(texts_of(self.study.binder, numbers))):
+        for row, one in zip(numbers.tolist(), self.study.of(self.study.binder.columns(numbers))):
             values = tuple(np.array(one.values or [np.nan] * len(self.study.answers), dtype=float).tolist())
             design = Design(0, (*row, *one.values))
             unmet = one.failure or ", ".join(text for text, each in self.conditions if not each.holds(design))

@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answered, is_slow, texts_of
+from kurbel.designs.answers import Answer, answered, is_slow
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
@@ -155,8 +155,8 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
 
     shifts: (machines, inputs), in uncertainties.
     """
-    texts = texts_of(inputs.binder, inputs.values + shifts * inputs.spreads)
-    every = answered(inputs.binder, texts, requested)
+    columns = inputs.binder.columns(inputs.values + shifts * inputs.spreads)
+    every = answered(inputs.binder, columns, requested)
     lacking = [None] * len(requested)
     rows = [lacking if isinstance(one, str) else one for one in every]
     values = [[math.nan if isinstance(one, tuple) else one for one in row] for row in rows]
