@@ -15,7 +15,7 @@ import numpy as np
 from kurbel.arrays import Truth
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, Step, refuse, refused
+from kurbel.errors import Fault, NotANumber, Path, Step, refuse, refused
 from kurbel.numerics.arithmetic import is_number
 
 if TYPE_CHECKING:
@@ -232,7 +232,7 @@ class Record:
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)
             or [
-                Fault((name,), "nan is no number")
+                NotANumber((name,), "nan is no number")
                 for name, one in given.items()
                 if isinstance(one, float) and one != one
             ]

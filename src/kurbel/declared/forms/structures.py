@@ -6,7 +6,6 @@ then `Maker` makes records of these.
 
 import functools
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -30,7 +29,7 @@ from kurbel.declared.reading import (
     shown,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Path, RuleError, path_text, refused
+from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -251,9 +250,7 @@ class Maker:
             try:
                 form.record.from_keys(**(values | stand_ins))
             except RuleError as error:
-                # a message with nan is about the value that could not be read
-                known = [one for one in error.faults if not re.search(r"\bnan\b", one.message)]
-                raise RuleError(*known) from None
+                raise RuleError(*(one for one in error.faults if not isinstance(one, NotANumber))) from None
             except (ArithmeticError, ValueError):  # a formula that takes no nan
                 pass
             return REFUSED
