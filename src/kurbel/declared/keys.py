@@ -152,22 +152,6 @@ def _in_order(record: "type[Record]") -> list[Field[object]]:
     return sorted(fields(record), key=lambda one: one.default is not MISSING)
 
 
-class SignatureOfFields:
-    """Returns the arguments of a record for `help`, when somebody reads them."""
-
-    def __get__(self, record: object, kind: "type[Record]") -> Signature:
-        parameters = [
-            Parameter(
-                one.name,
-                Parameter.POSITIONAL_OR_KEYWORD,
-                default=Parameter.empty if one.default is MISSING else one.default,
-                annotation=one.type,
-            )
-            for one in _in_order(kind)
-        ]
-        return Signature(parameters)
-
-
 @dataclass_transform(frozen_default=True, eq_default=False)
 class Record:
     """A record of the machine file; each entry is declared once, by `field` or `alternative`.
@@ -178,7 +162,7 @@ class Record:
 
     KEYS: ClassVar[Keys] = {}
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
-    __signature__ = SignatureOfFields()
+    __signature__: ClassVar[Signature]
 
     def __init_subclass__(cls) -> None:
         own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
@@ -189,6 +173,13 @@ class Record:
                 own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
         cls.KEYS = own
         dataclass(init=False, repr=False, eq=False)(cls)
+        kind, none = Parameter.POSITIONAL_OR_KEYWORD, Parameter.empty
+        cls.__signature__ = Signature(
+            [
+                Parameter(one.name, kind, default=none if one.default is MISSING else one.default, annotation=one.type)
+                for one in _in_order(cls)
+            ]
+        )
 
     def __init__(self, *values: object, **named: object) -> None:
         defaults = {one.name: one.default for one in _in_order(type(self))}

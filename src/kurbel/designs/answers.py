@@ -14,7 +14,7 @@ from kurbel.arrays import Indices
 from kurbel.declared.forms.figures import MACHINE, scoped
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import units_of
-from kurbel.designs.binding import Batch, Binder, Column
+from kurbel.designs.binding import Batch, Binder, KeyColumn
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -136,14 +136,14 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
 # their values
 
 
-def answered(binder: Binder, columns: Sequence[Column], requested: Sequence[Answer]) -> list[Values]:
+def answered(binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[Answer]) -> list[Values]:
     """Return the key values of the designs with these values of the keys of a binder.
 
     In older versions of numpy rounding depends on the length of an array, and so on the designs that are computed
     together: for the same digits of a row in every run, give the same rows each time.
     """
-    bound = binder.bound(columns)
-    found = bound.failures | answers_of(bound.batches, requested)
+    batches, failures = binder.bound(columns)
+    found = failures | answers_of(batches, requested)
     return [found[row] for row in range(len(columns[0].places))]
 
 
@@ -333,7 +333,7 @@ class Study:
             heads.append(Head(f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
         return heads
 
-    def of(self, columns: Sequence[Column]) -> list[Found]:
+    def of(self, columns: Sequence[KeyColumn]) -> list[Found]:
         """Return what the designs with these values of the keys give; for the same digits give the same rows."""
         count = len(self.answers)
         return [

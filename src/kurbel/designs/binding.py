@@ -34,7 +34,7 @@ INFINITE = "infinite"
 """The word for the length of an infinite rod."""
 
 
-class Column(NamedTuple):
+class KeyColumn(NamedTuple):
     """The values of a key in rows, by their places (rows,) among those of the input.
 
     numbers: the values of the input in the base of their kind, nan for a word.
@@ -58,13 +58,6 @@ class Batch(NamedTuple):
     def one(self, place: int) -> Machine:
         """Return a single machine, counted from 0."""
         return changed(self.machine, lambda numbers: numbers[place].item())
-
-
-class Batches(NamedTuple):
-    """The machines of rows, in batches, and the reasons why other rows have none; rows are counted from 0."""
-
-    batches: list[Batch]
-    failures: dict[int, str]
 
 
 class Binder:
@@ -92,22 +85,26 @@ class Binder:
         self._words: tuple[str, ...] | None = None
         self._slots: list[list[_Slot]] = []
 
-    def columns(self, numbers: Array) -> list[Column]:
+    def columns(self, numbers: Array) -> list[KeyColumn]:
         """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
         rows = np.arange(len(numbers))
         each = zip(self._keys, self.kinds, numbers.T)
-        return [Column(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows) for key, kind, own in each]
+        return [KeyColumn(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows) for key, kind, own in each]
 
-    def bound(self, columns: Sequence[Column]) -> Batches:
+    def bound(self, columns: Sequence[KeyColumn]) -> tuple[list[Batch], dict[int, str]]:
         """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
-        found = Batches([], {})
+        found, failures = list[Batch](), dict[int, str]()
         words = [column.places for column, number in zip(columns, self._numeric) if not number]
         for places in _alike(words, np.arange(len(columns[0].places))):
             batches, apart = self._together(columns, places)
-            found.batches.extend(batches)
+            found += batches
             for row in apart.tolist():
-                self._bind_alone(row, [column.text(row) for column in columns], found)
-        return found
+                alone = self._alone([column.text(row) for column in columns])
+                if isinstance(alone, str):
+                    failures[row] = alone
+                else:
+                    found.append(Batch(alone, [row]))
+        return found, failures
 
     def _with(self, texts: Sequence[str]) -> Origin:
         """Return the file with these texts under the keys."""
@@ -115,27 +112,26 @@ class Binder:
         case = texts[0] if self._cases else self._origin.case
         return self._origin._replace(case=case, varied=given[self._cases :])
 
-    def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
-        """Add the machine of one row, or the reason why there is none."""
+    def _alone(self, texts: Sequence[str]) -> Machine | str:
+        """Return the machine of one row, or the reason why there is none."""
         reading = reading_of(self._origin)
         try:
-            machine = read_values(self._with(texts), reading).made
+            machine: Machine = read_values(self._with(texts), reading).made
         except UsageError as error:
-            found.failures[row] = str(error)
+            return str(error)
         except MachineFileError:
             faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
-            found.failures[row] = "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
-        else:
-            found.batches.append(Batch(machine, [row]))
+            return "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
+        return machine
 
-    def _together(self, columns: Sequence[Column], places: Indices) -> tuple[list[Batch], Indices]:
+    def _together(self, columns: Sequence[KeyColumn], places: Indices) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
         try:
             self._read(tuple("" if number else one.text(places[0]) for one, number in zip(columns, self._numeric)))
             numeric = [one.numbers[one.places[places]] for one, number in zip(columns, self._numeric) if number]
             within = np.ones(len(places), dtype=bool)
             for numbers, slots in zip(numeric, self._slots):
-                within &= slots[0].number.within(numbers)
+                within &= slots[0][2].within(numbers)
             for numbers, slots in zip(numeric, self._slots):
                 for given, name, number in slots:
                     given.values[name] = number.of_numbers(numbers[within])
@@ -170,12 +166,8 @@ class Binder:
         self._words, self._root = words, every[-1]
 
 
-class _Slot(NamedTuple):
-    """A mapping, and the name of a key of it, that has a number of this form."""
-
-    given: Given
-    name: str
-    number: NumberForm
+_Slot = tuple[Given, str, NumberForm]
+"""A mapping, and the name of a key of it, that has a number of this form."""
 
 
 def _slots(path: Path, every: Sequence[Given]) -> list[_Slot]:
@@ -184,11 +176,8 @@ def _slots(path: Path, every: Sequence[Given]) -> list[_Slot]:
     number = owner.form.keys[name].form.number
     if number is None:
         raise UsageError(f"{path_text(path)}: no number")
-    return [
-        _Slot(one, name, number)
-        for one in every
-        if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)
-    ]
+    alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
+    return [(one, name, number) for one in alike]
 
 
 def numbers_of(one: Input, kind: str) -> Array:

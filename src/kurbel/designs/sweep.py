@@ -19,7 +19,7 @@ import numpy as np
 
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.designs.answers import Cell, Design, Found, Head, Study, Value, is_slow
-from kurbel.designs.binding import Column, numbers_of
+from kurbel.designs.binding import KeyColumn, numbers_of
 from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.cylinder import gathered, work_alike
@@ -154,9 +154,9 @@ class Sweep:
             cells.append([one if math.isfinite(one) else column.text(row) for row, one in each])
         return zip(*cells)
 
-    def _columns(self, rows: Sequence[int]) -> list[Column]:
+    def _columns(self, rows: Sequence[int]) -> list[KeyColumn]:
         """Return the values of the keys in these rows, counted from 0."""
-        return list(map(Column, self.plan.inputs, self._numbers, self.plan.places(np.array(rows))))
+        return list(map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows))))
 
     def _texts(self, found: Found) -> tuple[str, ...]:
         failure = found.failure or "; ".join(found.unjudged)

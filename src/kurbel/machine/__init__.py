@@ -15,7 +15,16 @@ from typing import Any
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
+from kurbel.declared.forms.figures import (
+    EXPECTATIONS,
+    LIMITS,
+    MACHINE,
+    SETTINGS,
+    UNCERTAINTIES,
+    Bound,
+    Expected,
+    scoped,
+)
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, shown
@@ -283,7 +292,7 @@ class Machine(Record):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
-                    written = getattr(figure, "name", "") or id
+                    written = (figure.name if isinstance(figure, (Bound, Expected)) else "") or id
                     message = f"no cylinder is called '{shown(scope)}'{hint}"
                     yield Rule((key, written), True, message, at_key=True)
 

@@ -59,7 +59,7 @@ class ShaftPart(Record):
         "length", "Diameter of a shaft segment; if a stiffness is given, used for the stress only", "d", above=0
     )
     length: float | None = field(
-        "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs=("diameter")
+        "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs="diameter"
     )
     bore: float | None = field("length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter")
     shear_modulus: float | None = field(

@@ -10,11 +10,9 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
-from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Node, Reading
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
-from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.measured import Columns
 from kurbel.numerics.arithmetic import is_whole, some
 from kurbel.traces.correct import CYCLES
@@ -266,29 +264,15 @@ class InUnit(float):
     """A bare number in the unit of the key `unit`."""
 
 
-class _MeanTorque(OneOf):
-    """A mean torque with its unit, or as a bare number in the unit of the diagram, which becomes `InUnit`."""
-
-    def __init__(self) -> None:
-        super().__init__(NumberForm("torque"), NumberForm("ratio"))
-        self.number = None
-
-    def kind_as_written(self, text: Node | None) -> str:
-        """Return `ratio` of a bare number, else `torque`."""
-        return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
-
-    def take(self, reading: Reading, value: Node, path: Path) -> object:
-        """Read it as what it looks like."""
-        bare = self.kind_as_written(value) == "ratio"
-        found = self.forms[bare].read(reading, value, path)
-        return InUnit(found) if bare and isinstance(found, float) else found
-
-
 UNIT = alternative(unit_name("torque"), "Unit of the torques")
 POINTS = alternative(
     Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
 )
-MEAN = alternative(_MeanTorque(), "Mean torque with its unit, or bare in that of the harmonics", "M_m")
+MEAN = alternative(
+    OneOf(NumberForm("torque"), NumberForm("ratio", becomes=lambda number, _: InUnit(number))),
+    "Mean torque with its unit, or bare in that of the harmonics",
+    "M_m",
+)
 HARMONICS = alternative(
     Points("order", "cos", "sin", least=1),
     "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",

@@ -63,7 +63,9 @@ class Parser:
         self.values: dict[Path, Place] = {}
         self._path: list[Step] = []
         self._scalars = 0
-        self._events: Iterator[yaml.Event] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        self._events: Iterator[yaml.Event] = yaml.parse(
+            text, Loader=yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+        )
 
     def document(self) -> Node:
         """Return the tree of the only document."""

@@ -282,6 +282,6 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
 
 def _differing_keys(found: Layout, given: Layout) -> list[str]:
     """Return the keys that make the given layout that which was found."""
-    keys = {"skip_rows": found.skip_rows, "delimiter": found.delimiter, "decimal": found.decimal}
-    written = [f"'{key}: {value}'" for key, value in keys.items() if value != getattr(given, key)]
+    now, before = found._asdict(), given._asdict()
+    written = [f"'{key}: {now[key]}'" for key in ("skip_rows", "delimiter", "decimal") if now[key] != before[key]]
     return written if found.columns == given.columns else [*written, f"'pressure_column: {found.columns[0]}'"]

@@ -15,7 +15,7 @@ import numpy as np
 from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
 from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
-from kurbel.declared.numerals import NUMBER
+from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import (
     REFUSED,
     Node,
@@ -335,7 +335,10 @@ class Listing(Form):
 
 
 class OneOf(Form):
-    """Several forms that differ in shape (text, list, mapping) or are word and number; the first that fits is used."""
+    """Several forms: the first that has the shape of a value (text, list, mapping) and suits what a text looks like.
+
+    A text is a word, a number with its unit, or a bare number.
+    """
 
     def __init__(self, *forms: Form) -> None:
         expected = ", or ".join(form.expected for form in forms)
@@ -343,7 +346,8 @@ class OneOf(Form):
         super().__init__(expected, forms[0].example, written, parts=[("", form) for form in forms])
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
-        self.number = next((form.number for form in forms if form.number), None)
+        numbers = [form.number for form in forms if form.number]
+        self.number = numbers[0] if len(numbers) == 1 else None
         self.unread = next((form.unread for form in forms if form.unread is not None), None)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
@@ -354,13 +358,22 @@ class OneOf(Form):
             if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
-        shape = type(value) if isinstance(value, (dict, list)) else str
-        alike = [form for form in self.forms if form.shape is shape]
-        # a word or a number: by what the text looks like
-        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value)))]
-        for form in suiting or alike:
+        for form in self._fitting(value):
             return form.read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+
+    def kind_as_written(self, value: Node | None) -> str:
+        """Return the kind of the number that is written in this way."""
+        return next((form.kind for form in self._fitting(value) if form.kind), self.kind)
+
+    def _fitting(self, value: Node | None) -> list[Form]:
+        """Return the forms that have the shape of a value, or look like it; all of its shape if none does."""
+        shape = type(value) if isinstance(value, (dict, list)) else str
+        alike = [form for form in self.forms if form.shape is shape]
+        text = plain(value) if isinstance(value, str) else ""
+        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(text))]
+        bare = NUMBER.fullmatch(text) is not None
+        return [form for form in suiting if (form.kind == "ratio") == bare] or suiting or alike
 
 
 class Keyed(Form):

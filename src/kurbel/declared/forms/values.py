@@ -62,7 +62,7 @@ class Form(ABC):
         self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
         self.written = written or (expected if self.shape is str else "a mapping")
 
-    def kind_as_written(self, text: Node | None) -> str:
+    def kind_as_written(self, value: Node | None) -> str:
         """Return the kind of the number that is written in this way, '' if it is no number."""
         return self.kind
 
