@@ -6,7 +6,7 @@ is each row that breaks a rule, for its message.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import combinations
 from typing import NamedTuple
@@ -25,9 +25,8 @@ from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageE
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import dotted, leaves, path_of, set_over, tree_of, value_at
-from kurbel.machine_file.reader import read_tree, read_values, reading_of
+from kurbel.machine_file.overrides import dotted, leaves, path_of, tree_of, value_at
+from kurbel.machine_file.reader import read_values, reading_of
 from kurbel.near_words import did_you_mean
 
 INFINITE = "infinite"
@@ -82,8 +81,7 @@ class Binder:
             bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
-        self._words: tuple[str, ...] | None = None
-        self._slots: list[list[_Slot]] = []
+        self._words, self._root = self._structure(start), root
 
     def columns(self, numbers: Array) -> list[KeyColumn]:
         """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
@@ -124,60 +122,46 @@ class Binder:
             return "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
         return machine
 
+    def _structure(self, texts: Iterable[str]) -> list[str]:
+        """Return the texts of a row that are words, and those of the first machine in place of numbers."""
+        return [one if number else text for text, one, number in zip(texts, self._start, self._numeric)]
+
     def _together(self, columns: Sequence[KeyColumn], places: Indices) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
+        within = np.ones(len(places), dtype=bool)
+        slots: list[tuple[Given, str, NumberForm, Array]] = []
         try:
-            self._read(tuple("" if number else one.text(places[0]) for one, number in zip(columns, self._numeric)))
-            numeric = [one.numbers[one.places[places]] for one, number in zip(columns, self._numeric) if number]
-            within = np.ones(len(places), dtype=bool)
-            for numbers, slots in zip(numeric, self._slots):
-                within &= slots[0][2].within(numbers)
-            for numbers, slots in zip(numeric, self._slots):
-                for given, name, number in slots:
-                    given.values[name] = number.of_numbers(numbers[within])
-            read = places[within]
-            maker = Maker(Reading(), len(read))
+            words = self._structure(column.text(places[0]) for column in columns)
+            if words != self._words:
+                self._words, self._root = words, read_values(self._with(words), reading_of(self._origin))
+            every = list(_every(self._root))
+            for column in (column for column, is_number in zip(columns, self._numeric) if is_number):
+                owner, name, _ = _owner(path_of(column.input.key), every)
+                number = owner.form.keys[name].form.number
+                if number is None:
+                    return [], places
+                numbers = column.numbers[column.places[places]]
+                within &= number.within(numbers)
+                # a cylinder that is `like` the one of a key gets its numbers, too
+                text = owner.mapping.get(name)
+                alike = (one for one in every if _reads(one, name) and one.mapping.get(name) is text)
+                slots += [(one, name, number, numbers) for one in alike]
+            for one, name, number, numbers in slots:
+                one.values[name] = number.of_numbers(numbers[within])
+            maker = Maker(Reading(), int(within.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(self._root)
-            if maker.reading.faults or not len(read):
+            if maker.reading.faults or not within.any():
                 return [], places
         # a formula works for a single machine only
         except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
             return [], places
-        batches = []
+        read, batches = places[within], []
         for fit in _structures(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
             batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
             batches.append(Batch(batch, read[fit].tolist()))
         return batches, np.concatenate([places[~within], read[maker.broken]])
-
-    def _read(self, words: tuple[str, ...]) -> None:
-        """Read the file with these words, '' for a number, and find where the numbers belong; raises KurbelError."""
-        if words == self._words:
-            return
-        origin = self._with([word or one for word, one in zip(words, self._start)])
-        reading = reading_of(origin)
-        tree = parse(origin.text, reading)
-        set_over(tree, origin)
-        every = list(_every(read_tree(tree, origin, reading)))
-        if reading.faults:
-            raise KurbelError
-        self._slots = [_slots(path_of(key), every) for key, number in zip(self._keys, self._numeric) if number]
-        self._words, self._root = words, every[-1]
-
-
-_Slot = tuple[Given, str, NumberForm]
-"""A mapping, and the name of a key of it, that has a number of this form."""
-
-
-def _slots(path: Path, every: Sequence[Given]) -> list[_Slot]:
-    """Return where the number of a key belongs, also in cylinders that are `like` its own; raises UsageError."""
-    owner, name, _ = _owner(path, every)
-    number = owner.form.keys[name].form.number
-    if number is None:
-        raise UsageError(f"{path_text(path)}: no number")
-    alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
-    return [(one, name, number) for one in alike]
 
 
 def numbers_of(one: Input, kind: str) -> Array:
