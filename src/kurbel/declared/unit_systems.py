@@ -1,21 +1,21 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, Union
 
 from kurbel.arrays import Array
 from kurbel.declared.units import KINDS, unit_factor, zero_of
 
-SYSTEMS: dict[str, dict[str, Any]] = {
-    "si": {name: kind.si for name, kind in KINDS.items()},
+SI = {name: kind.si for name, kind in KINDS.items()}
+SYSTEMS: dict[str, Mapping[str, Union[str, tuple[str, ...]]]] = {
+    "si": SI,
     "metric": {name: kind.metric or kind.si for name, kind in KINDS.items()},
     "technical": {name: kind.technical or kind.si for name, kind in KINDS.items()},
     "imperial": {name: kind.imperial or kind.si for name, kind in KINDS.items()},
 }
 """Unit system -> kind -> the unit in which results are shown, or several, chosen by size."""
-SI: dict[str, str] = SYSTEMS["si"]
 _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3, "m^3/h": 10 / 3600}
 """Larger unit -> base value from which it is used, if that is not 1 of the unit itself."""
 

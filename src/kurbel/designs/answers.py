@@ -99,7 +99,7 @@ def requested_answers(
     return tuple(part for each in once.values() for part in each)
 
 
-def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
+def _named(case: Case, name: str, option: str) -> list[tuple[Answer, object]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
     prefix, _, own = name.rpartition(".")
@@ -115,7 +115,7 @@ def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
 
 
-def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
+def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, object]]:
     """Yield a key value of every subject of a command that has it, or of its owner; without id all that it prints.
 
     Each comes with its value for this machine, or the error, since other designs may have a value.
@@ -124,7 +124,7 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
         for quantity in subject.lists.key_values(command).values():
             if owner not in ("", subject.name) or (quantity.id != id if id else quantity.residual):
                 continue
-            value: Any
+            value: object
             try:
                 value = subject.answer(quantity) if id or subject.is_printed(quantity) else None
             except KurbelError as error:

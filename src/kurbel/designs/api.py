@@ -21,7 +21,7 @@ from kurbel.machine_file.reader import machine_of
 
 def sweep(
     machine: Machine | str | os.PathLike[str],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, object],
     columns: Sequence[str] | str = (),
     with_angles: bool = False,
 ) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
+def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
     """Yield the inputs with their values; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)

@@ -7,7 +7,7 @@ rounding. Where a key value is too nonlinear over the width of an uncertainty, a
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,7 +40,7 @@ _ROUNDING = 1e-9
 
 Spreads = Sequence[tuple[str, str]]
 """Dotted keys, each with its standard uncertainty as a text."""
-Counted = Callable[[Sequence[Any]], Iterable[Any]]
+Counted = Callable[[Sequence[Array]], Iterable[Array]]
 """Yields what it is given, and may report the progress."""
 
 _NOISE = 1e-12

@@ -2,11 +2,10 @@
 
 import functools
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Truth
+from kurbel.arrays import Number, Truth
 from kurbel.declared.forms.values import Choice
 from kurbel.declared.record import Record, Rule, alternative, field
 
@@ -124,7 +123,7 @@ class Crankshaft(Record):
         if self.journal_length is None:
             return
         has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
-        rooms: dict[str, Any] = {
+        rooms: dict[str, Number] = {
             "the middle of bearing A and web A": self.a - self._web_end,
             "the middle of bearing B and web B": np.inf if self.overhung else self.b - self._web_end,
             "the middle of bearing A and half the way to B": self.span / 2 if self.overhung else np.inf,

@@ -261,10 +261,9 @@ Chamber = Union[Rectangle, Card, IdealCard, Trace]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
-def _loaded(chamber: Any) -> Any:
+def _loaded(chamber: object) -> object:
     """Return a card as it is with its valves at work, for the other end."""
-    unloaded = isinstance(chamber, Compressor) and chamber.unloaded
-    return replace(chamber, unloaded=False) if unloaded else chamber
+    return replace(chamber, unloaded=False) if isinstance(chamber, Compressor) and chamber.unloaded else chamber
 
 
 class Indicator(Record):

@@ -59,7 +59,7 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides))
 
 
-def machine_of(given: Any) -> Machine:
+def machine_of(given: object) -> Machine:
     """Return the machine: given itself, as the path of a file, or as a text; raises UsageError for anything else.
 
     A text has several lines, or braces, or a colon followed by a blank; a path has none of these.

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Truth
+from kurbel.arrays import Array, Flags, Number, Truth
 from kurbel.declared.numerals import NUMBER, parse_number, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
@@ -49,7 +49,7 @@ class Form(ABC):
     kind: str = ""
     number: "NumberForm | None" = None
     unread: object = None
-    inline: tuple[Any, ...] = ()
+    inline: "tuple[Form, ...]" = ()
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ def one_line(value: Node, expected: str) -> str:
     return value if value.strip() else refused(f"expected {expected}, got an empty text")
 
 
-def _beyond(value: Any, kind: str) -> tuple[tuple[Truth, str], ...]:
+def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
     """Return whether a value in the base of its kind, or which of many, is too large or too small for machine files."""
     smallest, largest, *_ = KINDS[kind]
     return (~(np.abs(value) <= largest), "large"), ((value != 0) & (np.abs(value) < smallest), "small")
@@ -230,7 +230,7 @@ class NumberForm(Form):
             beyond |= broken
         return np.isin(values, list(self.words.values())) | ~beyond
 
-    def _bounds(self, value: Any) -> Iterator[tuple[Truth, float, str, str]]:
+    def _bounds(self, value: Number) -> Iterator[tuple[Truth, float, str, str]]:
         """Yield whether a number, or which of many, breaks a bound, and what it then is and must be."""
         counts = (value != 0) | (not self.zero)
         if self.above is not None:
