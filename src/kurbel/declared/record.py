@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Truth
-from kurbel.declared.forms.structures import form_of
+from kurbel.declared.forms.structures import Likeness, form_of
 from kurbel.declared.keys import Key, Record, Rule, Values
 
 __all__ = ["Entry", "Record", "Rule", "Values", "alternative", "field", "first_of"]
@@ -30,7 +30,9 @@ def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
         before = before | rule.broken
 
 
-def field(form: Any, text: str, symbol: str = "", *, default: object = None, absent: str = "", **more: Any) -> Entry:
+def field(
+    form: Likeness, text: str, symbol: str = "", *, default: object = None, absent: str = "", **more: Any
+) -> Entry:
     """Declare an attribute of a record that is an entry of the machine file.
 
     form: see `form_of`; text: its meaning in one sentence; symbol: of the textbooks; default: its value if the file has
@@ -52,7 +54,7 @@ def field(form: Any, text: str, symbol: str = "", *, default: object = None, abs
     return dataclasses.field(default=dataclasses.MISSING if missing else default, metadata={"key": declared})
 
 
-def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
+def alternative(form: Likeness, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
     """Declare an entry that is no attribute: `gives` takes all values by key and returns the attributes it determines.
 
     key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and

@@ -5,7 +5,6 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, Union
 
-from kurbel.arrays import Array
 from kurbel.declared.units import KINDS, unit_factor, zero_of
 
 SI = {name: kind.si for name, kind in KINDS.items()}
@@ -69,12 +68,6 @@ def convert(value: Any, kind: str, unit: str) -> Any:
     up, down = unit_factor(unit, kind)
     value, zero = value if up == down else value / up * down, zero_of(unit)
     return value - zero if zero else value
-
-
-def in_base(values: Array, kind: str, unit: str) -> Array:
-    """Return numbers in a unit, '' or '%' of a bare number, in the base of their kind; raises UnitError."""
-    up, down = (1, 100) if (kind, unit) == ("ratio", "%") else unit_factor(unit, kind)
-    return (values + zero_of(unit)) * up / down
 
 
 def show(value: float, kind: str, figures: int = 6) -> str:

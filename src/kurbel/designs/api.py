@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.unit_systems import SI
-from kurbel.designs.answers import Design
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
@@ -45,7 +44,17 @@ def sweep(
     names = (columns,) if isinstance(columns, str) else tuple(columns)
     axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
     found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
-    return _arrays(found, list(rows_of(found, range(found.rows))))
+    rows = list(rows_of(found, range(found.rows)))
+    arrays: dict[str, Any] = {}
+    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
+        if not head.input:
+            listed = any(isinstance(one, tuple) for one in values)
+            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
+    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
+    arrays["failure"] = np.array(texts["failure"])
+    if "keeps" in texts:
+        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
+    return arrays
 
 
 def find(
@@ -103,16 +112,3 @@ def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
             yield Input(key, (), tuple(values), SI.get(kind, ""))
         else:
             yield Input(key, tuple(map(str, values)))
-
-
-def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
-    arrays: dict[str, Any] = {}
-    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
-        if not head.input:
-            listed = any(isinstance(one, tuple) for one in values)
-            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
-    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
-    arrays["failure"] = np.array(texts["failure"])
-    if "keeps" in texts:
-        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
-    return arrays

@@ -18,8 +18,8 @@ from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
 from kurbel.declared.reading import Reading, StopReading, Tree, shown
-from kurbel.declared.unit_systems import SI, in_base
-from kurbel.declared.units import parse_quantity
+from kurbel.declared.unit_systems import SI
+from kurbel.declared.units import parse_quantity, unit_factor, zero_of
 from kurbel.designs.plan import Input
 from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageError, path_text
 from kurbel.machine import Machine
@@ -174,7 +174,9 @@ def numbers_of(one: Input, kind: str) -> Array:
         return np.array([known.get(text, math.nan) for text in one.texts])
     with suppress(UnitError):
         if kind:
-            return in_base(np.array(one.numbers, dtype=float), kind, one.unit)
+            share = kind == "ratio" and one.unit == "%"
+            up, down = (1, 100) if share else unit_factor(one.unit, kind)
+            return (np.array(one.numbers, dtype=float) + zero_of(one.unit)) * up / down
     return np.full(one.length, math.nan)
 
 

@@ -4,7 +4,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
 from kurbel.quantity import called
 
-_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
+_RELATIONS: dict[str, Callable[..., bool]] = {
     "<=": operator.le,
     ">=": operator.ge,
     "!=": operator.ne,
@@ -47,7 +47,7 @@ class Condition(NamedTuple):
         """Return whether it holds; a row without that value keeps no condition."""
         value = (*row.values, *row.texts)[self.place]
         known = value if isinstance(self.value, str) else _number(value)
-        return known is not None and bool(_RELATIONS[self.relation](known, self.value))
+        return known is not None and _RELATIONS[self.relation](known, self.value)
 
 
 def parts_of(text: str) -> tuple[str, str, str]:

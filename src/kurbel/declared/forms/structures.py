@@ -8,7 +8,7 @@ import functools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Union
 
 import numpy as np
 
@@ -235,7 +235,7 @@ class Maker:
             return tuple(map(self.made, value))
         return value
 
-    def _record(self, form: RecordForm, values: dict[str, object]) -> Any:
+    def _record(self, form: RecordForm, values: dict[str, object]) -> object:
         """Return the record of values by key; REFUSED if one could not be read, after judging the others.
 
         For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
@@ -419,7 +419,11 @@ class Keyed(Form):
         return REFUSED if others else inner
 
 
-def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
+Likeness = Union[str, type, tuple[str, ...], list["Likeness"], Form]
+"""What a form may be declared by: see `form_of`."""
+
+
+def form_of(form: Likeness, bounds: Mapping[str, Any] = {}) -> Form:
     """Return the form of a key's value: a kind of quantity with its bounds, a type, words, a record, a list of one.
 
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that mean numbers.
