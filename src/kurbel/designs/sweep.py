@@ -22,10 +22,10 @@ from kurbel.designs.answers import Cell, Design, Found, Head, Study, Value, is_s
 from kurbel.designs.binding import KeyColumn, numbers_of
 from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
-from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
 from kurbel.report.alike import grouped, together
+from kurbel.solver.case import Case
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""
@@ -95,8 +95,7 @@ class Sweep:
         heads = [(head.id, place) for place, head in enumerate(self.heads)]
         if self.spec.cases or any(re.match(r"cylinders\W*\d", key) for key in self._keys):
             return heads
-        groups = gathered(self._study.binder.machine.cylinders, work_alike)
-        alike = {one.name: number for number, group in enumerate(groups) for one in group}
+        alike = {one.drive.name: one.twin or one for one in Case(self._study.binder.machine).cylinders}
         count, answers = len(self._keys), self._study.answers
 
         def content(place: int) -> Hashable:

@@ -1,6 +1,7 @@
 """Forms of values: numbers with their units and bounds, words, other texts of one line, lists of points."""
 
 import math
+import operator
 import os
 import re
 from abc import ABC, abstractmethod
@@ -233,14 +234,14 @@ class NumberForm(Form):
     def _bounds(self, value: Number) -> Iterator[tuple[Truth, float, str, str]]:
         """Yield whether a number, or which of many, breaks a bound, and what it then is and must be."""
         counts = (value != 0) | (not self.zero)
-        if self.above is not None:
-            yield counts & (value <= self.above), self.above, "small", "more than"
-        if self.least is not None:
-            yield counts & (value < self.least), self.least, "small", "at least"
-        if self.below is not None:
-            yield counts & (value >= self.below), self.below, "large", "less than"
-        if self.most is not None:
-            yield counts & (value > self.most), self.most, "large", "at most"
+        for bound, breaks, too, must in (
+            (self.above, operator.le, "small", "more than"),
+            (self.least, operator.lt, "small", "at least"),
+            (self.below, operator.ge, "large", "less than"),
+            (self.most, operator.gt, "large", "at most"),
+        ):
+            if bound is not None:
+                yield counts & breaks(value, bound), bound, too, must
 
 
 class Choice(Form):
