@@ -38,7 +38,17 @@ from kurbel.machine.origin import Origin
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, KnownEffort, Load, Swing
+from kurbel.machine.turning import (
+    MOST_TURNS,
+    Coupling,
+    Effort,
+    Flywheel,
+    Known,
+    KnownEffort,
+    Load,
+    Swing,
+    rules_of_cycle,
+)
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace
@@ -262,8 +272,7 @@ class Machine(Record):
             yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
-            if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
-                yield Rule((key, diagram.key), True, message)
+            yield from (rule.below(key) for rule in rules_of_cycle(diagram, self._common_cycle, self.revolutions))
         if isinstance(self.effort, Swing):
             message = "needs the effort over the angle; of this one the swing of energy alone is given"
             yield Rule("load", self.load is not None and self.load.varies, message)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -194,22 +194,6 @@ class Effort:
     files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        last, whole = self.angles[-1], 360.0 * turns
-        if whole % last == 0:  # one of a single turn repeats in the second one of a four-stroke cycle
-            return ""
-        name, four = f"a {cycle} cycle", turns < 2 and last == 720
-        if turns != CYCLES[cycle]:
-            name = "the cycle"
-        write = "cycle: four-stroke" if four else f"cycle_turns: {last / 360:g}"
-        return f"the diagram runs to {last:g} deg, {name} has {whole:g} deg; write '{write}' at the top"
-
-    @property
-    def key(self) -> str:
-        """The key of the torques in the machine file."""
-        return "file" if self.files else "points"
-
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
@@ -220,16 +204,6 @@ class Harmonics:
 
     mean: float
     terms: tuple[tuple[float, float, float], ...]
-
-    key: ClassVar[str] = "harmonics"
-
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        for order, _, _ in self.terms:
-            if not is_whole(order * turns):
-                name = f"a {cycle} cycle" if turns == CYCLES[cycle] else f"{turns} turns"
-                return f"order {order:g} does not repeat after {name}; orders count periods per turn"
-        return ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,12 +217,6 @@ class Swing:
     coefficient: float | None = None
     mean: float | None = None
 
-    key: ClassVar[str] = "swing"
-
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return an empty text: it fits every cycle."""
-        return ""
-
     def energy(self, turns: int) -> Any:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
         return (
@@ -258,6 +226,21 @@ class Swing:
 
 Known = Effort | Harmonics | Swing
 """A turning effort that is known from elsewhere."""
+
+
+def rules_of_cycle(diagram: Known | None, cycle: str, turns: int) -> Iterator[Rule]:
+    """Yield what in a diagram does not fit the cycle of the machine, of so many turns of the shaft."""
+    name = f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
+    if isinstance(diagram, Effort):
+        last, whole = diagram.angles[-1], 360.0 * turns
+        write = "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        ends = f"the diagram runs to {last:g} deg, {name or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
+        # one of a single turn repeats in the second one of a four-stroke cycle
+        yield Rule("file" if diagram.files else "points", whole % last != 0, ends)
+    if isinstance(diagram, Harmonics):
+        order = next((order for order, _, _ in diagram.terms if not is_whole(order * turns)), 0)
+        again = f"order {order:g} does not repeat after {name or f'{turns} turns'}; orders count periods per turn"
+        yield Rule("harmonics", order > 0, again)
 
 
 class InUnit(float):
@@ -336,7 +319,8 @@ class Load(Record):
         yield harmonics_need_a_unit(given)
 
     def rules(self) -> Iterator[Rule]:
-        forms = {"power_law": self.power, "slip": self.slip, self.key: self.diagram}
+        by = "harmonics" if isinstance(self.diagram, Harmonics) else "points"
+        forms = {"power_law": self.power, "slip": self.slip, by: self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
         yield Rule((), not given, message)
@@ -347,11 +331,6 @@ class Load(Record):
     def varies(self) -> bool:
         """Whether it varies over the turn or with the speed."""
         return self.diagram is not None or self.slip is not None or some(self.power != 0)
-
-    @property
-    def key(self) -> str:
-        """The key of the torques in the machine file."""
-        return self.diagram.key if self.diagram else "points"
 
 
 class KnownEffort(Columns):
