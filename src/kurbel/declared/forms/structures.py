@@ -124,10 +124,13 @@ class RecordForm(Form):
         return moved
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
-        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
+        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline.
+
+        What is NaN could not be read, and has been reported.
+        """
         unless = self.listed.unless if self.listed else ""
         faults = []
-        for fault in error.faults:
+        for fault in (one for one in error.faults if not isinstance(one, NotANumber)):
             name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
@@ -240,21 +243,20 @@ class Maker:
 
         For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
         """
-        unread = [
-            name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
-        ]
-        stand_ins = {name: form.keys[name].form.unread for name in unread}
-        if None in stand_ins.values():  # nothing can be in place of a word or a mapping
+        unread = {
+            name: form.keys[name].form.unread
+            for name, one in values.items()
+            if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
+        }
+        if None in unread.values():  # nothing can be in place of a word or a mapping
             raise RuleError(*form.record.faults_of_some(values))
-        if stand_ins:
-            try:
-                form.record.from_keys(**(values | stand_ins))
-            except RuleError as error:
-                raise RuleError(*(one for one in error.faults if not isinstance(one, NotANumber))) from None
-            except (ArithmeticError, ValueError):  # a formula that takes no nan
-                pass
+        try:
+            record = form.record.from_keys(**(values | unread))
+        except (ArithmeticError, ValueError):
+            if not unread:  # else a formula takes no nan
+                raise
+        if unread:
             return REFUSED
-        record = form.record.from_keys(**values)
         extreme = too_extreme(record, values)
         if len(self.broken):
             rules = [*form.record.rules_of_keys(values), *(record.rules() if isinstance(record, Record) else ())]
