@@ -147,11 +147,6 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-def _in_order(record: "type[Record]") -> list[Field[object]]:
-    """Return the attributes in the order of positional arguments: first those without a default."""
-    return sorted(fields(record), key=lambda one: one.default is not MISSING)
-
-
 @dataclass_transform(frozen_default=True, eq_default=False)
 class Record:
     """A record of the machine file; each entry is declared once, by `field` or `alternative`.
@@ -173,22 +168,18 @@ class Record:
                 own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
         cls.KEYS = own
         dataclass(init=False, repr=False, eq=False)(cls)
+        # positional arguments: first those without a default
+        each = sorted(fields(cls), key=lambda one: one.default is not MISSING)
         kind, none = Parameter.POSITIONAL_OR_KEYWORD, Parameter.empty
+        defaults = [none if one.default is MISSING else one.default for one in each]
         cls.__signature__ = Signature(
-            [
-                Parameter(one.name, kind, default=none if one.default is MISSING else one.default, annotation=one.type)
-                for one in _in_order(cls)
-            ]
+            [Parameter(one.name, kind, default=default, annotation=one.type) for one, default in zip(each, defaults)]
         )
 
     def __init__(self, *values: object, **named: object) -> None:
-        defaults = {one.name: one.default for one in _in_order(type(self))}
-        given = {**dict(zip(defaults, values)), **named}
-        wrong = [name for name in given if name not in defaults]
-        wrong += [name for name, default in defaults.items() if default is MISSING and name not in given]
-        if wrong or len(values) > len(defaults):
-            raise TypeError(f"{type(self).__name__} takes the values {', '.join(defaults)}; see {', '.join(wrong)}")
-        vars(self).update(defaults | given)
+        given = self.__signature__.bind(*values, **named)
+        given.apply_defaults()
+        vars(self).update(given.arguments)
         try:
             refuse(*self._faults())
         except ArithmeticError:
