@@ -162,10 +162,15 @@ class Record:
     def __init_subclass__(cls) -> None:
         own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
         for name, value in vars(cls).items():
-            key = value.metadata.get("key") if isinstance(value, Field) else value
-            if isinstance(key, Key):
-                attribute = name if isinstance(value, Field) else ""
-                own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
+            if isinstance(value, Key):
+                own[value.attribute or name.lstrip("_")] = value._replace(attribute="")
+            elif isinstance(value, Field):
+                if value.default is MISSING and "None" in str(cls.__annotations__[name]):
+                    value.default = None
+                key: Key = value.metadata["key"]
+                # one of two alternatives, or a word with a default of its own, may be missing
+                missing = value.default is MISSING and not key.instead and not key.form.inline
+                own[key.attribute or name] = key._replace(attribute=name, required=missing)
         cls.KEYS = own
         dataclass(init=False, repr=False, eq=False)(cls)
         # positional arguments: first those without a default

@@ -68,11 +68,10 @@ def _names(cylinders: Sequence[Cylinder] | EqualCylinders) -> list[str]:
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
-    name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
+    name: str = field(str, "Name of the case, for `--case`", example="full load")
     values: tuple[tuple[str, object], ...] = field(
         SETTINGS,
         "Values instead of those of the file, by dotted key",
-        required=True,
         example="{speed: 40 rpm}",
         key="set",
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -64,7 +63,6 @@ class Cylinder(Record):
     mechanism: Mechanism = field(
         Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
         "Kind of crank mechanism",
-        default=dataclasses.MISSING,
         absent="slider-crank",
     )
     name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")

@@ -29,7 +29,7 @@ _HIGHEST = 1000
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
-    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
+    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, example="3 m")
     _outer_diameter = alternative(
         "length",
         "Outer diameter of the rim",
@@ -419,8 +419,8 @@ def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 
-    stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
-    inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0, required=True)
+    stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0)
+    inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0)
     damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0)
 
 
