@@ -217,7 +217,7 @@ class Swing:
     coefficient: float | None = None
     mean: float | None = None
 
-    def energy(self, turns: int) -> Any:
+    def energy(self, turns: int) -> float | None:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
         return (
             self.swing if self.coefficient is None else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)

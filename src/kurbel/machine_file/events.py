@@ -163,7 +163,8 @@ class Parser:
         raise StopReading
 
 
-def _place_of(event: Any) -> Place:
+def _place_of(event: yaml.Event) -> Place:
+    assert event.start_mark
     return event.start_mark.line, event.start_mark.column
 
 
@@ -171,9 +172,10 @@ _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
 """A key without a space after its colon."""
 
 
-def explain(error: Any, lines: list[str]) -> Fault:
+def explain(error: yaml.MarkedYAMLError, lines: list[str]) -> Fault:
     """Return the fault for an error of the YAML scanner or parser, in a text of these lines."""
     mark = error.problem_mark or error.context_mark
+    assert mark
     opened = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete
     last = len(lines) - 1, len(lines[-1])
