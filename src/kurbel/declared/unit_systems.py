@@ -40,8 +40,11 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
     units = SYSTEMS[system][kind]
     if isinstance(units, str):
         return units
-    fitting = [unit for unit in units[1:] if abs(largest) >= _taken_from(unit, kind)]
-    return fitting[-1] if fitting else str(units[0])
+    for unit in reversed(units[1:]):
+        up, down = unit_factor(unit, kind)
+        if abs(largest) >= _TAKEN_FROM.get(unit, up / down):
+            return unit
+    return units[0]
 
 
 def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
@@ -54,11 +57,6 @@ def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
     for kind, family, size in sized:
         largest[kind, family] = max(size, largest.get((kind, family), 0.0))
     return [shown_unit(kind, system, largest[kind, family]) for kind, family, _ in sized]
-
-
-def _taken_from(unit: str, kind: str) -> float:
-    up, down = unit_factor(unit, kind)
-    return _TAKEN_FROM.get(unit, up / down)
 
 
 def convert(value: Any, kind: str, unit: str) -> Any:

@@ -147,7 +147,7 @@ class Binder:
                 alike = (one for one in every if _reads(one, name) and one.mapping.get(name) is text)
                 slots += [(one, name, number, numbers) for one in alike]
             for one, name, number, numbers in slots:
-                one.values[name] = number.of_numbers(numbers[within])
+                one.values[name] = number.becomes(numbers[within], "") if number.becomes else numbers[within]
             maker = Maker(Reading(), int(within.sum()))
             with np.errstate(all="ignore"):
                 machine = maker.made(self._root)

@@ -209,10 +209,6 @@ class NumberForm(Form):
             refused(f"{int(text)} is not supported; it must be {self.least}")
         return int(text)
 
-    def of_numbers(self, numbers: object) -> object:
-        """Return what a number in the base of its kind, or those of many machines, becomes."""
-        return self.becomes(numbers, "") if self.becomes else numbers
-
     def out_of_bounds(self, value: Any) -> str:
         """Compare a number with the bounds.
 
