@@ -100,10 +100,14 @@ class Rule(NamedTuple):
     numbers: Values = MappingProxyType({})
     at_key: bool = False
 
+    @property
+    def path(self) -> Path:
+        """The place as a path."""
+        return self.place if isinstance(self.place, tuple) else (self.place,)
+
     def below(self, *path: Step) -> "Rule":
         """Return the rule with its place relative to an outer record."""
-        inner = self.place if isinstance(self.place, tuple) else (self.place,)
-        return self._replace(place=(*path, *inner))
+        return self._replace(place=(*path, *self.path))
 
     def fault(self, record: "Record | None" = None) -> Fault:
         """Return the fault, with numbers of the rule and entries of the record filled into its message."""
@@ -119,8 +123,7 @@ class Rule(NamedTuple):
                 return found[0]
             return str(value) if isinstance(value, str) else show(value, kind) if kind else f"{value:g}"
 
-        path = self.place if isinstance(self.place, tuple) else (self.place,)
-        return Fault(path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
+        return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
 
 
 def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
@@ -160,7 +163,7 @@ class Record:
     __signature__: ClassVar[Signature]
 
     def __init_subclass__(cls) -> None:
-        own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
+        own = dict(cls.KEYS)
         for name, value in vars(cls).items():
             if isinstance(value, Key):
                 own[value.attribute or name.lstrip("_")] = value._replace(attribute="")
@@ -195,9 +198,13 @@ class Record:
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
-        known = vars(self)
-        given = [f"{one.name}={known[one.name]!r}" for one in fields(self) if known[one.name] is not one.default]
+        given = (f"{name}={value!r}" for name, value in self._given().items())
         return f"{type(self).__name__}({', '.join(given)})"
+
+    def _given(self) -> dict[str, object]:
+        """Return the values that are not their defaults, by attribute."""
+        known = vars(self)
+        return {one.name: known[one.name] for one in fields(self) if known[one.name] is not one.default}
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
@@ -210,19 +217,13 @@ class Record:
 
     def _faults(self) -> list[Fault]:
         """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
-        keys = {name: key for name, key in self.KEYS.items() if key.attribute}
-        default = {one.name: one.default for one in fields(self)}
-        known = vars(self)
-        given = {name: known[one.attribute] for name, one in keys.items()}
-        given = {name: value for name, value in given.items() if value is not default[keys[name].attribute]}
+        keys, own = {name: key for name, key in self.KEYS.items() if key.attribute}, self._given()
+        given = {name: own[key.attribute] for name, key in keys.items() if key.attribute in own}
+        unknown = [name for name, one in given.items() if isinstance(one, float) and one != one]
         return (
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)
-            or [
-                NotANumber((name,), "nan is no number")
-                for name, one in given.items()
-                if isinstance(one, float) and one != one
-            ]
+            or [NotANumber((name,), "nan is no number") for name in unknown]
         )
 
     @classmethod
