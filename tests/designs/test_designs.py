@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs.plan import Plan, read_axis, read_input, shard
+from kurbel.declared.units import kinds, unit_names
+from kurbel.designs.binding import numbers_of
+from kurbel.designs.plan import Input, Plan, read_axis, read_input, shard
 from kurbel.errors import UsageError
 
 
@@ -43,6 +45,13 @@ def test_grid_list_and_sample() -> None:
     assert (drawn[:50, 1] == drawn[50:, 1]).all()
     # one in each of fifty strips of equal probability: the mean is that of the distribution far beyond chance
     assert abs(drawn[:50, 1].mean() - 10) < 0.02
+
+
+def test_a_number_in_a_unit_is_read_as_its_text() -> None:
+    for kind, unit in [("ratio", "%"), *((one, unit) for one in kinds() for unit in unit_names(one))]:
+        one = Input("x", (), (12.5, 3, 0.1, -2.25), unit)
+        texts = Input("x", tuple(map(one.text, range(4))))
+        assert numbers_of(one, kind).tobytes() == numbers_of(texts, kind).tobytes(), (kind, unit)
 
 
 def test_shards_are_the_whole() -> None:
