@@ -94,7 +94,7 @@ class Binder:
         found, failures = list[Batch](), dict[int, str]()
         words = [column.places for column, number in zip(columns, self._numeric) if not number]
         for places in _alike(words, np.arange(len(columns[0].places))):
-            batches, apart = self._together(columns, places)
+            batches, apart = self._together(columns, places) if len(places) > 1 else ([], places)
             found += batches
             for row in apart.tolist():
                 alone = self._alone([column.text(row) for column in columns])
