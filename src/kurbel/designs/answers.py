@@ -170,12 +170,10 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     """
     if any(one.command == "torsion" for one in requested):
         return True
-    pistons = [piston for one in machine.cylinders for piston in one.pistons]
-    cards = [chamber for piston in pistons for chamber in piston.chambers.values()]
     return any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders) or any(
         isinstance(one, Trace)
         or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
-        for one in cards
+        for one in machine.chambers
     )
 
 

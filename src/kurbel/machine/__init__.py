@@ -33,7 +33,7 @@ from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.crankshaft import BalanceShaft, Counterweight, Crankshaft, Locomotive, SharedCounterweights
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.ideal_cards import Diesel, Otto
-from kurbel.machine.indicator import Rectangle
+from kurbel.machine.indicator import Chamber, Rectangle
 from kurbel.machine.origin import Origin
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
@@ -334,11 +334,14 @@ class Machine(Record):
         return math.lcm(CYCLES[self._common_cycle], self.cycle_turns)
 
     @property
+    def chambers(self) -> list[Chamber]:
+        """What the indicators of all pistons show."""
+        return [chamber for one in self.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+
+    @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
-        measured = (*(chamber for piston in pistons for chamber in piston.chambers.values()), self.effort)
-        files = (one.files for one in measured if isinstance(one, (Trace, Effort)))
+        files = (one.files for one in (*self.chambers, self.effort) if isinstance(one, (Trace, Effort)))
         return tuple(dict.fromkeys(chain(*files)))
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:
