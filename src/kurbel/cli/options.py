@@ -12,7 +12,7 @@ from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
-from kurbel.render.formats import write_report
+from kurbel.render.output import write_report
 from kurbel.report.tables import Report
 
 if TYPE_CHECKING:

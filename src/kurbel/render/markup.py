@@ -130,9 +130,9 @@ _SPECIAL = {
 }  # fmt: skip
 """Character -> how LaTeX writes it; a bracket or a star right after the end of a row would be its argument."""
 _DOTS = {"\u0307": "dot", "\u0308": "ddot"}
-_LETTER = re.compile(".[\u0307\u0308]?", re.DOTALL)
+_LETTER = "(?s).[\u0307\u0308]?"
 """A character, or a letter with the dots over it."""
-_INDEXED = re.compile("((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)")
+_INDEXED = "((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)"
 
 
 class Latex:
@@ -152,7 +152,7 @@ class Latex:
         """
         return "".join(
             _SPECIAL.get(one) or (f"${_formula(one)}$" if one[1:] or one in _MATH else one)
-            for one in _LETTER.findall(plain)
+            for one in re.findall(_LETTER, plain)
         )
 
     sentence = text
@@ -163,10 +163,10 @@ class Latex:
         >>> print(Latex().symbol("P_b"), Latex().symbol("φ_P=0"), Latex().symbol("ΔE"))
         $P_{\mathrm{b}}$ $\varphi_{\mathrm{P=0}}$ $\Delta$E
         """
-        found = _INDEXED.fullmatch(plain)
+        found = re.fullmatch(_INDEXED, plain)
         if not found:
             return self.text(plain)
-        name, index = ("".join(map(_formula, _LETTER.findall(part))) for part in found.groups())
+        name, index = ("".join(map(_formula, re.findall(_LETTER, part))) for part in found.groups())
         return f"${name}_{{\\mathrm{{{index}}}}}$"
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
@@ -264,9 +264,11 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
         yield out.table_end
 
 
-def html(report: Report, look: Look) -> Iterator[str]:
-    """Yield the report as a page of its own."""
-    yield from page(look.text(report.title), document(report, look, Html()), page_css())
+def markup(report: Report, look: Look) -> Iterator[str]:
+    """Return the text of the report in the format of the look; in HTML it is a page of its own."""
+    if look.format == "html":
+        return page(look.text(report.title), document(report, look, Html()), page_css())
+    return document(report, look, Latex() if look.format == "latex" else Markdown())
 
 
 def page(title: str, main: Iterable[str], style: str) -> Iterator[str]:

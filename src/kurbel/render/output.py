@@ -1,20 +1,20 @@
-"""The destination of the text: standard output, a terminal, or a file; with encoding and width."""
+"""A report in each format, and the destination of the text: standard output, a terminal, or a file."""
 
 import codecs
 import errno
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from io import TextIOWrapper
-from shutil import copyfile, get_terminal_size
+from itertools import chain, islice
 from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Line, plain
+from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain
+from kurbel.report.tables import Report
 
 STYLES = {
     "title": "bold",
@@ -29,20 +29,113 @@ STYLES = {
     **{f"curve{number}": style for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))},
 }
 """Role of a piece of a line -> its colour."""
+_AT_ONCE = 1 << 20
+"""Bytes that are copied at once."""
+_SIDE, _CELL = 14, 8
+"""Width in characters of symbol and unit of a row, and of each number."""
+
+
+# the text of a report
+
+
+def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
+    """Return the report as text that ends with a newline; the same report gives the same text every time."""
+    return "".join(_pieces(report, look))
+
+
+def _pieces(report: Report, look: Look) -> Iterable[str]:
+    """Return the text in pieces, so that a long table needs no memory; only the format that is wanted is loaded."""
+    if look.format == "csv":
+        from kurbel.render.csv_text import csv_text
+
+        return csv_text(report, look)
+    if look.format == "json":
+        from kurbel.render.json_text import json_text
+
+        return json_text(report, look)
+    if look.format == "table":
+        return plain(_lines(report, look))
+    from kurbel.render.markup import markup
+
+    return markup(report, look)
+
+
+def write_report(
+    report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
+) -> None:
+    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+
+    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+
+    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
+    only to a given width.
+    """
+    look = look_at(file_name, look)
+    if look.format == "table" and file_name in (None, "-"):
+        write_lines(_lines(report, look, first), look)
+    else:
+        if look.format in ("html", "latex"):  # always read as UTF-8
+            look = look._replace(encoding="utf-8")
+        write_out(_pieces(report, look), file_name, look.encoding)
+
+
+def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+    from kurbel.render.page import page
+    from kurbel.report.alike import first_selection
+
+    lines = page(report, look)
+    if first is None or not _stdout().isatty():
+        return lines
+    most = terminal_size()[1]
+    begin = list(islice(lines, most))
+    if len(begin) < most:
+        return chain(begin, lines)
+    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
+    return page(first_selection(report, first, across, rows=most // 6), look)
+
+
+# lists of the commands that print no report
+
+
+def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
+    """Return a title and sections, each a head line with its entries, as plain text."""
+    lines = paragraph(look.text(title), look.width)
+    for name, entries in sections:
+        lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
+    return "".join(plain(lines))
+
+
+def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
+    """Write heads in a column, each with its text, to a file or to standard output."""
+    write_out(plain(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
 
 
 # standard output
 
 
-def stdout_look(look: Look) -> Look:
-    """Return the look with encoding and width of standard output.
+def look_at(file_name: str | None, look: Look) -> Look:
+    """Return the look of what goes to a file, as UTF-8, or with encoding and width of standard output.
 
     The width is that of the terminal; in a pipe that of COLUMNS, or None.
     """
+    if file_name not in (None, "-"):
+        return look
     stdout = _stdout()
     measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
-    wide = look.width or (get_terminal_size().columns if measured else None)
-    return replace(look, encoding=stdout.encoding or "utf-8", width=wide)
+    return look._replace(
+        encoding=stdout.encoding or "utf-8", width=look.width or (terminal_size()[0] if measured else None)
+    )
+
+
+def terminal_size(fallback: tuple[int, int] = (80, 24)) -> tuple[int, int]:
+    """Return columns and lines of the terminal: those of the environment, or its own."""
+    given = [os.environ.get(name, "") for name in ("COLUMNS", "LINES")]
+    own: tuple[int, int] = fallback
+    with suppress(ValueError, OSError):  # standard output may be closed, or no terminal
+        own = os.get_terminal_size(sys.__stdout__.fileno()) if sys.__stdout__ else fallback
+    columns, lines = (int(text) if text.isdecimal() else 0 for text in given)
+    return columns or own[0] or fallback[0], lines or own[1] or fallback[1]
 
 
 def _stdout() -> TextIO:
@@ -126,7 +219,8 @@ def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
     ending = f".kurbel-{os.urandom(8).hex()}"
     path = f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
     if resumed and not os.path.isfile(path):
-        copyfile(target, path)
+        with open(target, "rb") as old, open(path, "wb") as file:
+            file.writelines(iter(lambda: old.read(_AT_ONCE), b""))
     try:
         with open(path, "r+b" if resumed else "wb") as file:
             with suppress(FileNotFoundError):

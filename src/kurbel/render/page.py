@@ -1,12 +1,11 @@
 """The printed page: title, tables, key values, reasons and warnings; crank angles across, or a line for each row."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import islice
 
 from kurbel.render import Look
-from kurbel.render.output import stdout_look, write_out
-from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, plain, width
+from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
 from kurbel.report.alike import shown_once
 from kurbel.report.tables import KeyValue, Report
@@ -14,7 +13,6 @@ from kurbel.report.tables import KeyValue, Report
 _NINE = 9  # angles to a block: the book breaks after 80°
 _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
-_NARROWEST = 24  # below this a sentence is folded under its head instead of next to it
 
 
 def page(report: Report, look: Look) -> Iterator[Line]:
@@ -188,40 +186,3 @@ def _below_one_another(texts: Sequence[str], lists: Collection[int]) -> list[str
     before = max(map(len, wholes))
     pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, texts)]
     return [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]
-
-
-def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
-    """Yield heads in a column, each with its sentence."""
-    heads = [(look.text(head), text) for head, text in found]
-    column = max((width(head) for head, _ in heads), default=0)
-    for head, text in heads:
-        yield from sentence(f"{indent}{padded(head, column)}  ", text, look)
-
-
-def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
-    """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
-    text, room = look.sentence(text), None if look.width is None else look.width - width(head)
-    if room is not None and room < min(width(text), _NARROWEST):
-        if head.strip():
-            yield line(head, "cell")
-        head, room = " " * 6, max((look.width or 0) - 6, _NARROWEST)
-    for one in folded(text, room):
-        yield (Piece(head, "cell"), Piece(one))
-        head = " " * width(head)
-
-
-# lists of the commands that print no report
-
-
-def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
-    """Return a title and sections, each a head line with its entries, as plain text."""
-    lines = paragraph(look.text(title), look.width)
-    for name, entries in sections:
-        lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
-    return "".join(plain(lines))
-
-
-def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
-    """Write heads in a column, each with its text, to a file or to standard output."""
-    look = Look() if file_name else stdout_look(Look())
-    write_out(plain(in_two_columns(found, look, "")), file_name)

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from kurbel import __version__
 from kurbel.render import Look
@@ -21,7 +20,7 @@ _CLOSE = 5
 
 def report_page(long: Document, look: Look, date: str) -> Iterator[str]:
     """Yield the page of a long report; date: as it is shown."""
-    look = replace(look, format="html")
+    look = look._replace(format="html")
     pairs = PAIRS if len(long.provenance) > 1 else ""
     style = page_css(LONG_REPORT, pairs, PICTURE, PICTURE_COLOURS, MOVING)
     yield from page(look.text(long.title), _parts(long, look, date), style)

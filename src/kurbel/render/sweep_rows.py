@@ -25,9 +25,10 @@ from kurbel.designs.find import Solutions
 from kurbel.designs.sweep import Sweep, rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.data import FORMAT, csv_cell, csv_line
+from kurbel.render.csv_text import csv_cell, csv_line
+from kurbel.render.json_text import FORMAT
 from kurbel.render.markup import Markdown, written
-from kurbel.render.output import opened, stdout_look, write_out
+from kurbel.render.output import look_at, opened, write_out
 from kurbel.render.page import blocks
 from kurbel.render.text import plain, single
 from kurbel.render.text_tables import TextTable, texts
@@ -137,7 +138,7 @@ def write_rows(
     headed: csv with its head; early: gets a sentence about what an early end leaves.
     """
     to_file = file_name is not None and file_name != "-"
-    look = look if to_file else stdout_look(look)
+    look = look_at(file_name, look)
     if look.format in ("table", "markdown"):
         write_out(_for_people(titles, look, list(rows)), file_name, look.encoding)
         return

@@ -4,7 +4,6 @@ from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from hashlib import sha256
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -233,6 +232,8 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
 
 def provenance(machine: Machine) -> Provenance:
     """Return what the results of a machine depend on: files with their SHA-256, overridden values, versions."""
+    from hashlib import sha256  # takes longer to load than a table to compute
+
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
         inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))

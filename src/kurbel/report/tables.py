@@ -75,6 +75,10 @@ class PlaceTable(NamedTuple):
     in_note: bool = False
 
 
+PISTONS = "pistons"
+"""The table of places that is a list of key values in JSON, and not in CSV."""
+
+
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
