@@ -71,19 +71,18 @@ _OWN = {
         ),
     ),
 }
-"""Options beyond those of every command; the report gets them by name, but for those that a `Request` has."""
+"""Options beyond those of every command; the report gets them by name, but for those that `print_report` has."""
 
 
 def _command(row: Command) -> click.Command:
     """Return the command of a row, with FILE and the options that its report needs."""
 
     def run(units: str | None, output: Output, **options: Any) -> None:
-        from kurbel.cli.request import Request
+        from kurbel.cli.request import print_report
 
-        of_all = {name: options.pop(name) for name in Request.__annotations__ if name in options}
         with messages_in(units or "metric"):
             system = units or ("si" if output.look.format in ("csv", "json") else "metric")
-            Request(row.word, units=system, output=output, **of_all).print(**options)
+            print_report(row.word, output, units=system, **options)
 
     rows = (angle_options, columns_option) if row.over_angle else ()
     cases = (_cases_option,) if row.in_cases else ()
