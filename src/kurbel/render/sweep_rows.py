@@ -98,7 +98,7 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
         for k, (name, unit) in enumerate(heads)
     ]
     if look.format == "markdown":
-        return iter(["".join(written([TextTable("", columns, 1)], Markdown())).lstrip("\n")])
+        return iter(["".join(written([TextTable("", columns, 1)], Markdown(look))).lstrip("\n")])
     return plain(blocks(columns[:1], columns[1:], look))
 
 
