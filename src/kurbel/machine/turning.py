@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +14,7 @@ from kurbel.declared.reading import Node, Reading
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.frozen import Frozen
 from kurbel.machine.measured import Columns
 from kurbel.numerics.arithmetic import is_whole, some
 from kurbel.traces.correct import CYCLES
@@ -184,8 +184,7 @@ class Flywheel(Record):
         yield Rule((), self.inertia is None and self.fluctuation is None, needed)
 
 
-@dataclass(frozen=True, eq=False)
-class Effort:
+class Effort(Frozen):
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
     Two points at one angle are a jump.
@@ -213,8 +212,7 @@ class Effort:
         return "file" if self.files else "points"
 
 
-@dataclass(frozen=True, eq=False)
-class Harmonics:
+class Harmonics(Frozen):
     """A torque by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
 
     terms: (ν, c, s) each.
@@ -234,8 +232,7 @@ class Harmonics:
         return ""
 
 
-@dataclass(frozen=True, eq=False)
-class Swing:
+class Swing(Frozen):
     """A turning effort of which the swing of energy alone is known, ΔE in J, or its coefficient ΔE/A.
 
     mean: mean torque in N m, None where it is not known.

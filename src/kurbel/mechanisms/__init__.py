@@ -7,7 +7,6 @@ crank angle has. `Mechanism` lists what a new one must supply.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
@@ -16,6 +15,7 @@ import numpy as np
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.record import Entry, Record, field
+from kurbel.frozen import Frozen
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import bracketed_roots
 from kurbel.quantity import Condition, Formula, Quantity
@@ -24,8 +24,7 @@ Factor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
-@dataclass(frozen=True, eq=False)
-class Offer:
+class Offer(Frozen):
     """A column that only some mechanisms have, with its formula.
 
     factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
@@ -68,8 +67,7 @@ def requested_column(
     return Offer(Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega)
 
 
-@dataclass(frozen=True, eq=False)
-class KeyOffer:
+class KeyOffer(Frozen):
     """A key value that only some mechanisms have, with its formula.
 
     value: takes the mechanism and the results of its command, and returns a number in SI, an Extreme, or None.
@@ -110,8 +108,7 @@ Point = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-@dataclass(frozen=True, eq=False)
-class Sketch:
+class Sketch(Frozen):
     """What is drawn of a mechanism at crank angles, to scale.
 
     joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
@@ -19,6 +19,7 @@ from kurbel.declared.reading import (
 )
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
+from kurbel.frozen import Frozen
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences
 
@@ -36,8 +37,7 @@ class Bound(float):
         return bound
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
+class Expected(Frozen):
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
