@@ -7,6 +7,7 @@ import click
 
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
+    Command,
     Output,
     angle_options,
     columns_option,
@@ -23,7 +24,8 @@ from kurbel.cli.options import (
     where_option,
 )
 from kurbel.declared.unit_systems import messages_in
-from kurbel.report.commands import REPORTS, Command
+from kurbel.report.commands import REPORTS
+from kurbel.report.commands import Command as Row
 
 _OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
 _cases_option = click.option(
@@ -31,7 +33,7 @@ _cases_option = click.option(
 )
 
 
-def _instead(name: str, text: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def _instead(name: str, text: str) -> Callable[[Command], Command]:
     """Return a flag that asks for other tables instead of that over the crank angle; its value is its name."""
     return click.option(name, "instead", is_flag=True, flag_value=name, default="", help=text)
 
@@ -74,7 +76,7 @@ _OWN = {
 """Options beyond those of every command; the report gets them by name, but for those that `print_report` has."""
 
 
-def _command(row: Command) -> click.Command:
+def _command(row: Row) -> click.Command:
     """Return the command of a row, with FILE and the options that its report needs."""
 
     def run(units: str | None, output: Output, **options: Any) -> None:

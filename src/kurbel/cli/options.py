@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
-Command = TypeVar("Command", bound=Callable[..., Any])
+Command = TypeVar("Command", bound=Callable[..., object])
 _MOST_STEPS = 10_000
 
 
@@ -357,7 +357,7 @@ def format_of(
     return written
 
 
-def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
+def output_options(command: Callable[..., object]) -> Callable[..., object]:
     """Add the options of the output to a command, which gets them as one `output: Output`."""
 
     @wraps(command)
@@ -368,8 +368,8 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
         comma: bool,
         digits: int | None,
         width: int | None,
-        **others: Any,
-    ) -> Any:
+        **others: object,
+    ) -> object:
         look = Look(format_of(format, file_name, comma=comma), layout, comma, digits, width)
         return command(output=Output(look, file_name), **others)
 

@@ -4,7 +4,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
+from itertools import chain, repeat
 from typing import Any
 from xml.etree import ElementTree
 
@@ -14,7 +14,7 @@ from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
 from kurbel.report.tables import PISTONS, Column, KeyValue, Part, Provenance, Report, Value
 
-Content = dict[str, Any]
+Content = dict[str, object]
 """What becomes an object of JSON."""
 FORMAT = 1
 """Number of the format of JSON; it changes when a script that reads it would break."""
@@ -74,37 +74,44 @@ def _results(part: Part, look: Look) -> Content:
     def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
         return {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **more}
 
-    found: Content = {"columns": list(part.columns), "place_tables": [], "key_values": [], "pistons": []}
+    places, key_values, pistons = list[Content](), list[Content](), list[Content]()
     for table in part.place_tables:
         if table.id == PISTONS:
             for names, *values in zip(table.names, *(one.values for one in table.columns)):
                 own = [key_value(one, number(value)) for one, value in zip(table.columns, values)]
-                found["pistons"].append({"name": names[0], "key_values": own})
+                pistons.append({"name": names[0], "key_values": own})
         else:
             rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
-            found["place_tables"].append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
+            places.append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
     for one in part.key_values:
         at = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
         value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
-        found["key_values"].append(key_value(one, value, **at))
-    found |= {"left_out": [one._asdict() for one in part.left_out], "warnings": list(part.warnings)}
-    return {key: value for key, value in found.items() if value or key not in ("place_tables", "pistons")}
+        key_values.append(key_value(one, value, **at))
+    return {
+        "columns": list(part.columns),
+        **({"place_tables": places} if places else {}),
+        "key_values": key_values,
+        **({"pistons": pistons} if pistons else {}),
+        "left_out": [one._asdict() for one in part.left_out],
+        "warnings": list(part.warnings),
+    }
 
 
-def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
+def _pieces(node: object, line_end: str, look: Look) -> Iterator[str]:
     """Yield a node in pieces: on one line, or with a line for each entry if one of them is an object."""
     if isinstance(node, Column):
         phi = node.id == "phi"  # crank angles have all digits
         values = [whole_if_integral(one) if phi else rounded(one, look.digits) for one in node.values]
         marked = {"marked": node.marked} if node.marked else {}
         node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values, **marked}
-    elif _holds_object(node):
-        deeper, is_object = line_end + " ", isinstance(node, dict)
-        for index, (key, child) in enumerate(node.items() if is_object else (("", one) for one in node)):
-            yield ("," if index else "{" if is_object else "[") + deeper
-            yield f"{json.dumps(key)}: " if is_object else ""
-            yield from _pieces(child, deeper, look)
-        yield "}" if is_object else "]"
+    elif isinstance(node, (dict, list)) and _holds_object(node):
+        start, end = "{}" if isinstance(node, dict) else "[]"
+        heads = (f"{json.dumps(key)}: " for key in node) if isinstance(node, dict) else repeat("")
+        for head, child in zip(heads, node.values() if isinstance(node, dict) else node):
+            yield f"{start}{line_end} {head}"
+            yield from _pieces(child, line_end + " ", look)
+            start = ","
+        yield end
         return
     # characters that turn the writing are escaped
     yield json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
@@ -115,7 +122,7 @@ def _holds_object(node: object) -> bool:
     return any(isinstance(child, (dict, Column)) or _holds_object(child) for child in children)
 
 
-def answer_schema() -> Any:
+def answer_schema() -> object:
     """Return the JSON Schema (draft-07) of the answers of all commands but the lines of `kurbel sweep`."""
     with open(os.path.join(os.path.dirname(__file__), "answers.schema.json"), encoding="utf-8") as file:
         return json.load(file)
