@@ -27,7 +27,7 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
     content: Content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
-        content |= {"machine": report.machine, **_made_from(report.provenance)}
+        content |= {"machine": report.machine, **_made_from(report.provenance and report.provenance())}
     if report.head:
         content["head"] = list(report.head)
     ratios = report.group == "ratios"

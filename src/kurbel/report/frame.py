@@ -4,6 +4,7 @@ from array import array
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -166,7 +167,7 @@ def report_on(
         whole=parts.pop() if subjects[-1:] and subjects[-1].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),
-        provenance=provenance(machine) if frame.prose else None,
+        provenance=partial(provenance, machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
 
