@@ -286,21 +286,16 @@ def _same(one: str, other: str) -> bool:
 # what kurbel find prints
 
 
-def columns(found: Solutions, system: str) -> list[tuple[str, str, str]]:
-    """Return name, unit and kind of each column: the keys in the units of their ranges, and the key values."""
-    keys = [(one.key, one.unit, one.kind) for one in found.varied]
+def as_rows(found: Solutions, system: str) -> tuple[Titles, list[Design]]:
+    """Return a row for each solution: the keys in the units of their ranges, and the key values."""
+    units = [(one.key, one.kind, one.unit) for one in found.varied]
     largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
-    sized = zip(found.heads, largest)
-    return [*keys, *((one.id, shown_unit(one.kind, system, size), one.kind) for one, size in sized)]
-
-
-def as_rows(found: Solutions, system: str) -> list[Design]:
-    """Return a row for each solution, in the order and the units of the columns."""
-    units = [(kind, unit) for _, unit, kind in columns(found, system)]
-    return [
-        Design(number, tuple(float(convert(value, *of)) for value, of in zip((*one.values, *one.key_values), units)))
-        for number, one in enumerate(found.found, 1)
+    units += [(one.id, one.kind, shown_unit(one.kind, system, size)) for one, size in zip(found.heads, largest)]
+    rows = [
+        Design(number, tuple(float(convert(value, *of)) for value, (_, *of) in zip(values, units)))
+        for number, values in enumerate(((*one.values, *one.key_values) for one in found.found), 1)
     ]
+    return Titles(tuple((name, unit) for name, _, unit in units)), rows
 
 
 def as_json(found: Solutions) -> dict[str, object]:
