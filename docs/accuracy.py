@@ -18,7 +18,8 @@ from model_and_data import data_errors, first_machine, model_errors
 from kurbel.machine_file import loads
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
-from kurbel.render.output import render, write_out
+from kurbel.render.formats import render
+from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
 from kurbel.report.tables import Report
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurbel.render import Look
-from kurbel.render.output import render
+from kurbel.render.formats import render
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI, texts
 

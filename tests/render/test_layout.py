@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from kurbel.render import Look
-from kurbel.render.output import render
+from kurbel.render.formats import render
 from kurbel.render.page import book_sizes
 from kurbel.render.text import folded, width
 from kurbel.report.zusammenstellung import zusammenstellung

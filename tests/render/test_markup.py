@@ -10,8 +10,8 @@ import pytest
 from command import run
 from kurbel.quantities import every_quantity
 from kurbel.render import Look
+from kurbel.render.formats import render
 from kurbel.render.markup import Latex
-from kurbel.render.output import render
 from kurbel.report.tables import KeyValue, LeftOut, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI
 from representative import CONFIGS

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from kurbel.cli.group import Progress, kurbel
+from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
     Output,
@@ -192,44 +192,15 @@ def check(format: str | None, file_name: str | None, **options: Any) -> int:
 @click.option("--extremes", is_flag=True, help="Run stiff and extreme machines instead.")
 @click.option("--plot", "picture", metavar="FILE.svg|png|pdf", help="Also draw the picture.")
 @output_options
-def accuracy(
-    file: str | None,
-    case_name: str,
-    overrides: tuple[str, ...],
-    quick: bool,
-    extremes: bool,
-    picture: str | None,
-    output: Output,
-) -> int:
+def accuracy(**options: Any) -> int:
     """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
 
     Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
     and come from other methods than kurbel's. Then what is saved by leaving out friction, masses, cards and speed.
     """
-    if (case_name or overrides) and file is None:
-        raise click.UsageError("--case and --set are values over those of FILE; give the FILE.")
-    from kurbel.machine_file import loads
-    from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
+    from kurbel.cli.comparing import compare
 
-    if extremes:
-        if file is not None or picture is not None:
-            raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
-        report, passed = extremes_report(loads)
-        output.write(report)
-        return int(not passed)
-
-    from kurbel.cli.request import case_of
-    from kurbel.render.drawing import check_file, draw_file
-
-    if picture is not None:
-        check_file(picture, "--plot")
-    machine = None if file is None else case_of(file, case_name, overrides, output.file_name, picture).machine
-    with Progress("accuracy") as progress:
-        report = accuracy_report(machine, quick, loads, progress)
-    output.write(report)
-    if picture is not None:
-        draw_file([accuracy_picture(report)], output.look, picture)
-    return 0
+    return compare(**options)
 
 
 # many designs

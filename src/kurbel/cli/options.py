@@ -10,9 +10,9 @@ import click
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import ambiguity, called, joined
+from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
-from kurbel.render.output import write_report
+from kurbel.render.formats import write_report
 from kurbel.report.tables import Report
 
 if TYPE_CHECKING:
@@ -90,10 +90,8 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    from kurbel.quantities import every_quantity
-
     named = words(text)
-    known = [column for column in every_quantity().all_columns if column.commands]
+    known = [column for column in _quantities().all_columns if column.commands]
     ids = []
     for name in joined(named, known):
         found = called(name, known)
@@ -101,6 +99,12 @@ def columns(text: str) -> tuple[str, ...]:
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
+
+
+def _quantities() -> Lists:
+    from kurbel.quantities import every_quantity
+
+    return every_quantity()
 
 
 def spread(text: str) -> tuple[str, str]:
@@ -130,11 +134,9 @@ def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable
 
 def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
     """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
-    from kurbel.quantities import every_quantity
-
-    columns = every_quantity().columns(ctx.info_name or "")
+    every = _quantities()
     before, comma, _ = begun.rpartition(",")
-    ids = dict.fromkeys(columns or (one.id for one in every_quantity().all_key_values))
+    ids = dict.fromkeys(every.columns(ctx.info_name or "") or (one.id for one in every.all_key_values))
     return [before + comma + one for one in ids if one not in before.split(",")]
 
 

@@ -4,6 +4,7 @@ import json
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from hashlib import sha256
 from itertools import chain, repeat
 from typing import Any
 from xml.etree import ElementTree
@@ -12,7 +13,7 @@ from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
-from kurbel.report.tables import PISTONS, Column, KeyValue, Part, Provenance, Report, Value
+from kurbel.report.tables import PISTONS, Column, InputFile, KeyValue, Part, Provenance, Report, Value
 
 Content = dict[str, object]
 """What becomes an object of JSON."""
@@ -53,7 +54,13 @@ def _made_from(given: Provenance | None) -> dict[str, object]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
+    inputs = [{"file": one.file, "sha256": sha256_of(one)} for one in given.inputs]
+    return {"inputs": inputs, "overrides": list(given.overrides), "versions": versions}
+
+
+def sha256_of(one: InputFile) -> str | None:
+    """Return the SHA-256 of a file that was read, None if it is gone."""
+    return None if one.content is None else sha256(one.content).hexdigest()
 
 
 def _named(part: Part, ratio: bool, look: Look) -> Content:

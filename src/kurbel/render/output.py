@@ -1,20 +1,18 @@
-"""A report in each format, and the destination of the text: standard output, a terminal, or a file."""
+"""The destination of the text: standard output, a terminal, or a file; with encoding and width."""
 
 import codecs
 import errno
 import os
 import stat
 import sys
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
-from itertools import chain, islice
 from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain
-from kurbel.report.tables import Report
 
 STYLES = {
     "title": "bold",
@@ -31,68 +29,6 @@ STYLES = {
 """Role of a piece of a line -> its colour."""
 _AT_ONCE = 1 << 20
 """Bytes that are copied at once."""
-_SIDE, _CELL = 14, 8
-"""Width in characters of symbol and unit of a row, and of each number."""
-
-
-# the text of a report
-
-
-def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
-    """Return the report as text that ends with a newline; the same report gives the same text every time."""
-    return "".join(_pieces(report, look))
-
-
-def _pieces(report: Report, look: Look) -> Iterable[str]:
-    """Return the text in pieces, so that a long table needs no memory; only the format that is wanted is loaded."""
-    if look.format == "csv":
-        from kurbel.render.csv_text import csv_text
-
-        return csv_text(report, look)
-    if look.format == "json":
-        from kurbel.render.json_text import json_text
-
-        return json_text(report, look)
-    if look.format == "table":
-        return plain(_lines(report, look))
-    from kurbel.render.markup import markup
-
-    return markup(report, look)
-
-
-def write_report(
-    report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
-) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
-
-    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
-
-    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
-    only to a given width.
-    """
-    look = look_at(file_name, look)
-    if look.format == "table" and file_name in (None, "-"):
-        write_lines(_lines(report, look, first), look)
-    else:
-        if look.format in ("html", "latex"):  # always read as UTF-8
-            look = look._replace(encoding="utf-8")
-        write_out(_pieces(report, look), file_name, look.encoding)
-
-
-def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
-    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
-    from kurbel.render.page import page
-    from kurbel.report.alike import first_selection
-
-    lines = page(report, look)
-    if first is None or not _stdout().isatty():
-        return lines
-    most = terminal_size()[1]
-    begin = list(islice(lines, most))
-    if len(begin) < most:
-        return chain(begin, lines)
-    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page(first_selection(report, first, across, rows=most // 6), look)
 
 
 # lists of the commands that print no report

@@ -1,16 +1,20 @@
 """The printed page: title, tables, key values, reasons and warnings; crank angles across, or a line for each row."""
 
 import re
+import sys
 from collections.abc import Collection, Iterator, Sequence
-from itertools import islice
+from itertools import chain, islice
 
 from kurbel.render import Look
+from kurbel.render.output import terminal_size
 from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
-from kurbel.report.alike import shown_once
+from kurbel.report.alike import first_selection, shown_once
 from kurbel.report.tables import KeyValue, Report
 
 _NINE = 9  # angles to a block: the book breaks after 80°
+_SIDE, _CELL = 14, 8
+"""Width in characters of symbol and unit of a row, and of each number."""
 _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
@@ -54,6 +58,16 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         if part.warnings:
             yield from (BLANK, line(f"Warnings{of}", "name"))
             yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
+
+
+def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+    lines, most = page(report, look), terminal_size()[1]
+    begin = list(islice(lines, most)) if sys.stdout.isatty() else []
+    if len(begin) < most:
+        return chain(begin, lines)
+    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
+    return page(first_selection(report, first, across, rows=most // 6), look)
 
 
 # a line for each row

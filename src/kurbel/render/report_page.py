@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from kurbel import __version__
 from kurbel.render import Look
+from kurbel.render.json_text import sha256_of
 from kurbel.render.markup import Html, listed, of_places, over_angle, page, written
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
 from kurbel.render.svg import svg
@@ -41,7 +42,7 @@ def _parts(long: Document, out: Html, date: str) -> Iterator[str]:
         yield "</section>\n"
     yield f"<footer>\n<p>{out.words(date)}, kurbel {__version__}</p>\n"
     for made_from in long.provenance:
-        files = [f"{one.file}: SHA-256 {one.sha256 or 'not known, the file is gone'}" for one in made_from.inputs]
+        files = [f"{one.file}: SHA-256 {sha256_of(one) or 'not known, the file is gone'}" for one in made_from.inputs]
         files += [f"set over it: {one}" for one in made_from.overrides]
         files += [f"{name} {version}" for name, version in made_from.versions.items()]
         yield from listed("Made from", files, out)

@@ -187,14 +187,13 @@ def _write_lines(file: BinaryIO, lines: Iterable[str], encoding: str) -> None:
 def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> None:
     """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
     try:
-        import pyarrow
-        from pyarrow import parquet
+        import pyarrow.parquet
     except ImportError:
         raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
     stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
     types = [pyarrow.int64(), *(stored[one] for one in (*titles.types, *("text" for _ in titles.last)))]
     schema = pyarrow.schema(zip(titles.whole, types))
-    with parquet.ParquetWriter(file, schema) as writer:
+    with pyarrow.parquet.ParquetWriter(file, schema) as writer:
         while group := list(islice(rows, _IN_A_GROUP)):
             arrays = []
             for type, column in zip(types, zip(*map(titles.values, group))):

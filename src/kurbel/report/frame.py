@@ -232,17 +232,15 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
 
 
 def provenance(machine: Machine) -> Provenance:
-    """Return what the results of a machine depend on: files with their SHA-256, overridden values, versions."""
-    from hashlib import sha256  # takes longer to load than a table to compute
-
+    """Return what the results of a machine depend on: files with their bytes, overridden values, versions."""
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
-        inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))
+        inputs.append(InputFile(origin.name, origin.content))
     for name in machine.trace_files:
-        digest = None
+        content = None
         with suppress(OSError), open(name, "rb") as file:
-            digest = sha256(file.read()).hexdigest()
-        inputs.append(InputFile(name, digest))
+            content = file.read()
+        inputs.append(InputFile(name, content))
     return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": np.__version__})
 
 

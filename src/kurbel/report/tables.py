@@ -97,10 +97,10 @@ class Part(NamedTuple):
 
 
 class InputFile(NamedTuple):
-    """A file that was read, and the SHA-256 of its bytes; None if it no longer exists."""
+    """A file that was read, and its bytes; None if it no longer exists."""
 
     file: str
-    sha256: str | None
+    content: bytes | None
 
 
 class Provenance(NamedTuple):

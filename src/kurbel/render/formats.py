@@ -1,0 +1,55 @@
+"""The text of a report in each format, and its output; only the format that is wanted is loaded."""
+
+from collections.abc import Collection, Iterable, Iterator
+
+from kurbel.render import Look
+from kurbel.render.output import look_at, write_lines, write_out
+from kurbel.render.text import Line, plain
+from kurbel.report.tables import Report
+
+
+def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
+    """Return the report as text that ends with a newline; the same report gives the same text every time."""
+    return "".join(_pieces(report, look))
+
+
+def _pieces(report: Report, look: Look) -> Iterable[str]:
+    """Return the text in pieces, so that a long table needs no memory."""
+    if look.format == "csv":
+        from kurbel.render.csv_text import csv_text
+
+        return csv_text(report, look)
+    if look.format == "json":
+        from kurbel.render.json_text import json_text
+
+        return json_text(report, look)
+    if look.format == "table":
+        return plain(_lines(report, look))
+    from kurbel.render.markup import markup
+
+    return markup(report, look)
+
+
+def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
+    from kurbel.render.page import fitting, page
+
+    return page(report, look) if first is None else fitting(report, look, first)
+
+
+def write_report(
+    report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
+) -> None:
+    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+
+    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+
+    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
+    only to a given width.
+    """
+    look = look_at(file_name, look)
+    if look.format == "table" and file_name in (None, "-"):
+        write_lines(_lines(report, look, first), look)
+    else:
+        if look.format in ("html", "latex"):  # always read as UTF-8
+            look = look._replace(encoding="utf-8")
+        write_out(_pieces(report, look), file_name, look.encoding)
