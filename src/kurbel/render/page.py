@@ -75,37 +75,34 @@ def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line
 
 def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    blocks = [list(side)]
-    for one in columns:
-        wide = sum(_wide(column) + gap for column in blocks[-1]) + _wide(one)
-        if look.width is not None and wide > look.width and len(blocks[-1]) > len(side):
-            blocks.append(list(side))
-        blocks[-1].append(one)
+    every = [(one, max(map(width, (one.symbol, one.unit, *one.cells)))) for one in (*side, *columns)]
+    before, blocks = len(side), [every[: len(side)]]
+    for sized in every[before:]:
+        wide = sum(one + gap for _, one in blocks[-1]) + sized[1]
+        if look.width is not None and wide > look.width and len(blocks[-1]) > before:
+            blocks.append(every[:before])
+        blocks[-1].append(sized)
     for number, block in enumerate(blocks):
         yield from (BLANK,) if number else ()
-        rule = line(look.text("─") * (sum(map(_wide, block)) + gap * (len(block) - 1)), "rule")
-        yield _row(block, gap, [one.symbol for one in block], "head")
-        if any(one.unit for one in block):
-            yield _row(block, gap, [one.unit for one in block], "unit")
+        rule = line(look.text("─") * (sum(wide + gap for _, wide in block) - gap), "rule")
+        yield _row(block, gap, [one.symbol for one, _ in block], "head")
+        if any(one.unit for one, _ in block):
+            yield _row(block, gap, [one.unit for one, _ in block], "unit")
         yield rule
-        for cells in zip(*(one.cells for one in block)):
+        for cells in zip(*(one.cells for one, _ in block)):
             yield _row(block, gap, cells, "cell")
         yield rule
 
 
-def _row(block: Sequence[TextColumn], gap: int, texts: Sequence[str], role: str) -> Line:
+def _row(block: Sequence[tuple[TextColumn, int]], gap: int, texts: Sequence[str], role: str) -> Line:
     return tuple(
-        Piece(" " * gap * (number > 0) + padded(text, _wide(column), not column.words), _role(text, column, role))
-        for number, (column, text) in enumerate(zip(block, texts))
+        Piece(" " * gap * (number > 0) + padded(text, wide, not column.words), _role(text, column, role))
+        for number, ((column, wide), text) in enumerate(zip(block, texts))
     )
 
 
 def _role(text: str, column: TextColumn, role: str) -> str:
     return "name" if column.words else "mark" if text.endswith(MARK) else role
-
-
-def _wide(column: TextColumn) -> int:
-    return max(width(column.symbol), width(column.unit), column.width)
 
 
 # the look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages
@@ -119,7 +116,7 @@ def _book(
     named_beside: the names of bands are short and have a column of their own, as L/R in the book.
     """
     rows = [*heads, *(row for _, band in bands for row in band)]
-    cell = max(row.width for row in rows) + _GAP
+    cell = max((width(text) for row in rows for text in row.cells), default=0) + _GAP
     texts = [name for name, _ in bands if named_beside], [row.symbol for row in rows], [row.unit for row in rows]
     # of names, symbols and units; a column without a text takes no room
     name, symbol, unit = (wide and wide + _GAP for wide in (max(map(width, each), default=0) for each in texts))

@@ -10,7 +10,7 @@ from kurbel.render.markup import Html, listed, of_places, over_angle, page, writ
 from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COLOURS, page_css
 from kurbel.render.svg import svg
 from kurbel.render.text import DIGITS
-from kurbel.render.text_tables import TextTable, key_value_table, part_name, place_table, texts
+from kurbel.render.text_tables import TextColumn, TextTable, key_value_table, part_name, place_table
 from kurbel.report.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
 from kurbel.report.tables import PlaceTable
 
@@ -102,7 +102,7 @@ def _text_table(grid: Grid, look: Look) -> TextTable:
     columns = []
     for k, (head, cells) in enumerate(zip(grid.heads, zip(*grid.rows))):
         kind = "symbol" if head == "Symbol" else "number" if k in grid.numbers else "name"
-        columns.append(texts(look.text(head), "", [_shown(one, head, look) for one in cells], kind))
+        columns.append(TextColumn(look.text(head), "", [_shown(one, head, look) for one in cells], kind))
     return TextTable(look.text(grid.title), columns, 1, grid.verdicts)
 
 

@@ -31,7 +31,7 @@ from kurbel.render.markup import Markdown, written
 from kurbel.render.output import look_at, opened, write_out
 from kurbel.render.page import blocks
 from kurbel.render.text import plain, single
-from kurbel.render.text_tables import TextTable, texts
+from kurbel.render.text_tables import TextColumn, TextTable
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import in_units, level
 
@@ -94,7 +94,9 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
     heads = [(titles.row, ""), *titles.names, *((name, "") for name in titles.last)]
     cells = [[_cell(value, look) for value in titles.values(row)] for row in rows]
     columns = [
-        texts(look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number")
+        TextColumn(
+            look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number"
+        )
         for k, (name, unit) in enumerate(heads)
     ]
     if look.format == "markdown":
