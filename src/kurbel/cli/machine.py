@@ -8,7 +8,6 @@ import click
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
-    Output,
     angle_options,
     columns_option,
     complete_ids,
@@ -38,6 +37,7 @@ from kurbel.cli.options import (
     words,
 )
 from kurbel.declared.unit_systems import messages_in
+from kurbel.render.formats import Output
 from kurbel.report.commands import REPORTS
 from kurbel.report.commands import Command as Row
 

@@ -1,9 +1,9 @@
 """Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -12,8 +12,7 @@ from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
 from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
-from kurbel.render.formats import write_report
-from kurbel.report.tables import Report
+from kurbel.render.formats import Output
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
@@ -168,17 +167,6 @@ complete_picture = completing(_pictures)
 
 
 # --- the options
-
-
-class Output(NamedTuple):
-    """Where a report goes and how it looks."""
-
-    look: Look
-    file_name: str | None
-
-    def write(self, report: Report, first: Collection[str] | None = None) -> None:
-        """Write the report; first: see `write_report`."""
-        write_report(report, self.look, self.file_name, first)
 
 
 def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:

@@ -6,7 +6,6 @@ import click
 
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
-    Output,
     angle_options,
     complete_key,
     completing,
@@ -19,6 +18,7 @@ from kurbel.cli.options import (
 from kurbel.declared.units import kinds, listed_units
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
+from kurbel.render.formats import Output
 from kurbel.render.output import write_entries, write_out
 from kurbel.report.tables import crank_angles
 from kurbel.shipped import shipped

@@ -6,11 +6,12 @@ import click
 from click.core import ParameterSource
 
 from kurbel.cli.group import Progress
-from kurbel.cli.options import Output, Spreads
+from kurbel.cli.options import Spreads
 from kurbel.errors import UsageError
 from kurbel.machine import Machine, of_cycle
 from kurbel.machine_file import load
 from kurbel.machine_file.reader import load_cases
+from kurbel.render.formats import Output
 from kurbel.render.output import refuse_overwriting
 from kurbel.report.cases import cases_report
 from kurbel.report.commands import COMMANDS

@@ -1,6 +1,7 @@
 """The text of a report in each format, and its output; only the format that is wanted is loaded."""
 
 from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
 
 from kurbel.render import Look
 from kurbel.render.output import look_at, write_lines, write_out
@@ -36,20 +37,24 @@ def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> 
     return page(report, look) if first is None else fitting(report, look, first)
 
 
-def write_report(
-    report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
-) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+class Output(NamedTuple):
+    """Where a report goes, a file or standard output, and how it looks."""
 
-    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+    look: Look
+    file_name: str | None
 
-    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
-    only to a given width.
-    """
-    look = look_at(file_name, look)
-    if look.format == "table" and file_name in (None, "-"):
-        write_lines(_lines(report, look, first), look)
-    else:
-        if look.format in ("html", "latex"):  # always read as UTF-8
-            look = look._replace(encoding="utf-8")
-        write_out(_pieces(report, look), file_name, look.encoding)
+    def write(self, report: Report, first: Collection[str] | None = None) -> None:
+        """Write the report to the file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+
+        first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+
+        On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text,
+        folded only to a given width.
+        """
+        look = look_at(self.file_name, self.look)
+        if look.format == "table" and self.file_name in (None, "-"):
+            write_lines(_lines(report, look, first), look)
+        else:
+            if look.format in ("html", "latex"):  # always read as UTF-8
+                look = look._replace(encoding="utf-8")
+            write_out(_pieces(report, look), self.file_name, look.encoding)
