@@ -98,7 +98,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     while side < needed:
         side = needed
         frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
-        up = [] if panel.plain else ticks(panel.y, frame.y, int(tall / 4), look)
+        up = [] if panel.plain else ticks(frame.y, int(tall / 4), look)
         needed = max((width(text) + 1 for _, text in up), default=0)
     rows = int(frame.tall // 2) + 1
     canvas = Canvas(wide, rows if panel.plain else rows + 2, side, has_dots)

@@ -67,17 +67,17 @@ def picture_text(picture: Picture, look: Look) -> str:
 
 
 class AxisScale(NamedTuple):
-    """The places `start` and `end` of the values `low` and `high` on an axis; log: by powers of ten."""
+    """The places `start` and `end` of the values `low` and `high` on an axis."""
 
+    axis: Axis
     low: float
     high: float
     start: float = 0.0
     end: float = 1.0
-    log: bool = False
 
     def place(self, values: Number) -> Array:
         """Return the places of values."""
-        low, high, at = (np.log10(one) if self.log else np.asarray(one) for one in (self.low, self.high, values))
+        low, high, at = (np.log10(one) if self.axis.log else np.asarray(one) for one in (self.low, self.high, values))
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
@@ -96,16 +96,16 @@ def scale_of(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScal
     elif air:
         below = 0.0 if low == axis.low else _AIR * (high - low)
         low, high = low - below, high + _AIR * (high - low)
-    return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
+    return AxisScale(axis, high, low) if axis.falling else AxisScale(axis, low, high)
 
 
-def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
+def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
     """Return the ticks of an axis, at most so many or a few more: place and text, with the decimals that all need."""
-    low, high = sorted((scale.low, scale.high))
+    axis, (low, high) = scale.axis, sorted((scale.low, scale.high))
     if axis.names:
         values = [float(number) for number in range(len(axis.names)) if low <= number <= high]
         texts = [axis.names[int(value)] for value in values]
-    elif scale.log:
+    elif axis.log:
         powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
         values = [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
         texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
@@ -176,8 +176,7 @@ class PanelFrame:
             spare = (max(*(sizes / room), _ROUNDING) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
-        names = panel.x.names
-        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) if names else 0.0
+        names, between = panel.x.names, abs(self.points_per_unit)
         numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
         if not numeric and any((width(name) + 1) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
@@ -185,8 +184,8 @@ class PanelFrame:
                 f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
             )
             numbers = tuple(str(number) for number, _ in enumerate(names, 1))
-            self.panel = panel._replace(x=panel.x._replace(name=Words(key), names=numbers))
-        self.below = folded(axis_text(self.panel.x, look), int(wide / medium.letter))
+            self.x = self.x._replace(axis=panel.x._replace(name=Words(key), names=numbers))
+        self.below = folded(axis_text(self.x.axis, look), int(wide / medium.letter))
         """What is written below the axis, line by line."""
 
     @property
@@ -203,7 +202,7 @@ class PanelFrame:
 
         start, end: how far texts may reach.
         """
-        every, found = ticks(self.panel.x, self.x, most, self.look), []
+        every, found = ticks(self.x, most, self.look), []
         wide = [width(text) * self.medium.letter for _, text in every]
         apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
         of_each = max(math.ceil((max(wide, default=0.0) + self.medium.grain[0]) / apart), 1)
