@@ -5,10 +5,10 @@ Reader, schema and pages read the table `KEYS` of a record (`Cylinder`, `Piston`
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import MISSING, Field
+from dataclasses import MISSING, Field, dataclass, fields
 from inspect import Parameter, Signature
 from types import MappingProxyType
-from typing import Any, ClassVar, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Union
 
 import numpy as np
 
@@ -16,8 +16,16 @@ from kurbel.arrays import Truth
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, Path, Step, refuse, refused
-from kurbel.frozen import Frozen, in_order
 from kurbel.numerics.arithmetic import is_number
+
+if TYPE_CHECKING:
+    from typing_extensions import dataclass_transform
+else:  # typing has it from Python 3.11 on
+
+    def dataclass_transform(**_):
+        """Return a decorator that changes nothing."""
+        return lambda made: made
+
 
 TOO_EXTREME = "these numbers are too large or too small to compute with"
 Values = Mapping[str, Any]
@@ -139,6 +147,11 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
+def _in_order(record: "type[Record]") -> list[Field[object]]:
+    """Return the attributes in the order of positional arguments: first those without a default."""
+    return sorted(fields(record), key=lambda one: one.default is not MISSING)
+
+
 class SignatureOfFields:
     """Returns the arguments of a record for `help`, when somebody reads them."""
 
@@ -150,15 +163,21 @@ class SignatureOfFields:
                 default=Parameter.empty if one.default is MISSING else one.default,
                 annotation=one.type,
             )
-            for one in in_order(kind)
+            for one in _in_order(kind)
         ]
         return Signature(parameters)
 
 
-class Record(Frozen):
-    """A record of the machine file; each entry is declared once, by `field` or `alternative`."""
+@dataclass_transform(frozen_default=True, eq_default=False)
+class Record:
+    """A record of the machine file; each entry is declared once, by `field` or `alternative`.
+
+    A subclass is a dataclass whose one constructor is inherited, so that no code is generated for it; it cannot be
+    changed, and is compared by identity.
+    """
 
     KEYS: ClassVar[Keys] = {}
+    __dataclass_fields__: ClassVar[dict[str, Field[object]]]
     __signature__ = SignatureOfFields()
 
     def __init_subclass__(cls) -> None:
@@ -169,13 +188,29 @@ class Record(Frozen):
                 attribute = name if isinstance(value, Field) else ""
                 own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
         cls.KEYS = own
-        super().__init_subclass__()
+        dataclass(init=False, repr=False, eq=False)(cls)
 
-    def _check(self) -> None:
+    def __init__(self, *values: object, **named: object) -> None:
+        defaults = {one.name: one.default for one in _in_order(type(self))}
+        given = {**dict(zip(defaults, values)), **named}
+        wrong = [name for name in given if name not in defaults]
+        wrong += [name for name, default in defaults.items() if default is MISSING and name not in given]
+        if wrong or len(values) > len(defaults):
+            raise TypeError(f"{type(self).__name__} takes the values {', '.join(defaults)}; see {', '.join(wrong)}")
+        vars(self).update(defaults | given)
         try:
             refuse(*self._faults())
         except ArithmeticError:
             refused(TOO_EXTREME)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"a {type(self).__name__} cannot be changed; make another one by dataclasses.replace")
+
+    def __repr__(self) -> str:
+        """Return the call that makes the record, without what has its default value: a machine has many of these."""
+        known = vars(self)
+        given = [f"{one.name}={known[one.name]!r}" for one in fields(self) if known[one.name] is not one.default]
+        return f"{type(self).__name__}({', '.join(given)})"
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
@@ -189,9 +224,10 @@ class Record(Frozen):
     def _faults(self) -> list[Fault]:
         """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
         keys = {name: key for name, key in self.KEYS.items() if key.attribute}
+        default = {one.name: one.default for one in fields(self)}
         known = vars(self)
         given = {name: known[one.attribute] for name, one in keys.items()}
-        given = {name: value for name, value in given.items() if value is not self._defaults[keys[name].attribute]}
+        given = {name: value for name, value in given.items() if value is not default[keys[name].attribute]}
         return (
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)

@@ -1,7 +1,7 @@
 """Indicator cards: pressure over the stroke, as an indicator draws it in each chamber from its own dead centre."""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any, ClassVar, Union
 
@@ -15,13 +15,13 @@ from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.unit_systems import show
 from kurbel.declared.units import Factor, Point, written_unit
 from kurbel.errors import Fault, refuse
-from kurbel.frozen import Frozen
 from kurbel.machine.ideal_cards import CLEARANCE_OR_NONE, Compressor, Diesel, IdealCard, Otto, Steam
 from kurbel.machine.measured import Measured
 from kurbel.traces.correct import Trace
 
 
-class Rectangle(Frozen):
+@dataclass(frozen=True, eq=False)
+class Rectangle:
     """A card of horizontal lines, for any working cycle; pressures in Pa.
 
     level: the pressure on every stroke, None for the ambient; mean: the mean indicated pressure p_i, by which the
@@ -77,7 +77,8 @@ class Drawn(Record):
 _POINTS = Points("stroke fraction", "pressure", ratio=True)
 
 
-class Line(Frozen):
+@dataclass(frozen=True, eq=False)
+class Line:
     """One line of a card: pressures in Pa over fractions of the chamber's stroke, in the order of the process.
 
     Two points at one fraction are a vertical jump. `start` is the fraction at which the line begins, 0 or 1.

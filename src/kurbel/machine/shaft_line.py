@@ -6,7 +6,7 @@ of the cranks.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
@@ -14,7 +14,6 @@ from kurbel.declared.forms.values import TEXT, Choice
 from kurbel.declared.reading import REFUSED
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
-from kurbel.frozen import Frozen
 from kurbel.near_words import did_you_mean
 
 STEEL = 82e9
@@ -136,7 +135,8 @@ class ShaftSection(NamedTuple):
         return math.pi * (self.diameter**4 - self.bore**4) / (16 * self.diameter)
 
 
-class ShaftMass(Frozen):
+@dataclass(frozen=True, eq=False)
+class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
     cylinders: names of those whose cranks are here; flywheel: how many times J of the machine's flywheel counts here;
@@ -151,7 +151,8 @@ class ShaftMass(Frozen):
     ratio: float = 1.0
 
 
-class ShaftPiece(Frozen):
+@dataclass(frozen=True, eq=False)
+class ShaftPiece:
     """A piece of shaft between two masses: stiffness in N m/rad and damping in N m s/rad referred to the cranks' shaft.
 
     sections: of those of its parts whose diameters are known; ratio: its speed over that of the cranks.
@@ -164,7 +165,8 @@ class ShaftPiece(Frozen):
     ratio: float = 1.0
 
 
-class ShaftLine(Frozen):
+@dataclass(frozen=True, eq=False)
+class ShaftLine:
     """Masses along a shaft and the pieces between them; the piece to a fixed end comes first or last.
 
     ground: `before` or `after` the masses, `both`, or empty; load: which mass takes the load.

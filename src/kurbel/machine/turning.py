@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +15,6 @@ from kurbel.declared.reading import Node, Reading
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, Path, refuse, refused
-from kurbel.frozen import Frozen
 from kurbel.machine.measured import Columns
 from kurbel.numerics.arithmetic import is_whole, some
 from kurbel.traces.correct import CYCLES
@@ -184,7 +184,8 @@ class Flywheel(Record):
         yield Rule((), self.inertia is None and self.fluctuation is None, needed)
 
 
-class Effort(Frozen):
+@dataclass(frozen=True, eq=False)
+class Effort:
     """A turning-moment diagram: torques in N m over crank angles in degrees, from 0 to 360 or 720, ascending.
 
     Two points at one angle are a jump.
@@ -212,7 +213,8 @@ class Effort(Frozen):
         return "file" if self.files else "points"
 
 
-class Harmonics(Frozen):
+@dataclass(frozen=True, eq=False)
+class Harmonics:
     """A torque by harmonics, M = mean + Σ c cos νφ + s sin νφ: in N m, ν per turn of the shaft.
 
     terms: (ν, c, s) each.
@@ -232,7 +234,8 @@ class Harmonics(Frozen):
         return ""
 
 
-class Swing(Frozen):
+@dataclass(frozen=True, eq=False)
+class Swing:
     """A turning effort of which the swing of energy alone is known, ΔE in J, or its coefficient ΔE/A.
 
     mean: mean torque in N m, None where it is not known.

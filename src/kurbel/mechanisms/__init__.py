@@ -7,6 +7,7 @@ crank angle has. `Mechanism` lists what a new one must supply.
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple
 
@@ -15,7 +16,6 @@ import numpy as np
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.declared.record import Entry, Record, field
-from kurbel.frozen import Frozen
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.search import bracketed_roots
 from kurbel.quantity import Condition, Formula, Quantity
@@ -24,7 +24,8 @@ Factor = Callable[[Any, CrankAngle], Any]
 """Takes a mechanism and a crank angle, and returns what the formula of a column has besides ω and a force."""
 
 
-class Offer(Frozen):
+@dataclass(frozen=True, eq=False)
+class Offer:
     """A column that only some mechanisms have, with its formula.
 
     factor: takes the mechanism and a crank angle and returns the value in SI over what it is proportional to, of the
@@ -67,7 +68,8 @@ def requested_column(
     return Offer(Quantity(id, symbol, kind, text, plain, both, after=after, on_request=both), factor, omega)
 
 
-class KeyOffer(Frozen):
+@dataclass(frozen=True, eq=False)
+class KeyOffer:
     """A key value that only some mechanisms have, with its formula.
 
     value: takes the mechanism and the results of its command, and returns a number in SI, an Extreme, or None.
@@ -108,7 +110,8 @@ Point = tuple[Any, Any]
 SHAFT, PIN = "shaft", "pin"
 
 
-class Sketch(Frozen):
+@dataclass(frozen=True, eq=False)
+class Sketch:
     """What is drawn of a mechanism at crank angles, to scale.
 
     joints: places by name, the shaft and the crank pin among them; links: stiff members, each the joints it runs

@@ -9,7 +9,7 @@ should be ends of pieces from the start: halving only closes in on them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple, Union
@@ -17,7 +17,6 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number
-from kurbel.frozen import Frozen
 from kurbel.numerics.arithmetic import lost
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import LobattoRule, rule, series_at, slope_of_series
@@ -89,7 +88,8 @@ class SampledExtremes(NamedTuple):
         return [Extremes(*pair) for pair in zip(map(Extreme, high, high_at), map(Extreme, low, low_at))]
 
 
-class Pieces(Frozen):
+@dataclass(frozen=True, eq=False)
+class Pieces:
     """Pieces (n,) of the cycles of `count` machines, ordered by machine and angle.
 
     right_angle: the multiple of 90° nearest to a piece; offset: from there to its beginning; half: half its width; all

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -20,7 +21,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Indices
-from kurbel.frozen import Frozen
 from kurbel.machine.shaft_line import ShaftLine
 from kurbel.numerics.pieces import Pieces
 from kurbel.solver.speed import SpeedLaw
@@ -31,7 +31,8 @@ _STILL = 1e-6
 """A first mass that moves less than this, over the largest motion, is not what the others are referred to."""
 
 
-class Chain(Frozen):
+@dataclass(frozen=True, eq=False)
+class Chain:
     """n masses and the segments between them, one more for each fixed end: `ground` is `before`, `after`, `both` or ''.
 
     inertias in kg m² (n,), stiffnesses in N m/rad; segment_damping, mass_damping in N m s/rad, of a twist and against

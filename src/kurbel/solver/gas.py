@@ -14,6 +14,7 @@ A measured trace is in `kurbel.solver.trace`. The force is P = p_H A_H − p_C A
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Union
@@ -23,7 +24,6 @@ import numpy as np
 from kurbel.arrays import Array, Indices, Number
 from kurbel.crank_angle import within_cycle
 from kurbel.errors import UsageError
-from kurbel.frozen import Frozen
 from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
@@ -49,7 +49,8 @@ _BITS = 100
 # the process of a chamber
 
 
-class Process(Frozen):
+@dataclass(frozen=True, eq=False)
+class Process:
     """The pressure in a chamber over one cycle, from the (firing) dead centre on.
 
     lines: (n, 6), in the order of the process without vertical jumps: number of the stroke, stroke fraction z and

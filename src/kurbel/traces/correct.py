@@ -7,7 +7,7 @@ p V^n = const of compression and expansion follow, and the indicated work.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,7 +17,6 @@ from kurbel.arrays import Array, Indivisible, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
-from kurbel.frozen import Frozen
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.pieces import Angles, Pieces, refined
 
@@ -46,7 +45,8 @@ class KnownLevel(Record):
     pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
 
 
-class Trace(Frozen, Indivisible):
+@dataclass(frozen=True, eq=False)
+class Trace(Indivisible):
     """A measured trace over one whole cycle, or over many.
 
     angles (n,) in degrees as the trace counts them, rising over 360 or 720; samples (m, n) in Pa, of m laps one after
@@ -75,7 +75,7 @@ class Trace(Frozen, Indivisible):
     unit: float = 1.0
     scale: float = 1.0
 
-    def _check(self) -> None:
+    def __post_init__(self) -> None:
         alike = self.angles.ndim == 1 and len(self.angles) > 1 and self.samples.shape[1:] == self.angles.shape
         rising = alike and (np.diff(self.angles) >= 0).all() and self.period  # nan is not
         if not rising or not np.isfinite(self.samples).all():

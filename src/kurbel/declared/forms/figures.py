@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.numerals import NUMBER, familiar, plain
@@ -19,7 +19,6 @@ from kurbel.declared.reading import (
 )
 from kurbel.declared.units import written_unit
 from kurbel.errors import Path, refused
-from kurbel.frozen import Frozen
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences
 
@@ -37,7 +36,8 @@ class Bound(float):
         return bound
 
 
-class Expected(Frozen):
+@dataclass(frozen=True, eq=False)
+class Expected:
     """The smallest and the largest value that meet an expectation, in the base; unit, text and name as written."""
 
     low: float
