@@ -4,7 +4,7 @@ import re
 from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from hashlib import sha256
+from functools import partial
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -184,7 +184,7 @@ def report_on(
         whole=parts.pop() if having and having[-1][0].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),
-        provenance=provenance(machine) if frame.prose else None,
+        provenance=partial(provenance, machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
 
@@ -262,15 +262,15 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
 
 
 def provenance(machine: Machine) -> Provenance:
-    """Return what the results of a machine depend on: files with their SHA-256, overridden values, versions."""
+    """Return what the results of a machine depend on: files with their bytes, overridden values, versions."""
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
-        inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))
+        inputs.append(InputFile(origin.name, origin.content))
     for name in machine.trace_files:
-        digest = None
+        content = None
         with suppress(OSError), open(name, "rb") as file:
-            digest = sha256(file.read()).hexdigest()
-        inputs.append(InputFile(name, digest))
+            content = file.read()
+        inputs.append(InputFile(name, content))
     return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": np.__version__})
 
 

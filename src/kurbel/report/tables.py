@@ -77,6 +77,10 @@ class PlaceTable(NamedTuple):
     in_note: bool = False
 
 
+PISTONS = "pistons"
+"""The table of places that is a list of key values in JSON, and not in CSV."""
+
+
 class Part(NamedTuple):
     """The results of one cylinder, L/R or scene, or of the whole machine; the first column is the crank angle.
 
@@ -95,10 +99,10 @@ class Part(NamedTuple):
 
 
 class InputFile(NamedTuple):
-    """A file that was read, and the SHA-256 of its bytes; None if it no longer exists."""
+    """A file that was read, and its bytes; None if it no longer exists."""
 
     file: str
-    sha256: str | None
+    content: bytes | None
 
 
 class Provenance(NamedTuple):
@@ -115,8 +119,8 @@ class Report(NamedTuple):
     title: printed above everything; command and machine as in JSON (`machine` is None
     for `kurbel table`); group: `cylinders`, `bearings`, `ratios` or `scenes`, the JSON key of `parts`; whole: the
     results of the whole machine, if any; mirrored: what changes for the angles 360° − φ, which then have a second head
-    line (empty: none); notes: sentences below the table; head: sentences right below the title; provenance: None
-    where no file was read; cylinders: the names of all that the machine has.
+    line (empty: none); notes: sentences below the table; head: sentences right below the title; provenance: returns
+    it, None where no file was read; cylinders: the names of all that the machine has.
     """
 
     title: str
@@ -128,7 +132,7 @@ class Report(NamedTuple):
     mirrored: str = ""
     notes: tuple[str, ...] = ()
     head: tuple[str, ...] = ()
-    provenance: Provenance | None = None
+    provenance: Callable[[], Provenance] | None = None
     cylinders: tuple[str, ...] = ()
 
     @property
