@@ -93,9 +93,9 @@ class Subject(NamedTuple):
 
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        for quantity in self.lists.key_values(command).values():
-            value = self.answer(quantity) if command not in quantity.on_request and self.is_printed(quantity) else None
-            if value is not None:
+        for quantity, of, unless in self.results.rows.key_values.values() if self.results else ():
+            printed = command in quantity.commands and command not in quantity.on_request
+            if printed and not (unless and unless(self.results)) and (value := of(self.results)) is not None:
                 yield quantity, value
 
 
