@@ -24,7 +24,7 @@ from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
-from kurbel.report.alike import grouped, together
+from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
