@@ -91,9 +91,10 @@ class Binder:
 
     def bound(self, columns: Sequence[KeyColumn]) -> tuple[list[Batch], dict[int, str]]:
         """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
-        found, failures = list[Batch](), dict[int, str]()
-        words = [column.places for column, number in zip(columns, self._numeric) if not number]
-        for places in _alike(words, np.arange(len(columns[0].places))):
+        found, failures, rows = list[Batch](), dict[int, str](), np.arange(len(columns[0].places))
+        texts = (map(column.text, rows.tolist()) for column, number in zip(columns, self._numeric) if not number)
+        words = [np.unique(list(each), return_inverse=True)[1] for each in texts]
+        for places in _alike(words, rows):
             batches, apart = self._together(columns, places) if len(places) > 1 else ([], places)
             found += batches
             for row in apart.tolist():
