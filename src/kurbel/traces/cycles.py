@@ -13,7 +13,7 @@ import numpy as np
 from kurbel.arrays import Array, Indices
 from kurbel.declared.forms.values import out_of_size
 from kurbel.declared.units import MOST_POINTS
-from kurbel.errors import Fault, RuleError
+from kurbel.errors import Fault, NotANumber, RuleError
 from kurbel.traces.correct import PERIODS, period_of
 from kurbel.traces.read import LIMITS, Layout, read_table
 
@@ -47,10 +47,10 @@ class Recording:
         """Keep only these samples, in the order of their indices."""
         self.angles, self.values, self.rows = self.angles[which], self.values[:, which], self.rows[which]
 
-    def refuse(self, index: int, message: str) -> NoReturn:
+    def refuse(self, index: int, message: str, fault: type[Fault] = Fault) -> NoReturn:
         """Raise RuleError with what is wrong with a sample."""
         place = self._place(int(self.rows[index]))
-        raise RuleError(place._replace(message=f"{place.message}: {message}" if place.message else message))
+        raise RuleError(fault(place.path, f"{place.message}: {message}" if place.message else message))
 
 
 def samples_of_file(
@@ -102,7 +102,8 @@ def _refuse_no_numbers(recording: Recording, kind: str) -> None:
         largest = int(np.argmax(sizes))  # nan counts as the largest
         size = float(sizes[largest])
         if not math.isfinite(size):
-            recording.refuse(largest, f"the {what} is {size}, not a number; leave such rows out")
+            fault = NotANumber if math.isnan(size) else Fault
+            recording.refuse(largest, f"the {what} is {size}, not a number; leave such rows out", fault)
         if "large" in (beyond := out_of_size(size, what)):
             recording.refuse(largest, f"the {what} {size:g} {beyond}")
 

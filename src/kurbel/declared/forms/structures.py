@@ -124,13 +124,10 @@ class RecordForm(Form):
         return moved
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
-        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline.
-
-        What is NaN could not be read, and has been reported.
-        """
+        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
         unless = self.listed.unless if self.listed else ""
         faults = []
-        for fault in (one for one in error.faults if not isinstance(one, NotANumber)):
+        for fault in error.faults:
             name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
@@ -252,6 +249,8 @@ class Maker:
             raise RuleError(*form.record.faults_of_some(values))
         try:
             record = form.record.from_keys(**(values | unread))
+        except RuleError as error:
+            raise RuleError(*(one for one in error.faults if not (unread and isinstance(one, NotANumber)))) from None
         except (ArithmeticError, ValueError):
             if not unread:  # else a formula takes no nan
                 raise
