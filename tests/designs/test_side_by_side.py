@@ -94,3 +94,10 @@ def test_flywheels_on_both_sides_of_their_bearing(tmp_path: Path) -> None:
     file.write_text(text.replace("flywheel_mass: 4 t", "flywheel_mass: 400 t"), encoding="utf-8")
     inputs = {"crankshaft.flywheel_position": ["450 mm", "300 mm", "-100 mm", "-120 mm", "200 mm"]}
     assert farthest(file, inputs, ["sigma_journal_B_max", "mises_journal_B_max"]) <= (1e-12, "~")
+
+
+def test_a_crosshead_that_locks_itself_has_no_forces_among_others() -> None:
+    """f tan ψ ≥ 1 with f = 0.1 where R/L ≥ 1/√(1 + f²), L/R ≤ 1.00499."""
+    found = sweep(CONFIGS["waterworks"], {"rod_ratio": ["1.002", "1.003", "1.004", "1.006", "5"]}, "S_max")
+    assert ["locks itself" in why for why in found["failure"]] == [True, True, True, False, False]
+    assert np.isnan(found["S_max"]).tolist() == [True, True, True, False, False]

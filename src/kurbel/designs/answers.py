@@ -18,6 +18,7 @@ from kurbel.designs.binding import Batch, Binder, KeyColumn
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
+from kurbel.machine.cylinder import may_lock
 from kurbel.machine.indicator import Card
 from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
@@ -181,12 +182,15 @@ def _together(batch: Batch, places: Indices, requested: Sequence[Answer]) -> dic
     """Return the key values of a batch by its rows, without machines that fail or have a value that is not finite."""
     if len(places) < _FEWEST:
         return {}
+    machine = changed(batch.machine, lambda numbers: numbers[places])
     try:
-        columns = _values(Case(changed(batch.machine, lambda numbers: numbers[places]), len(places)), requested)
+        columns = _values(Case(machine, len(places)), requested)
     except (KurbelError, ArithmeticError, RuntimeWarning):
         half = len(places) // 2
         return _together(batch, places[:half], requested) | _together(batch, places[half:], requested)
     fit = np.ones(len(places), dtype=bool)
+    for one in machine.cylinders:
+        fit &= ~np.asarray(may_lock(one))  # whether it does is known of a single machine only
     each: list[Sequence[Value]] = []
     for value in columns:
         if isinstance(value, tuple) and value and isinstance(value[0], tuple):  # a list of each machine

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from kurbel.arrays import Truth
 from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
@@ -169,11 +170,16 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
         yield from first_of(iter(rules))
 
 
-def may_lock(cylinder: Cylinder) -> bool:
+def may_lock(cylinder: Cylinder) -> Truth:
     """Return whether the friction of the crosshead is great enough to lock it where it is driven: f tan ψ ≥ 1."""
-    coefficient = (cylinder.friction.crosshead if cylinder.friction else None) or 0.0
+    coefficient = cylinder.friction.crosshead if cylinder.friction else None
+    locking: Truth = False
+    if coefficient is None:
+        return locking
     widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
-    return coefficient > 0 and any(coefficient * abs(float(sin)) >= cos for sin, cos in widest)
+    for sin, cos in widest:
+        locking = locking | (coefficient * np.abs(sin) >= cos)
+    return locking & (coefficient > 0)
 
 
 def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
