@@ -286,7 +286,7 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
     found, heading = list[Row](), ""
-    for item in definitions.values():
+    for item in (*definitions.values(), Searched()):  # of rows with one id the first counts
         rows: Iterable[Row] = ()
         if isinstance(item, Heading):
             heading = item.text

@@ -18,7 +18,7 @@ from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
 from kurbel.quantity import Heading, value
-from kurbel.solver.figures import AtAngles, Results, Rows, Searched, result, rows_of
+from kurbel.solver.figures import AtAngles, Results, Rows, result, rows_of
 
 
 class MotionColumns(AtAngles):
@@ -200,7 +200,6 @@ class Motion(Results):
         listed=True,
         on_request=("forces",),
     )
-    of_the_mechanism = Searched()
 
     def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:
         self.mechanism, self.speed, self._count = mechanism, speed, count
