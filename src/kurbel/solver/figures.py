@@ -1,8 +1,8 @@
 """Results by name: the rows of a class of results, its key values by id or printed symbol, and all columns at once.
 
 A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
-They are printed in the order of their definition, for people below the `Heading` before them; a `PartResults` brings
-the rows of another class to its place, `Searched` the extremes of the columns.
+They are printed in the order of their definition, for people below the `Heading` before them. In the place of a
+`PartResults` are the rows of another class, in that of `Searched` the extremes of the columns.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class AtAngles:
     """Columns at crank angles (n,) in degrees: attributes with rows, in SI, each (n,), None for what there is not."""
 
     commands: ClassVar[tuple[str, ...]] = ()
-    """That print its columns, where a column does not say which."""
+    """Those that print its columns, except columns with `commands` of their own."""
 
     def __init_subclass__(cls) -> None:
         # a column of several parts is an attribute for each of them
@@ -178,7 +178,7 @@ def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V
 
 
 class Searched:
-    """The extremes of the columns of the class in which it stands, as the flag `extremes` of a column says."""
+    """The place of the extremes of columns among the key values of a class; without it they are printed last."""
 
     ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
         "max": lambda both: both.largest,

@@ -162,14 +162,14 @@ class CylinderForces(SampledCylinder, Results):
         "P_b,max",
         "force",
         "Largest inertia force toward the shaft",
-        lambda forces: largest(*forces.inertia) if forces.inertia else None,
+        lambda forces: largest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
     )
     P_inertia_min = value(
         "P_b,min",
         "force",
         "Largest inertia force away from the shaft, negative",
-        lambda forces: smallest(*forces.inertia) if forces.inertia else None,
+        lambda forces: smallest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
     )
     p_guide_max = value(
@@ -285,7 +285,7 @@ class CylinderForces(SampledCylinder, Results):
         "ΔA/A",
         "ratio",
         "Energy balance of the cycle, in minus out, by an independent quadrature",
-        lambda forces: forces.energy_left(),
+        lambda forces: forces.energy_balance(),
         residual=True,
     )
     residual = value(
@@ -352,8 +352,8 @@ class CylinderForces(SampledCylinder, Results):
     # extremes of the columns
 
     @property
-    def inertia(self) -> list[Extreme]:
-        """The inertia forces where the acceleration is largest and smallest; none without masses or speed."""
+    def inertia_extremes(self) -> list[Extreme]:
+        """The inertia forces in N where the acceleration is largest and smallest; none without masses or speed."""
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
 
@@ -462,7 +462,7 @@ class CylinderForces(SampledCylinder, Results):
             found["guides"] = over_cycle(samples.drag_of_guides * (samples.slope * samples.direction))
         return found
 
-    def energy_left(self) -> Number | None:
+    def energy_balance(self) -> Number | None:
         """Return the energy balance (∮ T R dφ − `work_left`) over ∮ |T| R dφ: quadrature against work in closed form.
 
         With a measured trace at equal angles the quadrature follows the straight lines between the samples, the
