@@ -90,7 +90,12 @@ class PistonWork(Results):
 
     command = "forces"
     work = value("A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work)
-    power = value("N_i", "power", "Indicated power of the piston", lambda one: one.rate and one.gas.work * one.rate)
+    power = value(
+        "N_i",
+        "power",
+        "Indicated power of the piston",
+        lambda one: None if one.rate is None else one.gas.work * one.rate,
+    )
     mean_pressure = value(
         "p_i", "pressure", "Mean indicated pressure of the piston", lambda one: one.gas.work / one.gas.swept_volume
     )
