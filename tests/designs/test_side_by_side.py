@@ -70,7 +70,7 @@ OTHER_COMMANDS = [
     ("compressor-two-stage", "gas.inlet_temperature", [f"{warm} °C" for warm in (10, 15, 20, 25, 30)], GAS),
     ("scotch-yoke-pump", "friction.block", ["0", "0.03", "0.07", "0.1", "0.2"], "work_block loss_guides T_max dE"),
 ]
-"""Key values of flywheel, stress, bearings, balance, delivery and single pistons; of a gas with arrays of numbers, too."""
+"""Key values of flywheel, stress, bearings, balance, delivery, single pistons; of a gas with arrays of numbers, too."""
 
 
 @pytest.mark.parametrize(("name", "key", "values", "columns"), OTHER_COMMANDS)
