@@ -371,7 +371,7 @@ def pin_diameter() -> Entry:
 def pin_length() -> Entry:
     """Return the field of the length of the crank pin."""
     text = "Length of the crank pin in its block; needs `pin_diameter`"
-    return field("length", text, "l_z", above=0, absent="same", needs="pin_diameter")
+    return field("length", text, "l_z", above=0, absent="no pin pressure", needs="pin_diameter")
 
 
 NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")

@@ -107,7 +107,7 @@ class State(Chambers):
         Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
         """
         drive = self.drive
-        force = self.force_of(drive.beyond) if some(any_of(drive.beyond)) else None
+        force = self.force_of(drive.tandem) if some(any_of(drive.tandem)) else None
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):
@@ -300,7 +300,7 @@ class State(Chambers):
         """Friction force in N of the piston rings and of `friction: constant`, which are independent of N."""
         drive = self.drive
         by_gas = np.abs(self.pressure_difference) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
-        return drive.steady_friction + by_gas
+        return drive.constant_friction + by_gas
 
     @cached_property
     def after_steady_friction(self) -> Number:
