@@ -319,7 +319,12 @@ class Pieces:
         may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
         which, piece = _where(np.logical_or.reduce(may))
         samples = np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
-        straight = _STRAIGHT * size[which, self.machine[piece]]
+        # by less, too, than one sample differs from the next
+        steps, owner = np.abs(np.diff(samples, axis=0)).max(axis=0), self.machine[piece]
+        may = [top[which, piece] + steps >= (one - slack)[which, owner] for top, one in zip(tops, best)]
+        near = np.flatnonzero(np.logical_or.reduce(may))
+        which, piece, samples, owner = which[near], piece[near], samples[:, near], owner[near]
+        straight = _STRAIGHT * size[which, owner]
         # where all samples are equal but for rounding, it alone turns
         bent = np.flatnonzero(over[which, piece] > straight)
         rows, places, turning = _turning_points(samples[:, bent], self.rule)
@@ -331,13 +336,9 @@ class Pieces:
         turning = np.where(beyond, turning, np.clip(turning, low, high))
         value = np.concatenate((samples[0], samples[-1], turning))
         degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
-        quantity = np.concatenate((which, which, which[rows]))
-        owner = self.machine[np.concatenate((piece, piece, piece[rows]))]
-        for sign, one in zip(signs, best):
-            np.maximum.at(one, (quantity, owner), sign * value)
-        return [
-            (one, _first_summits(quantity, owner, degrees, sign * value, one, slack)) for sign, one in zip(signs, best)
-        ]
+        cell = which * self.count + owner
+        cell = np.concatenate((cell, cell, cell[rows]))
+        return [_first_summits(cell, degrees, sign * value, one, slack) for sign, one in zip(signs, best)]
 
     def _at(self, rows: Indices, places: Array) -> Array:
         """Return the angles in degrees at places in [−1, 1] of these pieces."""
@@ -481,20 +482,23 @@ def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pi
     return whole, found
 
 
-def _first_summits(
-    quantity: Indices, machine: Indices, degrees: Array, value: Array, best: Array, slack: Array
-) -> Array:
-    """Return the angles (q, machines) of the first summits that reach the best values but for the slack."""
-    first, level, found = (np.full(best.shape, empty) for empty in (np.inf, -np.inf, np.inf))
-    reached = value >= (best - slack)[quantity, machine]
-    quantity, machine, degrees, value = quantity[reached], machine[reached], degrees[reached], value[reached]
-    np.minimum.at(first, (quantity, machine), degrees)
-    own = degrees <= first[quantity, machine] + _SUMMIT
-    quantity, machine, degrees, value = quantity[own], machine[own], degrees[own], value[own]
-    np.maximum.at(level, (quantity, machine), value)
-    top = value >= (level - slack / 100)[quantity, machine]  # of a plateau the beginning
-    np.minimum.at(found, (quantity[top], machine[top]), degrees[top])
-    return found
+def _first_summits(cell: Indices, degrees: Array, value: Array, best: Array, slack: Array) -> tuple[Array, Array]:
+    """Return the largest values (q, machines) and the angles of the first summits that reach them but for the slack.
+
+    best: the largest samples; value: of more places (n,), each of a quantity and machine by its place in `best`.
+    """
+    largest, slack = best.ravel(), slack.ravel()
+    np.maximum.at(largest, cell, value)
+    first, level, found = (np.full(largest.shape, empty) for empty in (np.inf, -np.inf, np.inf))
+    reached = value >= (largest - slack)[cell]
+    cell, degrees, value = cell[reached], degrees[reached], value[reached]
+    np.minimum.at(first, cell, degrees)
+    own = degrees <= first[cell] + _SUMMIT
+    cell, degrees, value = cell[own], degrees[own], value[own]
+    np.maximum.at(level, cell, value)
+    top = value >= (level - slack / 100)[cell]  # of a plateau the beginning
+    np.minimum.at(found, cell[top], degrees[top])
+    return largest.reshape(best.shape), found.reshape(best.shape)
 
 
 def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Array]:

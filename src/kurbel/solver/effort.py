@@ -255,7 +255,11 @@ class TurningEffort:
                 f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
                 f"{show(-mean, 'torque')} less than driven pistons and friction take; it runs {runs}"
             )
-        return ExcessWork(self, self.M - self.load)
+        return self._excess_by(self.M - self.load)
+
+    def _excess_by(self, torque: Array) -> ExcessWork:
+        swing = None if self.swing is None else self.swing * self.share(None)
+        return ExcessWork(self.pieces, torque, self.pieces.largest(self.M), swing)
 
     @property
     def missing_inertia(self) -> list[Term]:
@@ -266,18 +270,18 @@ class TurningEffort:
     def true_excess(self) -> ExcessWork:
         """The excess that changes the kinetic energy: losses do not reduce its share of the moving masses."""
         missing = self.missing_inertia
-        return ExcessWork(self, self.excess.torque + self.sampled(missing)) if missing else self.excess
+        return self._excess_by(self.excess.torque + self.sampled(missing)) if missing else self.excess
 
 
 class ExcessWork:
     """The works between the crossings of effort and load.
 
-    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces).
+    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces); size: (machines,), of M; swing: ΔE
+    in J where it alone is known.
     """
 
-    def __init__(self, effort: TurningEffort, torque: Array) -> None:
-        pieces = self.pieces = effort.pieces
-        self._effort, self._size = effort, pieces.largest(effort.M)
+    def __init__(self, pieces: Pieces, torque: Array, size: Array, swing: Number | None) -> None:
+        self.pieces, self._size, self._swing = pieces, size, swing
         self.torque = np.where(pieces.of(pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
         whole = pieces.running(self.torque)
         gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
@@ -308,8 +312,8 @@ class ExcessWork:
     @cached_property
     def dE(self) -> Array:
         """ΔE in J, the largest swing of the excess work, (machines,)."""
-        if self._effort.swing is not None:
-            return np.ones(self.pieces.count) * self._effort.swing * self._effort.share(None)
+        if self._swing is not None:
+            return np.ones(self.pieces.count) * self._swing
         return np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0)
 
 

@@ -82,11 +82,14 @@ class State(Chambers):
         """Return the state at the nodes of pieces, (nodes, pieces); at a jump each piece has the value on its side."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
-    @cached_property
+    @property
     def without_pin_friction(self) -> State:
         """The same state without friction in pins and journals, whose friction is computed from these loads."""
-        if not (self.pin_friction and self.drive.pin_friction):
-            return self
+        # a state that held itself would be freed late, with all its arrays
+        return self._frictionless if self.pin_friction and self.drive.pin_friction else self
+
+    @cached_property
+    def _frictionless(self) -> State:
         state = State(self.drive, self.posed, self.within, pin_friction=False)
         state.slope, state.curvature, state.piston_forces = self.slope, self.curvature, self.piston_forces
         return state
