@@ -170,7 +170,7 @@ class Pieces:
         """Their middles in degrees: they decide on which side of a jump a piece is."""
         return self.right_angle + (self.offset + self.half)
 
-    @cached_property
+    @property
     def offsets(self) -> Array:
         """How far the nodes are from the right angles in degrees, (nodes, pieces)."""
         return self.offset + self.half * (1 + self.rule.nodes[:, None])
@@ -471,14 +471,12 @@ def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pi
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
     whole = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine).taken(order)
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    places = np.split(place, np.cumsum([len(rows) for _, rows, _ in parts])[:-1])
-    count = len(parts[0][2])
-    found = np.empty((count, *parts[0][2][0].shape[:-1], len(order)))
-    for at, (_, rows, values) in zip(places, parts):
-        for quantity, one in enumerate(values):
-            found[quantity][..., at] = one[..., rows]
+    before = np.cumsum([0, *(len(pieces.half) for pieces, _, _ in parts)])
+    source = np.concatenate([rows + passed for (_, rows, _), passed in zip(parts, before)])[order]
+    values = [part for _, _, part in parts]
+    found = np.empty((len(values[0]), *values[0][0].shape[:-1], len(order)))
+    for quantity, each in zip(found, zip(*values)):
+        np.take(np.concatenate(each, axis=-1), source, axis=-1, out=quantity, mode="clip")  # without a buffer
     return whole, found
 
 

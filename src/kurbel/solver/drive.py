@@ -142,7 +142,7 @@ class Drive:
         other.gas, other.driving, other.driven, other.pumping = self.gas, self.driving, self.driven, self.pumping
         return other
 
-    @cached_property
+    @property
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
         count = self.count or 1

@@ -207,6 +207,7 @@ class CardPressure:
         self._keys = self._machine * (2 * setting.cycle) + self._begins
         self._first = np.searchsorted(self._machine, np.arange(len(own)))
         self.straight = not exponent.any()
+        self._level = self.straight and np.array_equal(p, self._next_p)
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
         machines = count if alike and count else 1
         self.starts = Angles(
@@ -238,12 +239,15 @@ class CardPressure:
     ) -> Array:
         """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that hold `within` (n,).
 
+        Where no pressure varies along any segment, it is (n,) for pieces, too.
         z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; machine: of each, (n,); remaining:
         1 − z with all its digits, of which steep lines near the outer dead centre need every one.
         """
         setting, row = self.setting, self._holding(within, machine)
         begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
         lift, base, clearance = (spread(one, machine) for one in (self._lift, setting.base, self._clearance))
+        if self._level:
+            return np.asarray(p - base)
         own, rest = (z, remaining) if setting.head_end else (remaining, z)
         distance = (1 - z if own is None else own) - begin
         if remaining is not None:

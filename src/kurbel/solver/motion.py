@@ -11,7 +11,7 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.batch import taken
+from kurbel.machine.batch import taken, varies
 from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
@@ -203,7 +203,8 @@ class Motion(Results):
     of_the_mechanism = Searched()
 
     def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:
-        self.mechanism, self.speed, self._count = mechanism, speed, count
+        self.mechanism, self.speed = mechanism, speed
+        self._count = count if varies(mechanism) else None
         self.omega: Any = None if speed is None else 2 * math.pi * speed
 
     @property

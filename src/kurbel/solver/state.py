@@ -327,7 +327,7 @@ class State(Chambers):
             sense = State(self.drive, CrankAngle.of(self.within), self.within, self.pin_friction).guide_sense
         return np.where(sense >= 0, 1.0, -1.0)
 
-    @cached_property
+    @property
     def guide_denominator(self) -> Array:
         """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
@@ -358,12 +358,15 @@ class State(Chambers):
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
             return self.after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
-        locked = self.guide_denominator <= 0
-        if locked.any() and drive.index is None:
-            raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
-        return self.guide_sense / np.where(locked, np.nan, self.guide_denominator)
+        below = self.guide_denominator
+        locked = below <= 0
+        if locked.any():
+            if drive.index is None:
+                raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
+            below = np.where(locked, np.nan, below)
+        return self.guide_sense / below
 
-    @cached_property
+    @property
     def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
@@ -449,7 +452,7 @@ class State(Chambers):
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
         return _sum(self.P, self.F_friction)
 
-    @cached_property
+    @property
     def _free_torque(self) -> Number:
         """Torque in N m before friction in pins, journals and yoke block, by virtual work of the output force."""
         return self._output * self.slope + self._rod_tangential * self.mechanism.crank
