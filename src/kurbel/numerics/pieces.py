@@ -46,6 +46,8 @@ _NEAR = 0.05
 """Of the range of samples on a piece: if they come closer to zero, a summit between them may cross it."""
 _INSIDE = 1 - 1e-10
 """Of half a piece: a summit beyond this is the end of the piece."""
+_SETTLED = 1e-10
+"""Of half a piece: after so short a step to a root the next would be its square."""
 _NO_WIDTH = 1e-11
 """Degrees: a narrower piece is dropped."""
 
@@ -540,5 +542,8 @@ def _where(flags: Flags) -> tuple[Indices, Indices]:
 
 def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:
     """Return the zeros of series (k, n) between low and high (n,), where they are first and last."""
-    slopes = slope_of_series(len(series)) @ series
-    return bracketed_roots(lambda at: (series_at(series, at), series_at(slopes, at)), low, high, first, last)
+    both = np.zeros((len(series), 2, len(low)))
+    both[:, 0], both[:-1, 1] = series, slope_of_series(len(series)) @ series
+    return bracketed_roots(
+        lambda at: series_at(both, np.broadcast_to(at, (2, len(at)))), low, high, first, last, _SETTLED
+    )
