@@ -112,12 +112,12 @@ class MotionColumns(AtAngles):
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
-    @cached_property
+    @property
     def coordinate(self) -> Number:
         """Coordinate of the output in m, of what only swings in radians."""
         return self.mechanism.coordinate(self.posed)
 
-    @cached_property
+    @property
     def displacement(self) -> Number:
         """Displacement from the inner dead centre in m, of what only swings in radians."""
         passed: Number = self.coordinate - self.mechanism.start
