@@ -78,7 +78,7 @@ class SampledCylinder:
 
     @shared
     def _cycle(self) -> tuple[Pieces, State, Pieces]:
-        """The pieces, the state at their nodes, and the longer pieces that end at kinks, jumps and multiples of 45°."""
+        """The pieces, the state at their nodes, and the longer pieces that end at kinks and jumps."""
         drive, pieces = self.drive, self.drive.pieces
         state = _state_on(drive, pieces)
         if drive.has_force:
