@@ -276,8 +276,8 @@ class TurningEffort:
 class ExcessWork:
     """The works between the crossings of effort and load.
 
-    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces); size: (machines,), of M; swing: ΔE
-    in J where it alone is known.
+    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces); size: (machines,), of M; swing:
+    ΔE in J where it alone is known.
     """
 
     def __init__(self, pieces: Pieces, torque: Array, size: Array, swing: Number | None) -> None:
