@@ -36,7 +36,7 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST, _MOST = 3, 400
+_FEWEST, _MOST = 3, 500
 """Fewest machines of a batch, fewer are computed as quickly one by one; and most: more would only need more memory."""
 _KEPT = 31 << 20
 """Bytes: as large a block, once freed, makes the C library of Linux keep twice as much of what is freed.

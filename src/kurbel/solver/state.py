@@ -125,7 +125,9 @@ class State(Chambers):
         "P_b",
         "force",
         "Inertia force −m b of the reciprocating masses",
-        lambda state: -state.drive.mass * state.b if state.drive.has_inertia else None,
+        lambda state: (
+            state.curvature * (-state.drive.mass * state.omega * state.omega) if state.drive.has_inertia else None
+        ),
     )
     P_weight = value(
         "P_w",
@@ -367,6 +369,11 @@ class State(Chambers):
         return self.guide_sense / below
 
     @property
+    def drag(self) -> Number:
+        """Friction along the stroke line in N, magnitude."""
+        return self.crosshead_drag + self.drag_of_guides + self.steady_friction
+
+    @property
     def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
@@ -443,14 +450,16 @@ class State(Chambers):
         lambda state: (
             None
             if state.P is None or state.drive.cylinder.friction is None
-            else state.filled((state.crosshead_drag + state.drag_of_guides + state.steady_friction) * -state.direction)
+            else state.filled(state.drag * -state.direction)
         ),
     )
 
     @cached_property
     def along_rod(self) -> Number:
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
-        return _sum(self.P, self.F_friction)
+        if self.P is None or self.drive.cylinder.friction is None:
+            return self.P
+        return self.P - self.drag * self.direction
 
     @property
     def _free_torque(self) -> Number:
