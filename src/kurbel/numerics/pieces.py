@@ -142,10 +142,6 @@ class Pieces:
             machine=self.machine[rows],
         )
 
-    def with_nodes(self, nodes: int) -> Pieces:
-        """Return these pieces with so many nodes each."""
-        return replace(self, rule=rule(nodes))
-
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
         some = self.taken(rows)
@@ -205,6 +201,11 @@ class Pieces:
         own, following = self.low + 2 * self.half, self.low[self.after]
         following = np.where(self.after == self.first[self.machine], self.cycle, following)
         return np.where(np.abs(following - own) < _SAME, following, own)
+
+    @property
+    def ends(self) -> Array:
+        """The angles in degrees at which those of the only machine begin, and the end of the cycle."""
+        return np.append(self.low, self.cycle)
 
     def of(self, numbers: Any) -> Any:
         """Return numbers (machines,) for each piece, (pieces,); a single number is returned as it is."""
@@ -441,7 +442,13 @@ def _halved_until_smooth(
             some = may.any(axis=0)
             todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
             tested = values * may[:, None, some]
-        rough = _rough(todo, tested, size, len(done))
+        # a crowd of rough pieces that halving does not thin out is noise
+        tails = np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.nan_to_num(tails / size[:, todo.machine], nan=0.0, posinf=0.0).max(axis=0)
+        rough = (share > TAIL) & (todo.half > NARROWEST / 2)
+        crowd = np.bincount(todo.machine[rough], minlength=todo.count) > _CROWD
+        rough &= ((share > _NOISE) & (len(done) < _OFTEN)) | ~crowd[todo.machine]
         if not (done or rough.any()):
             return todo, values, parts
         done.append((todo, np.flatnonzero(~rough), [*values, *parts]))
@@ -453,19 +460,6 @@ def _halved_until_smooth(
         todo = todo.halved(rough)
     whole, both = joined(done)
     return whole, both[: len(values)], both[len(values) :]
-
-
-def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags:
-    """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known.
-
-    halvings: how many times these have been. A crowd of rough pieces that halving does not thin out is noise.
-    """
-    tails = np.array([np.abs(pieces.rule.series[-2:] @ one).max(axis=0) for one in values])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
-    rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
-    crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
-    return rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine])
 
 
 def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:

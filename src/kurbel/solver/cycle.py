@@ -7,7 +7,7 @@ friction it is also cut where the force on the guide, on a pin or on the block o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple, TypeVar, overload
 
@@ -97,8 +97,7 @@ class SampledCylinder:
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._cycle[2]
-        return np.append(cut.low, self.drive.cycle)
+        return (self.drive.pieces if may_lock(self.drive.cylinder) else self._cycle[2]).ends
 
     @property
     def tail(self) -> float:
@@ -115,12 +114,11 @@ class SampledCylinder:
         found = self.samples[column]
         return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
 
-    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
-        """Return the extremes in SI of those of the columns that the machine has, by id."""
-        found = {name: values for name in columns if (values := self.sampled(name)) is not None}
-        if not found:
-            return {}
-        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self.result)))
+    def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
+        """Return the extremes in SI of columns of `samples` by id, without those that are None."""
+        pieces, names = self.pieces, [name for name, values in columns.items() if values is not None]
+        found = pieces.extremes(_known(pieces, columns.values())).each(self.result) if names else []
+        return dict(zip(names, found))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""

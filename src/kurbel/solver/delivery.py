@@ -185,7 +185,7 @@ class Delivery(Results):
         self._pipes = [(pipe, draws) for pipe, draws in both_pipes if pipe]
         self._result = partial(result, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
-        self.breaks = np.append(pieces.low, pieces.cycle)
+        self.breaks = pieces.ends
         if count is None:
             _ = self.answers  # refuses a vessel that would empty
 

@@ -197,12 +197,6 @@ class Drive:
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
 
     @property
-    def beyond(self) -> tuple[Truth, ...]:
-        """Of the pistons that have an indicator, whether each is a tandem one on the rod itself, without a lever."""
-        own = self.cylinder.pistons[0].indicator is not None if self.gas else False
-        return tuple(False if own and not n else gas.piston.lever_ratio == 1 for n, gas in enumerate(self.gas))
-
-    @property
     def drives(self) -> Truth:
         """Whether any piston drives."""
         return any_of(self.driving)

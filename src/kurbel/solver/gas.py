@@ -189,10 +189,9 @@ class CardPressure:
         self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None, mirrored: CardPressure | None
     ) -> None:
         self.setting, self._count, cycle = setting, count, setting.cycle
-        if mirrored:
-            self._processes, self._which = mirrored._processes, mirrored._which
-        else:
-            self._processes, self._which = _processes(chamber, setting, count)
+        known = (mirrored._processes, mirrored._which) if mirrored else _processes(chamber, setting, count)
+        self._processes: list[Process] = known[0]
+        self._which: Indices = known[1]
 
         # lines at the same angles in all machines are kept once
         alike = self._alike = len(self._processes) == 1 and not varies(setting.mechanism)

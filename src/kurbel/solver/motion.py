@@ -218,7 +218,8 @@ class Motion(Results):
         one, found = self.mechanism, dict[str, object](phi_work=self.mechanism.phi_work)
         found["phi_return"] = one.phi_return
         if one.has_dead_centres:
-            found["phi_idc"], found["phi_odc"] = map(_within_turn, one.dead_centres())
+            centres = (where(end < 0, end + 360.0, end) for end in one.dead_centres())  # from −360° to 720°
+            found["phi_idc"], found["phi_odc"] = (where(end >= 360.0, end - 360.0, end) for end in centres)
         if self.omega is not None:
             found["v"] = one.crank * self.omega
         if not one.slides:
@@ -303,8 +304,3 @@ def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
     turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)
-
-
-def _within_turn(degrees: Number) -> Number:
-    """Return an angle between −360° and 720° as one from 0 to 360."""
-    return where(degrees < 0, degrees + 360.0, where(degrees >= 360.0, degrees - 360.0, degrees))

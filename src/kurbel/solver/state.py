@@ -110,7 +110,9 @@ class State(Chambers):
         Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
         """
         drive = self.drive
-        force = self.force_of(drive.beyond) if some(any_of(drive.beyond)) else None
+        # tandem pistons are on the rod itself, without a lever
+        tandem = [False if gas is drive.own_gas else gas.piston.lever_ratio == 1 for gas in drive.gas]
+        force = self.force_of(tandem) if some(any_of(tandem)) else None
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):

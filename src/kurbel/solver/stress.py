@@ -61,16 +61,6 @@ _BEARINGS = {part: PARTS[part] for part in ("pin", "journal_A", "journal_B")}
 # three tiny ones would be zero.
 
 
-def round_bending(moment: Number, diameter: Number) -> Number:
-    """Return σ = 32 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_b/Z)."""
-    return 32 / math.pi * moment / diameter / diameter / diameter
-
-
-def round_torsion(moment: Number, diameter: Number) -> Number:
-    """Return τ = 16 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_d/Z_p)."""
-    return 16 / math.pi * moment / diameter / diameter / diameter
-
-
 class Place(NamedTuple):
     """The stresses in Pa at one place of a part; None for what there cannot be there.
 
@@ -140,9 +130,13 @@ def places(body: FreeBody) -> Iterator[Place]:
 
 
 def _round(part: str, name: str, moments: Force, torque: Number | None, diameter: Number) -> Place:
-    """Stresses at the surface of a round section, whose bendings add up as vectors."""
-    in_plane, out_of_plane = (magnitude(round_bending(one, diameter)) for one in (moments.real, moments.imag))
-    torsion = None if torque is None else magnitude(round_torsion(torque, diameter))
+    """Stresses at the surface of a round section, whose bendings add up as vectors (G).
+
+    Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
+    """
+    bendings = (magnitude(32 / math.pi * one / diameter / diameter / diameter) for one in (moments.real, moments.imag))
+    in_plane, out_of_plane = bendings
+    torsion = None if torque is None else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
@@ -331,7 +325,7 @@ class CrankshaftStrength(Results):
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle[0].low, self._cycle[0].cycle)
+        return self._cycle[0].ends
 
     @cached_property
     def _largest(self) -> list[Extreme]:
