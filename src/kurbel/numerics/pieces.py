@@ -48,8 +48,6 @@ _INSIDE = 1 - 1e-10
 """Of half a piece: a summit beyond this is the end of the piece."""
 _SETTLED = 1e-10
 """Of half a piece: after so short a step to a root the next would be its square."""
-_WIDEST = 45.000001
-"""Degrees: a wider piece is cut in its middle from the start."""
 _NO_WIDTH = 1e-11
 """Degrees: a narrower piece is dropped."""
 
@@ -112,14 +110,15 @@ class Pieces:
     @classmethod
     def between(cls, breaks: Angles, count: int, cycle: float, nodes: int = 16) -> Pieces:
         """Return the pieces between these angles, taken modulo the cycle, and all right angles; no wider than 45°."""
-        right_angles = np.arange(0.0, cycle + 1, 90.0)
-        machine = np.append(np.repeat(np.arange(count), len(right_angles)), breaks.machine)
-        degrees = np.append(np.tile(right_angles, count), np.mod(breaks.degrees, cycle))
+        eighths = np.arange(0.0, cycle + 1, 45.0)
+        machine = np.append(np.repeat(np.arange(count), len(eighths)), breaks.machine)
+        degrees = np.append(np.tile(eighths, count), np.mod(breaks.degrees, cycle))
+        between = np.append(np.tile(eighths % 90 == 45, count), np.zeros(len(breaks.degrees), dtype=bool))
         order = np.lexsort((degrees, machine))
-        machine, degrees = machine[order], degrees[order]
-        wide = np.flatnonzero(np.diff(degrees) > _WIDEST) + 1
-        machine = np.insert(machine, wide, machine[wide])
-        degrees = np.insert(degrees, wide, (degrees[wide - 1] + degrees[wide]) / 2)
+        machine, degrees, spare = machine[order], degrees[order], between[order]
+        # between the right angles only where a piece would be too wide
+        spare[1:-1] &= degrees[2:] - degrees[:-2] <= 45.0
+        machine, degrees = machine[~spare], degrees[~spare]
         width = np.append(np.diff(degrees), 0.0)
         kept = np.flatnonzero(width > _NO_WIDTH)
         right_angle = 90.0 * np.rint((degrees[kept] + width[kept] / 2) / 90.0)
