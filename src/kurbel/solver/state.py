@@ -463,16 +463,6 @@ class State(Chambers):
             return self.P
         return self.P - self.drag * self.direction
 
-    @property
-    def _free_torque(self) -> Number:
-        """Torque in N m before friction in pins, journals and yoke block, by virtual work of the output force."""
-        return self._output * self.slope + self._rod_tangential * self.mechanism.crank
-
-    @property
-    def torque(self) -> Number:
-        """Torque T R in N m at the crank pin: M before the friction in crank pin and journals."""
-        return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
-
     @cached_property
     def losses(self) -> dict[str, Number]:
         """Torque in N m lost by friction in pins, journals and the block of a yoke, by the keys in `friction`."""
@@ -484,12 +474,16 @@ class State(Chambers):
             lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
         return lost
 
-    M = value(
-        "M",
-        "torque",
-        "Torque on the shaft",
-        lambda state: None if state._output is None else state._free_torque - sum(state.losses.values(), start=0.0),
-    )
+    @column("M", "torque")
+    def M(self) -> Any:
+        """Torque on the shaft.
+
+        By virtual work of the force at the output, less what is lost in pins, journals and the block of a yoke.
+        """
+        if self._output is None:
+            return None
+        push = self._output * self.slope + self._rod_tangential * self.mechanism.crank
+        return push - sum(self.losses.values(), start=0.0)
 
 
 def on_pin(state: State) -> Vector:

@@ -382,7 +382,7 @@ class CrankshaftStrength(Results):
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state).complex, state.angle, pieces)
-        return self.forces.result(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
+        return self.forces.result(pieces.largest(body.equilibrium_residual(state.T * state.mechanism.crank)))
 
     # the two positions of the book, and the worst of the cycle
 
