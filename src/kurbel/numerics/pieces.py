@@ -210,6 +210,10 @@ class Pieces:
         """Return numbers (machines,) for each piece, (pieces,); a single number is returned as it is."""
         return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
 
+    def filled(self, values: Any) -> Array:
+        """Return a value, or one of every piece (pieces,), at every node, (nodes, pieces)."""
+        return np.broadcast_to(values, self.degrees.shape)
+
     def holding(self, machine: Indices, degrees: Array) -> Indices:
         """Return the pieces (n,) that hold angles (n,) in degrees of these machines, or begin there."""
         keys = self.machine * (2 * self.cycle) + self.low
@@ -262,10 +266,10 @@ class Pieces:
         found = np.empty((*values.shape[:-2], *self.degrees.shape))
         if whole.any():
             found[..., whole] = values[..., row[whole]]
-        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / width - 1
         for part in np.split(np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)):
             series = np.moveaxis(source.rule.series @ values[..., row[part]], -2, 0)[..., None, :]
-            own = np.broadcast_to(np.clip(places[:, part], -1, 1), (*values.shape[:-2], len(places), len(part)))
+            places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[part] - 1
+            own = np.broadcast_to(np.clip(places, -1, 1), (*values.shape[:-2], *places.shape))
             found[..., part] = series_at(series, own)
         return found
 

@@ -112,7 +112,7 @@ class SampledCylinder:
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
         found = self.samples[column]
-        return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
+        return None if found is None else self.pieces.filled(found)
 
     def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
         """Return the extremes in SI of columns of `samples` by id, without those that are None."""
@@ -217,7 +217,7 @@ def _smooth(state: State) -> list[Number | None]:
 
 def _known(pieces: Pieces, values: Iterable[Number | None]) -> list[Array]:
     """Return those of the columns that are not None, at the nodes of pieces, each (nodes, pieces)."""
-    return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
+    return [pieces.filled(one) for one in values if one is not None]
 
 
 def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:

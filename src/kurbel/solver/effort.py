@@ -124,15 +124,16 @@ class TurningEffort:
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""
-        pieces, whole, size = self.pieces, np.zeros(self.pieces.degrees.shape), np.zeros(self.pieces.count)
+        pieces, size = self.pieces, np.zeros(self.pieces.count)
+        whole = pieces.filled(0.0)
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
-            values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
+            values = own.filled(torque(cylinders[0].samples)) * own.of(factor)
             size = size + len(cylinders) * own.largest(values)
-            for forces in cylinders:
-                whole += values if own is pieces else pieces.carried(values, own, position(forces))
+            for one in cylinders:
+                whole = whole + pieces.carried(values, own, position(one))
         lasting = unless_cancelled(pieces.largest(whole), size, _CANCELLED) != 0
-        return np.where(pieces.of(lasting), whole, 0.0)
+        return whole if lasting.all() else np.where(pieces.of(lasting), whole, 0.0)
 
     def at(self, pieces: Pieces, values: Array, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
         """Return samples at crank angles (k,), on the sides of jumps that hold `within`.
@@ -203,7 +204,7 @@ class TurningEffort:
     @cached_property
     def load(self) -> Array:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
-        level = np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
+        level = self.pieces.filled(self.pieces.of(self.mean))
         if self.diagram is None:
             return level
         given = torque_on(self.diagram, self.pieces)
@@ -282,10 +283,11 @@ class ExcessWork:
 
     def __init__(self, pieces: Pieces, torque: Array, size: Array, swing: Number | None) -> None:
         self.pieces, self._size, self._swing = pieces, size, swing
-        self.torque = np.where(pieces.of(pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
+        uneven = pieces.largest(torque) > _UNIFORM * size
+        self.torque = torque if uneven.all() else np.where(pieces.of(uneven), torque, 0.0)
         whole = pieces.running(self.torque)
         gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
-        self.E = np.asarray(whole - pieces.of(gained) * (pieces.degrees / pieces.cycle))
+        self.E = np.asarray(whole - pieces.of(gained / pieces.cycle) * pieces.degrees)
 
     @cached_property
     def crossings(self) -> Angles:
@@ -338,7 +340,7 @@ def torque_on(given: Known, pieces: Pieces) -> Array:
     """
     if isinstance(given, Swing):
         mean = np.zeros(pieces.count) if given.mean is None else given.mean
-        return np.array(np.broadcast_to(pieces.of(mean), pieces.degrees.shape))
+        return pieces.filled(pieces.of(mean))
     if isinstance(given, Harmonics):
         orders, cos, sin = np.array(given.terms).T
         waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)

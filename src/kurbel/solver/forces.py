@@ -444,7 +444,7 @@ class CylinderForces(SampledCylinder, Results):
             return found
 
         def over_cycle(values: Number) -> Number:
-            return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
+            return self.result(self.pieces.integral(self.pieces.filled(values)))
 
         if friction.crosshead is not None and drive.has_force:
             drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None

@@ -272,7 +272,7 @@ class Motion(Results):
             angle = angle._replace(rod=mechanism.rod_angle(angle))
             offered = [one.factor(mechanism, angle) for one in self._offers]
             found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
-            return [np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None]
+            return [pieces.filled(one) for one in found if one is not None]
 
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)

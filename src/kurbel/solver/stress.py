@@ -311,8 +311,8 @@ class CrankshaftStrength(Results):
         both = [part for one in (body.pin, body.A, bends) for part in (one.real, one.imag)]
         # the web beyond the pin is bent out of plane as much at the pin as at the shaft
         kinked = (*both, body.along_web, at_pin - at_shaft, at_pin + at_shaft, state.D)
-        kinks = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in kinked])
-        parts = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (*pin, state.D - pin.D)])
+        kinks = np.stack([*map(pieces.filled, kinked)])
+        parts = np.stack([*map(pieces.filled, (*pin, state.D - pin.D))])
 
         def magnitudes(some: Pieces, found: Array) -> Array:
             D, T, own = found
