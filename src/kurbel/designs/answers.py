@@ -44,7 +44,7 @@ _KEPT = 31 << 20
 Otherwise it returns the arrays of every batch to the system, and fetches them again page by page for the next one,
 which took as long as half of the arithmetic.
 """
-_LARGE, _MOST_LARGE = {"stress", "bearings"}, 200
+_LARGE, _MOST_LARGE = {"stress", "bearings"}, 100
 """Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]

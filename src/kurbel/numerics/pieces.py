@@ -440,13 +440,14 @@ def _halved_until_smooth(
         top, first = np.zeros((len(tested), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
         top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
+        may = np.True_
         if only_highest:
-            values, may = np.asarray(values), ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
+            may = ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
-            todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
-            tested = values * may[:, None, some]
+            todo, may, parts = todo.taken(some), may[:, some], parts[..., some]
+            values = tested = [one[:, some] for one in values]
         # a crowd of rough pieces that halving does not thin out is noise
-        tails = np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
+        tails = may * np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
         with np.errstate(divide="ignore", invalid="ignore"):
             share = np.nan_to_num(tails / size[:, todo.machine], nan=0.0, posinf=0.0).max(axis=0)
         rough = (share > TAIL) & (todo.half > NARROWEST / 2)

@@ -331,9 +331,9 @@ class CrankshaftStrength(Results):
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
-        def stresses(some: Pieces, pin: Array) -> Array:
+        def stresses(some: Pieces, pin: Array) -> list[Array]:
             found = [*places(self._body(pin[0] + 1j * pin[1], CrankAngle.at_nodes(some), some))]
-            return np.stack([*(one.combined for one in found), *(one.von_mises for one in found)])
+            return [*(one.combined for one in found), *(one.von_mises for one in found)]
 
         return [Extreme(*map(self.forces.result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
 
