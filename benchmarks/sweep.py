@@ -58,7 +58,8 @@ def seconds(task: Callable[[], object]) -> float:
 def designs(name: str, count: int) -> list[Batch]:
     """Machines like one that is shipped, with rods and speeds of every length and size."""
     binder = Binder(source.read(CONFIGS / f"{name}.yaml"), ("rod_ratio", "speed"), ("5", "50 rpm"))
-    return binder.bound([(f"{ratio:.6f}", f"{40 + ratio:.6f} rpm") for ratio in np.linspace(3, 6, count)]).batches
+    ratios = np.linspace(3, 6, count)
+    return binder.bound(binder.columns(np.column_stack([ratios, (40 + ratios) / 60])))[0]
 
 
 def at_speeds(name: str, count: int) -> list[Batch]:
@@ -66,7 +67,7 @@ def at_speeds(name: str, count: int) -> list[Batch]:
     origin = source.read(CONFIGS / f"{name}.yaml")
     speed = 60 * (read_machine(origin).speed or 1.0)
     binder = Binder(origin, ("speed",), (f"{speed} rpm",))
-    return binder.bound([(f"{speed * share:.6f} rpm",) for share in np.linspace(0.9, 1.1, count)]).batches
+    return binder.bound(binder.columns(speed / 60 * np.linspace(0.9, 1.1, count)[:, np.newaxis]))[0]
 
 
 def report(name: str, many: float, count: int, single: float | None = None) -> None:

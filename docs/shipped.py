@@ -14,9 +14,8 @@ from click.testing import CliRunner
 
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
-from kurbel.machine.cylinder import gathered
 from kurbel.render.text import Look
-from kurbel.report.alike import together
+from kurbel.report.tables import grouped, together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {
@@ -69,7 +68,7 @@ def _answers(command: str, ids: tuple[str, ...], file: Path) -> str:
     if ran.exit_code:
         return ""
     answer = json.loads(ran.stdout)
-    equal = gathered(answer.get("cylinders", []), lambda one, other: one["key_values"] == other["key_values"])
+    equal = grouped(answer.get("cylinders", []), lambda one: repr(one["key_values"]))
     parts = [(together([part["name"] for part in parts]), parts[0]["key_values"]) for parts in equal]
     several = len(parts) > 1
     parts.append(("", answer.get("machine_key_values", [])))

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -45,22 +45,22 @@ def solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     Not where a file is written, which may be refused, nor for machines with traces, whose files may change.
     """
-    from kurbel.cli.request import Request
+    from kurbel.cli import request
     from kurbel.machine_file import source
     from kurbel.machine_file.reader import read_machine
     from kurbel.solver.case import Case
     from representative import case_from
 
-    alone = Request.case
+    alone = request.case_of
 
-    def shared(asked: Request, cycle: int | None = None) -> Case:
-        if asked.output.file_name or cycle is not None:
-            return alone(asked, cycle)
-        origin = source.read(asked.file).set_over(asked.overrides)
+    def shared(file: str, case_name: str, overrides: Iterable[str], *outputs: str | None) -> Case:
+        if case_name or any(outputs):
+            return alone(file, case_name, overrides, *outputs)
+        origin = source.read(file).set_over(overrides)
         case = case_from(origin)
         return Case(read_machine(origin)) if case.machine.trace_files else case
 
-    monkeypatch.setattr(Request, "case", shared)
+    monkeypatch.setattr(request, "case_of", shared)
 
 
 @pytest.fixture

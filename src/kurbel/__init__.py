@@ -38,7 +38,6 @@ __all__ = [
 TYPE_CHECKING = False  # as in typing, whose import an interrupt could hit before anything guards it
 if TYPE_CHECKING:
     import os
-    from typing import Any
 
     from kurbel.designs.api import find as find
     from kurbel.designs.api import sweep as sweep
@@ -81,7 +80,7 @@ def solve(machine: "Machine | str | os.PathLike[str]") -> "Case":
     return Case(machine)
 
 
-def __getattr__(name: str) -> "Any":
+def __getattr__(name: str) -> object:
     if name not in _HOMES:
         raise AttributeError(f"module 'kurbel' has no attribute '{name}'")
     from importlib import import_module

@@ -59,6 +59,10 @@ class Fault(NamedTuple):
         return self._replace(line=line + 1, column=column + 1)
 
 
+class NotANumber(Fault):
+    """A value is NaN: given in Python, or in place of one that could not be read."""
+
+
 class RuleError(KurbelError):
     """A record breaks one or more of its own rules, such as a rod shorter than its crank."""
 

@@ -1,7 +1,5 @@
 """The known word that a misspelt word probably means."""
 
-from difflib import get_close_matches
-
 _OTHER_FIRST_LETTER = 0.85
 """Least similarity of a word with another first letter, which is rarely misspelt: 'direction' is not 'friction'."""
 _LONGEST = 40  # characters of a word worth comparing
@@ -11,6 +9,8 @@ def near(word: str, known: tuple[str, ...]) -> str:
     """Return the known word that is most similar, or ''."""
     if len(word) > _LONGEST:
         return ""
+    from difflib import get_close_matches  # of messages only
+
     lower = word.lower().replace("-", "_").replace(" ", "_")
     alike = {name.lower().replace("-", "_"): name for name in known}
     found = get_close_matches(lower, list(alike), n=3, cutoff=0.7)

@@ -75,7 +75,8 @@ def _key_values(results: Results, caption: str) -> str:
             found = shown_key_values(zip((one.quantity for one in every), values), "metric")
         except KurbelError as error:
             return f"<p>{escape(str(error))}</p>"
-    return "".join(written([key_value_table(caption, found, Look("html"))], Html()))
+    out = Html(Look("html"))
+    return "".join(written([key_value_table(caption, found, out.look)], out))
 
 
 Shown.as_html = as_html

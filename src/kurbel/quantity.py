@@ -28,12 +28,12 @@ GREEK = {
 """Character of a symbol -> its replacement if the output has no Greek letters."""
 _PLAIN = str.maketrans(GREEK)
 _FIRST_WORDS = re.compile(r".+?(?=[:;,(−Σ]| (?:from|toward|of|over|in|on|at|that|since|along|to) |$)")
-_ENDS: dict[str, tuple[str, Callable[[Any], Any]]] = {
-    "max": ("Largest", lambda extremes: extremes.largest),
-    "min": ("Smallest", lambda extremes: extremes.smallest),
-    "peak": ("Largest magnitude of", lambda extremes: extremes.peak),
-}
-"""End of the id of an extreme of a column -> the first words of its sentence, and what takes it from both extremes."""
+_LARGEST = {"max": "Largest", "min": "Smallest", "peak": "Largest magnitude of"}
+"""End of the id of an extreme of a column -> the first words of its sentence."""
+
+
+ITS_OWN = ("those of its class",)
+"""Commands of a quantity that does not say which."""
 
 
 class Quantity(NamedTuple):
@@ -120,6 +120,11 @@ class Quantity(NamedTuple):
         text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
         return self._replace(text=text)
 
+    def printed_by(self, command: str, heading: str = "") -> Quantity:
+        """Return the key value of a command, below a heading unless it has one; of others, too, where it says so."""
+        words = (() if self.commands == ITS_OWN else self.commands) + ((command,) if command else ())
+        return self._replace(commands=tuple(dict.fromkeys(words)), heading=self.heading or heading)
+
     def marked(self, unit: str) -> str:
         """Return the unit as it is shown."""
         return f"{unit} {self.mark}".rstrip()
@@ -133,24 +138,8 @@ class Quantity(NamedTuple):
         """
         comma = "," if "_" in self.symbol else "_"
         plain = self.plain and f"{self.plain}{comma}{end}"
-        symbol, text = f"{self.symbol}{comma}{end}", f"{_ENDS[end][0]} {self.called}"
+        symbol, text = f"{self.symbol}{comma}{end}", f"{_LARGEST[end]} {self.called}"
         return Quantity(f"{self.id}_{end}", symbol, self.kind, text, plain)
-
-
-def placed(declared: Iterable[Quantity]) -> tuple[Quantity, ...]:
-    """Return the quantities in the order of printing; several `after` the same one keep their order.
-
-    One without a heading has that of the one before it.
-    """
-    given = tuple(declared)
-    ordered = [one for one in given if not one.after]
-    for one in given:
-        if one.after:
-            place = [other.id for other in ordered].index(one.after) + 1
-            while place < len(ordered) and ordered[place].after == one.after:
-                place += 1
-            ordered.insert(place, one._replace(heading=one.heading or ordered[place - 1].heading))
-    return tuple(ordered)
 
 
 def by_id(*quantities: Quantity) -> dict[str, Quantity]:
@@ -227,10 +216,10 @@ class Lists(NamedTuple):
         return tuple(dict.fromkeys(word for one in self.all_key_values if one.id == id for word in one.commands))
 
 
-Condition = Callable[[Any], bool]
-"""Takes the results of a command; see `Row`."""
-Formula = Callable[[Any], Any]
+Of = Callable[[Any], V]
 """Takes the results of a command, or the state at crank angles; see `Row`."""
+Condition = Of[bool]
+Formula = Of[Any]
 FormulaOfPart = Callable[[Any, str], Any]
 """Takes the results of a command and the name of one of their parts."""
 Answers = dict[str, Any]
@@ -248,24 +237,6 @@ class Row(NamedTuple):
     of: Formula
     unless: Condition | None = None
 
-    def under(self, heading: str) -> Row:
-        """Return it under a heading, if its quantity has none of its own."""
-        return self if self.quantity.heading else self._replace(quantity=self.quantity._replace(heading=heading))
-
-    def through(self, part: Formula) -> Row:
-        """Return the same quantity for results of which these are a part, None where they have no such part."""
-
-        def of_part(function: Formula, results: object) -> Any:
-            found = part(results)
-            return None if found is None else function(found)
-
-        unless = None if self.unless is None else partial(of_part, self.unless)
-        return Row(self.quantity, partial(of_part, self.of), unless)
-
-
-ITS_OWN = ("those of its class",)
-"""Commands of a quantity that does not say which."""
-
 
 class Heading(NamedTuple):
     """In a class of results: the heading of the key values that are defined after it, up to the next one."""
@@ -279,41 +250,37 @@ class Computed(Generic[V]):
     Its id is its name in the class. function: takes the object; None where the value is in its mapping `answers`.
     """
 
-    def __init__(
-        self, function: Callable[[Any], V] | None, quantity: Quantity, unless: Condition | None = None
-    ) -> None:
-        self.function = function or (lambda one: one.answers.get(self.name))
+    def __init__(self, function: Of[V] | None, quantity: Quantity, unless: Condition | None = None) -> None:
         self.name, self.__doc__ = quantity.id, quantity.text
-        self.rows: tuple[Row, ...] = (Row(quantity, self.value_of, unless),)
+        self.function = function or (lambda one: one.answers.get(self.name))
+        self.rows: tuple[Row, ...] = (Row(quantity, self.__get__, unless),)
 
     def __set_name__(self, owner: type, name: str) -> None:
         (row,) = self.rows
         self.name, self.rows = name, (row._replace(quantity=row.quantity._replace(id=name)),)
 
-    def value_of(self, one: object) -> V:
-        """Return the value of an object."""
+    @overload
+    def __get__(self, one: None, owner: type | None = None) -> Computed[V]: ...
+    @overload
+    def __get__(self, one: object, owner: type | None = None) -> V: ...
+    def __get__(self, one: object | None, owner: type | None = None) -> V | Computed[V]:
+        if one is None:
+            return self
         known = vars(one)
         if self.name not in known:
             known[self.name] = self.function(one)
         return known[self.name]
 
-    @overload
-    def __get__(self, one: None, owner: type) -> Computed[V]: ...
-    @overload
-    def __get__(self, one: object, owner: type) -> V: ...
-    def __get__(self, one: object | None, owner: type) -> V | Computed[V]:
-        return self if one is None else self.value_of(one)
-
 
 def key_value(
     symbol: str, kind: str, *, unless: Condition | None = None, **words: Any
-) -> Callable[[Callable[[Any], V]], Computed[V]]:
+) -> Callable[[Of[V]], Computed[V]]:
     """Return what makes a method a key value or column of its class; the words are those of `Quantity`.
 
     The first paragraph of its docstring is the sentence that users read.
     """
 
-    def made(function: Callable[[Any], V]) -> Computed[V]:
+    def made(function: Of[V]) -> Computed[V]:
         text = " ".join((function.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
         return Computed(function, Quantity("", symbol, kind, text, **({"commands": ITS_OWN} | words)), unless)
 
@@ -369,46 +336,12 @@ def values_for(
     `Quantity`, the same for all.
     """
 
-    def answer(one: Any, part: str) -> Any:
-        return of(one, part) if of else one.answers.get(id.replace("*", part))
+    answer: FormulaOfPart = of or (lambda one, part: one.answers.get(id.replace("*", part)))
 
     def row(part: str, index: str, called: str) -> Row:
         texts = id.replace("*", part), symbol.replace("*", index), kind, text.replace("*", called)
         own = {"commands": ITS_OWN, "after": after.replace("*", part), "group": group(part)}
         quantity = Quantity(*texts, **(own | words))
-        return Computed(partial(answer, part=part), quantity).rows[0]  # computed once, as any other
+        return Computed(lambda one: answer(one, part), quantity).rows[0]  # computed once, as any other
 
     return ForEach(answer, tuple(row(part, *words) for part, words in parts.items()))
-
-
-def in_order(rows: Iterable[Row]) -> dict[str, Row]:
-    """Return rows by id in the order in which they are printed, the first of those with one id."""
-    found: dict[str, Row] = {}
-    for row in rows:
-        found.setdefault(row.quantity.id, row)
-    return {
-        quantity.id: found[quantity.id].under(quantity.heading)
-        for quantity in placed(row.quantity for row in found.values())
-    }
-
-
-def printed_by(rows: Iterable[Row], *commands: str) -> Iterator[Row]:
-    """Yield the rows with these commands, too, among those that print them."""
-    for row in rows:
-        own = () if row.quantity.commands == ITS_OWN else row.quantity.commands
-        yield row._replace(quantity=row.quantity._replace(commands=tuple(dict.fromkeys((*own, *commands)))))
-
-
-def searched(columns: Iterable[Quantity], command: str) -> Iterator[Row]:
-    """Yield the key values that are extremes of columns in a command, whose results have `extremes_of(id)`."""
-
-    def row(one: Quantity, end: str) -> Row:
-        def of(results: Any) -> Any:
-            found = results.extremes_of(one.id)
-            return None if found is None else _ENDS[end][1](found)
-
-        return Row(one.extreme(end), of)
-
-    for one in columns:
-        if command in one.extremes:
-            yield from (row(one, end) for end in _ENDS if end != "peak" or one.peak)

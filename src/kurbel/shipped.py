@@ -8,7 +8,11 @@ _PLACES = (os.path.join(_PACKAGE, "configs"), os.path.join(_PACKAGE, os.pardir, 
 
 
 def shipped() -> dict[str, str]:
-    """Return the machines that come with kurbel: the path of each file by its name."""
+    """Return the machines that come with kurbel: the text of each file by its name."""
     folder = next(filter(os.path.isdir, _PLACES))
     names = sorted(name.removesuffix(".yaml") for name in os.listdir(folder) if name.endswith(".yaml"))
-    return {name: os.path.join(folder, f"{name}.yaml") for name in names}
+    texts = {}
+    for name in names:
+        with open(os.path.join(folder, f"{name}.yaml"), encoding="utf-8") as file:
+            texts[name] = file.read()
+    return texts

@@ -6,24 +6,27 @@ import numpy as np
 import pytest
 
 import kurbel
-from kurbel.designs.plan import Plan, read_axis, read_input, shard
+from kurbel.declared.units import kinds, unit_names
+from kurbel.designs.binding import numbers_of
+from kurbel.designs.plan import Input, Plan, read_axis, read_input, shard
 from kurbel.errors import UsageError
 
 
 @pytest.mark.parametrize(
     ("text", "texts"),
     [
-        ("rod_ratio=3:6:0.75", ("3.00", "3.75", "4.50", "5.25", "6.00")),
+        ("rod_ratio=3:6:0.75", ("3", "3.75", "4.5", "5.25", "6")),
         ("bore=300 mm:500:100", ("300 mm", "400 mm", "500 mm")),
         ("speed=60:40:-10 rpm", ("60 rpm", "50 rpm", "40 rpm")),
         ("speed=40,50 1/s,60 rpm", ("40 rpm", "50 1/s", "60 rpm")),
         ("rod_ratio=3,7/2", ("3", "7/2")),
         ("mechanism=slider-crank,scotch-yoke", ("slider-crank", "scotch-yoke")),
-        ("x=0:0.3:0.1", ("0.0", "0.1", "0.2", "0.3")),
+        ("x=0:0.3:0.1", ("0", "0.1", "0.2", "0.3")),
     ],
 )
 def test_values(text: str, texts: tuple[str, ...]) -> None:
-    assert read_input(text).texts == texts
+    one = read_input(text)
+    assert tuple(map(one.text, range(one.length))) == texts
 
 
 def test_grid_list_and_sample() -> None:
@@ -42,6 +45,13 @@ def test_grid_list_and_sample() -> None:
     assert (drawn[:50, 1] == drawn[50:, 1]).all()
     # one in each of fifty strips of equal probability: the mean is that of the distribution far beyond chance
     assert abs(drawn[:50, 1].mean() - 10) < 0.02
+
+
+def test_a_number_in_a_unit_is_read_as_its_text() -> None:
+    for kind, unit in [("ratio", "%"), *((one, unit) for one in kinds() for unit in unit_names(one))]:
+        one = Input("x", (), (12.5, 3, 0.1, -2.25), unit)
+        texts = Input("x", tuple(map(one.text, range(4))))
+        assert numbers_of(one, kind).tobytes() == numbers_of(texts, kind).tobytes(), (kind, unit)
 
 
 def test_shards_are_the_whole() -> None:

@@ -1,7 +1,6 @@
 """The printed page: golden files, widths, blocks, characters."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -76,7 +75,7 @@ def test_every_character_can_be_written(look: Look) -> None:
     compared, simple = zusammenstellung(compare=True), zusammenstellung(formula="first-order", rows=("c", "x"))
     for encoding in ("ascii", "cp1252", "cp850", "latin-1", "utf-8"):
         for report in (REPORT, ONE, compared, simple):
-            text = render(report, replace(look, encoding=encoding))
+            text = render(report, look._replace(encoding=encoding))
             assert "?" not in text.encode(encoding).decode(encoding)
 
 

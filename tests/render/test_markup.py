@@ -31,14 +31,14 @@ pytestmark = pytest.mark.usefixtures("solved_once")
     ],
 )
 def test_texts(plain: str, typeset: str) -> None:
-    assert Latex().text(plain) == typeset
+    assert Latex(Look()).text(plain) == typeset
 
 
 @pytest.mark.parametrize(
     ("plain", "typeset"), [("θ̈_max", r"$\ddot{\theta}_{\mathrm{max}}$"), ("x^2_a{b", r"x\textasciicircum{}2\_a\{b")]
 )
 def test_symbols(plain: str, typeset: str) -> None:
-    assert Latex().symbol(plain) == typeset
+    assert Latex(Look()).symbol(plain) == typeset
 
 
 HOSTILE = r"\end{document}<script>|a|* [x](y) `z` $ & # % _ ^ ~ { } > -1"
@@ -64,7 +64,7 @@ def test_every_text_is_escaped(format: str) -> None:
 
 def test_no_quantity_has_a_character_that_latex_does_not_know() -> None:
     for one in (*every_quantity().all_columns, *every_quantity().all_key_values):
-        for written in (Latex().symbol(one.symbol), *map(Latex().text, (one.text, one.called))):
+        for written in (Latex(Look()).symbol(one.symbol), *map(Latex(Look()).text, (one.text, one.called))):
             assert all(ord(c) < 0x250 or c in "–—’‘“”" for c in written), one.id
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from types import FrameType
-from typing import Any, NamedTuple, TypeVar, Union
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,12 +27,12 @@ from kurbel.accuracy.textbook import (
 from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError
-from kurbel.machine import Machine
+from kurbel.machine import Cylinder, Machine
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
 OWN = "kurbel"
-Method = tuple[str, str, Callable[[], Union[Found, Array, None]]]
+Method = tuple[str, str, Callable[[], object]]
 """Name, how finely, and what computes one value, the largest and the smallest, or (n,)."""
 T = TypeVar("T")
 
@@ -123,7 +123,7 @@ def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Met
         yield "Chebyshev fit", str(count), partial(fit, count)
 
 
-def own_answer(machine: Machine, quantity: str) -> Any:
+def own_answer(machine: Machine, quantity: str) -> object:
     """Return A_i, A_f, T_max and T_min of the first cylinder, or ΔE, by kurbel; None where a machine has none."""
     case = Case(machine)
     if not any(one.pistons or one.masses for one in machine.cylinders):
@@ -235,14 +235,22 @@ def savings(machine: Machine, compute: Callable[[Machine], object], quick: bool)
     compute: all that a command prints.
     """
     stages = {"everything": machine}
-    less: tuple[tuple[str, list[object], dict[str, Any]], ...] = (
-        ("no friction", [one.friction for one in machine.cylinders], {"friction": None}),
-        ("no masses either", [one.masses for one in machine.cylinders], {"masses": None, "inclination": None}),
-        ("no cards either: motion alone", [one.pistons for one in machine.cylinders], {"pistons": ()}),
+    less: tuple[tuple[str, list[object], Callable[[Cylinder], Cylinder]], ...] = (
+        ("no friction", [one.friction for one in machine.cylinders], lambda one: replace(one, friction=None)),
+        (
+            "no masses either",
+            [one.masses for one in machine.cylinders],
+            lambda one: replace(one, masses=None, inclination=None),
+        ),
+        (
+            "no cards either: motion alone",
+            [one.pistons for one in machine.cylinders],
+            lambda one: replace(one, pistons=()),
+        ),
     )
-    for name, given, change in less:
+    for name, given, without in less:
         if any(given):
-            lighter = tuple(replace(one, **change) for one in machine.cylinders)
+            lighter = tuple(map(without, machine.cylinders))
             machine = stages[name] = replace(machine, cylinders=lighter, limits=())
     if machine.speed is not None:
         stages["no speed either: positions alone"] = replace(machine, speed=None)

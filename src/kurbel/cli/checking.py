@@ -1,7 +1,6 @@
 """What `kurbel check` does with its files: each is read and checked, and all that is found is written."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from kurbel.cli.group import DONE, message_of, to_stderr
@@ -12,9 +11,8 @@ from kurbel.machine_file import load
 from kurbel.machine_file.events import located
 from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
-from kurbel.render.data import findings_json, findings_junit
-from kurbel.render.output import refuse_overwriting, stdout_look, write_out
-from kurbel.render.page import listing
+from kurbel.render.json_text import findings_json, findings_junit
+from kurbel.render.output import listing, look_at, refuse_overwriting, write_out
 from kurbel.report.check import Checked, Finding, checked, faults_found, findings
 from kurbel.report.commands import BROKEN
 from kurbel.report.frame import provenance
@@ -61,7 +59,7 @@ def check_files(
     """
     refuse_overwriting(file_name, files)
     outcomes = [_outcome(file, case_name, overrides, file_name) for file in files]
-    look = Look(width=width) if file_name else stdout_look(Look(width=width))
+    look = look_at(file_name, Look(width=width))
     if format == "table":
         write_out(_as_text(outcomes, look), file_name)
         for error in (one.error for one in outcomes if one.error):
@@ -71,7 +69,7 @@ def check_files(
     else:
         found = [(one.file, [finding._asdict() for finding in one.findings]) for one in outcomes]
         if format == "junit":
-            write_out(findings_junit(found, replace(look, encoding="utf-8")), file_name, "utf-8")
+            write_out(findings_junit(found, look._replace(encoding="utf-8")), file_name, "utf-8")
         else:
             only = outcomes[0].machine if len(outcomes) == 1 else None
             name, made_from = (only.name, provenance(only)) if only else (None, None)
@@ -92,7 +90,7 @@ def _outcome(file: str, case_name: str, overrides: Sequence[str], file_name: str
         return Outcome(file, error)
     refuse_overwriting(file_name, machine.trace_files)
     found = checked(Case(machine), cases)
-    errors = [one.error for one in found.unjudged]
+    errors = [one.error for one in found.unjudged if one.error]
     # all errors of a machine as one of the gravest kind
     gravest = type(min(errors, key=lambda error: error.exit_status))("\n".join(map(str, errors))) if errors else None
     return Outcome(file, gravest, machine, found)

@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from io import StringIO
-from shutil import get_terminal_size
 from time import monotonic
 from typing import Any, NoReturn, TypeVar
 
@@ -17,7 +16,7 @@ from kurbel import __version__
 from kurbel.errors import KurbelError, MachineFileError
 from kurbel.near_words import did_you_mean
 from kurbel.render import Look
-from kurbel.render.output import silence
+from kurbel.render.output import silence, terminal_size
 from kurbel.report.commands import BROKEN, COMMANDS, NO_SOLUTION
 
 # before numpy: its thread pool doubles the start-up time on a busy machine, and no matrix here is large enough for it
@@ -115,7 +114,7 @@ def message_of(error: KurbelError) -> str:
     """Return the message of an error; for a machine file all faults, with source lines cut to the terminal's width."""
     if not isinstance(error, MachineFileError):
         return f"Error: {error}"
-    return error.pretty(min(get_terminal_size((104, 24)).columns, 104), _stderr_look().text)
+    return error.pretty(min(terminal_size((104, 24))[0], 104), _stderr_look().text)
 
 
 def _stderr_look() -> Look:
@@ -166,7 +165,7 @@ class Progress:
             self._write("")
 
     def _write(self, text: str) -> None:
-        text = _stderr_look().text(text)[: get_terminal_size().columns - 1]
+        text = _stderr_look().text(text)[: terminal_size()[0] - 1]
         with suppress(OSError, ValueError):
             sys.stderr.write(f"\r{text.ljust(self._wide)}" + "\r" * (not text))
             sys.stderr.flush()

@@ -1,26 +1,25 @@
 """Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import ambiguity, called, joined
+from kurbel.quantity import Lists, ambiguity, called, joined
 from kurbel.render import FORMATS, LAYOUTS, Look
-from kurbel.render.formats import write_report
-from kurbel.report.tables import Report
+from kurbel.render.formats import Output
 
 if TYPE_CHECKING:
     from kurbel.machine import Machine
 
 # --- how the text behind an option is read; what cannot be read is reported with the option
 
-Command = TypeVar("Command", bound=Callable[..., Any])
+Command = TypeVar("Command", bound=Callable[..., object])
 _MOST_STEPS = 10_000
 
 
@@ -90,10 +89,8 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    from kurbel.quantities import every_quantity
-
     named = words(text)
-    known = [column for column in every_quantity().all_columns if column.commands]
+    known = [column for column in _quantities().all_columns if column.commands]
     ids = []
     for name in joined(named, known):
         found = called(name, known)
@@ -101,6 +98,12 @@ def columns(text: str) -> tuple[str, ...]:
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
     return tuple(ids)
+
+
+def _quantities() -> Lists:
+    from kurbel.quantities import every_quantity
+
+    return every_quantity()
 
 
 def spread(text: str) -> tuple[str, str]:
@@ -130,11 +133,9 @@ def completing(words: Callable[[click.Context, str], Iterable[str]]) -> Callable
 
 def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
     """Return the columns of a command, or if it has none all key values, that are not in the list yet."""
-    from kurbel.quantities import every_quantity
-
-    columns = every_quantity().columns(ctx.info_name or "")
+    every = _quantities()
     before, comma, _ = begun.rpartition(",")
-    ids = dict.fromkeys(columns or (one.id for one in every_quantity().all_key_values))
+    ids = dict.fromkeys(every.columns(ctx.info_name or "") or (one.id for one in every.all_key_values))
     return [before + comma + one for one in ids if one not in before.split(",")]
 
 
@@ -166,17 +167,6 @@ complete_picture = completing(_pictures)
 
 
 # --- the options
-
-
-class Output(NamedTuple):
-    """Where a report goes and how it looks."""
-
-    look: Look
-    file_name: str | None
-
-    def write(self, report: Report, first: Collection[str] | None = None) -> None:
-        """Write the report; first: see `write_report`."""
-        write_report(report, self.look, self.file_name, first)
 
 
 def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
@@ -357,7 +347,7 @@ def format_of(
     return written
 
 
-def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
+def output_options(command: Callable[..., object]) -> Callable[..., object]:
     """Add the options of the output to a command, which gets them as one `output: Output`."""
 
     @wraps(command)
@@ -368,8 +358,8 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
         comma: bool,
         digits: int | None,
         width: int | None,
-        **others: Any,
-    ) -> Any:
+        **others: object,
+    ) -> object:
         look = Look(format_of(format, file_name, comma=comma), layout, comma, digits, width)
         return command(output=Output(look, file_name), **others)
 

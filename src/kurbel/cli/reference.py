@@ -1,14 +1,11 @@
 """Commands that need no machine: tables of the books, shipped machines, and what a machine file may hold."""
 
-import json
 import math
-from pathlib import Path
 
 import click
 
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
-    Output,
     angle_options,
     complete_key,
     completing,
@@ -21,9 +18,8 @@ from kurbel.cli.options import (
 from kurbel.declared.units import kinds, listed_units
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
-from kurbel.render.data import answer_schema
-from kurbel.render.output import write_out
-from kurbel.render.page import write_entries
+from kurbel.render.formats import Output
+from kurbel.render.output import write_entries, write_out
 from kurbel.report.tables import crank_angles
 from kurbel.shipped import shipped
 
@@ -129,7 +125,7 @@ def example(name: str | None, file_name: str | None) -> None:
       kurbel example waterworks > engine.yaml
       kurbel example waterworks | kurbel forces -
     """
-    files = {each: Path(path).read_text("utf-8") for each, path in shipped().items()}
+    files = shipped()
     if name is None:
         first_lines = [(each, text.partition("\n")[0].lstrip("# ")) for each, text in files.items()]
         write_entries(first_lines, file_name)
@@ -182,7 +178,6 @@ def schema(answers: bool, file_name: str | None) -> None:
       # yaml-language-server: $schema=./kurbel.schema.json
     """
     from kurbel.machine_file.schema import json_schema
+    from kurbel.render.json_text import answer_schema, indented
 
-    # escapes instead of Greek: valid in whatever encoding a shell redirects to
-    text = json.dumps(answer_schema() if answers else json_schema(), indent=2, allow_nan=False) + "\n"
-    write_out((text,), file_name, "utf-8")
+    write_out((indented(answer_schema() if answers else json_schema()),), file_name, "utf-8")

@@ -11,8 +11,7 @@ from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import given
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, check_poster, draw, draw_poster
-from kurbel.render.output import refuse_overwriting, write_out
-from kurbel.render.page import write_entries
+from kurbel.render.output import refuse_overwriting, write_entries, write_out
 from kurbel.render.report_page import report_page
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, pictures, pictures_of

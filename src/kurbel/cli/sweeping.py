@@ -22,7 +22,7 @@ from kurbel.machine_file.overrides import rewritten
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, draw
 from kurbel.render.output import refuse_overwriting, write_out
-from kurbel.render.sweep_rows import Kept, Titles, as_json, as_rows, columns, kept_rows, picture, remarks, write_rows
+from kurbel.render.sweep_rows import Kept, Titles, as_json, as_rows, kept_rows, picture, remarks, write_rows
 
 _SUFFIXES = {".csv": "csv", ".json": "json", ".jsonl": "json", ".md": "markdown", ".parquet": "parquet"}
 _LINES = ("csv", "json")
@@ -164,8 +164,8 @@ def run_find(
         write_out([text], file_name, "utf-8")
     else:
         look = Look(written, comma=comma, digits=digits or (None if written == "csv" else _DIGITS))
-        titles = Titles(tuple((name, unit) for name, unit, _ in columns(found, system)))
-        write_rows(as_rows(found, system), titles, look, file_name, to_stderr)
+        titles, rows = as_rows(found, system)
+        write_rows(rows, titles, look, file_name, to_stderr)
     for one in remarks(found):
         to_stderr(one)
 

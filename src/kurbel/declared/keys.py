@@ -15,7 +15,7 @@ import numpy as np
 from kurbel.arrays import Truth
 from kurbel.declared.forms.values import Form, NumberForm
 from kurbel.declared.unit_systems import show
-from kurbel.errors import Fault, Path, Step, refuse, refused
+from kurbel.errors import Fault, NotANumber, Path, Step, refuse, refused
 from kurbel.numerics.arithmetic import is_number
 
 if TYPE_CHECKING:
@@ -100,10 +100,14 @@ class Rule(NamedTuple):
     numbers: Values = MappingProxyType({})
     at_key: bool = False
 
+    @property
+    def path(self) -> Path:
+        """The place as a path."""
+        return self.place if isinstance(self.place, tuple) else (self.place,)
+
     def below(self, *path: Step) -> "Rule":
         """Return the rule with its place relative to an outer record."""
-        inner = self.place if isinstance(self.place, tuple) else (self.place,)
-        return self._replace(place=(*path, *inner))
+        return self._replace(place=(*path, *self.path))
 
     def fault(self, record: "Record | None" = None) -> Fault:
         """Return the fault, with numbers of the rule and entries of the record filled into its message."""
@@ -119,8 +123,7 @@ class Rule(NamedTuple):
                 return found[0]
             return str(value) if isinstance(value, str) else show(value, kind) if kind else f"{value:g}"
 
-        path = self.place if isinstance(self.place, tuple) else (self.place,)
-        return Fault(path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
+        return Fault(self.path, re.sub(r"\{(\w+)(?::(\w+))?\}", filled, self.sentence), self.at_key)
 
 
 def contradictions(keys: Keys, given: Collection[str]) -> Iterator[Rule]:
@@ -147,27 +150,6 @@ def _out_of_bounds(keys: Keys, given: Values) -> list[Fault]:
     return [Fault((name,), f"{value:g} {what}") for name, value, what in wrong if what]
 
 
-def _in_order(record: "type[Record]") -> list[Field[object]]:
-    """Return the attributes in the order of positional arguments: first those without a default."""
-    return sorted(fields(record), key=lambda one: one.default is not MISSING)
-
-
-class SignatureOfFields:
-    """Returns the arguments of a record for `help`, when somebody reads them."""
-
-    def __get__(self, record: object, kind: "type[Record]") -> Signature:
-        parameters = [
-            Parameter(
-                one.name,
-                Parameter.POSITIONAL_OR_KEYWORD,
-                default=Parameter.empty if one.default is MISSING else one.default,
-                annotation=one.type,
-            )
-            for one in _in_order(kind)
-        ]
-        return Signature(parameters)
-
-
 @dataclass_transform(frozen_default=True, eq_default=False)
 class Record:
     """A record of the machine file; each entry is declared once, by `field` or `alternative`.
@@ -178,26 +160,34 @@ class Record:
 
     KEYS: ClassVar[Keys] = {}
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
-    __signature__ = SignatureOfFields()
+    __signature__: ClassVar[Signature]
 
     def __init_subclass__(cls) -> None:
-        own = {name: key for base in cls.__mro__[:0:-1] for name, key in vars(base).get("KEYS", {}).items()}
+        own = dict(cls.KEYS)
         for name, value in vars(cls).items():
-            key = value.metadata.get("key") if isinstance(value, Field) else value
-            if isinstance(key, Key):
-                attribute = name if isinstance(value, Field) else ""
-                own[key.attribute or name.lstrip("_")] = key._replace(attribute=attribute)
+            if isinstance(value, Key):
+                own[value.attribute or name.lstrip("_")] = value._replace(attribute="")
+            elif isinstance(value, Field):
+                if value.default is MISSING and "None" in str(cls.__annotations__[name]):
+                    value.default = None
+                key: Key = value.metadata["key"]
+                # one of two alternatives, or a word with a default of its own, may be missing
+                missing = value.default is MISSING and not key.instead and not key.form.inline
+                own[key.attribute or name] = key._replace(attribute=name, required=missing)
         cls.KEYS = own
         dataclass(init=False, repr=False, eq=False)(cls)
+        # positional arguments: first those without a default
+        each = sorted(fields(cls), key=lambda one: one.default is not MISSING)
+        kind, none = Parameter.POSITIONAL_OR_KEYWORD, Parameter.empty
+        defaults = [none if one.default is MISSING else one.default for one in each]
+        cls.__signature__ = Signature(
+            [Parameter(one.name, kind, default=default, annotation=one.type) for one, default in zip(each, defaults)]
+        )
 
     def __init__(self, *values: object, **named: object) -> None:
-        defaults = {one.name: one.default for one in _in_order(type(self))}
-        given = {**dict(zip(defaults, values)), **named}
-        wrong = [name for name in given if name not in defaults]
-        wrong += [name for name, default in defaults.items() if default is MISSING and name not in given]
-        if wrong or len(values) > len(defaults):
-            raise TypeError(f"{type(self).__name__} takes the values {', '.join(defaults)}; see {', '.join(wrong)}")
-        vars(self).update(defaults | given)
+        given = self.__signature__.bind(*values, **named)
+        given.apply_defaults()
+        vars(self).update(given.arguments)
         try:
             refuse(*self._faults())
         except ArithmeticError:
@@ -208,9 +198,13 @@ class Record:
 
     def __repr__(self) -> str:
         """Return the call that makes the record, without what has its default value: a machine has many of these."""
-        known = vars(self)
-        given = [f"{one.name}={known[one.name]!r}" for one in fields(self) if known[one.name] is not one.default]
+        given = (f"{name}={value!r}" for name, value in self._given().items())
         return f"{type(self).__name__}({', '.join(given)})"
+
+    def _given(self) -> dict[str, object]:
+        """Return the values that are not their defaults, by attribute."""
+        known = vars(self)
+        return {one.name: known[one.name] for one in fields(self) if known[one.name] is not one.default}
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules on the values, in addition to the bounds of the entries."""
@@ -223,19 +217,13 @@ class Record:
 
     def _faults(self) -> list[Fault]:
         """Return what is wrong with the record of one machine: bounds; if these hold, rules; if these hold, NaN."""
-        keys = {name: key for name, key in self.KEYS.items() if key.attribute}
-        default = {one.name: one.default for one in fields(self)}
-        known = vars(self)
-        given = {name: known[one.attribute] for name, one in keys.items()}
-        given = {name: value for name, value in given.items() if value is not default[keys[name].attribute]}
+        keys, own = {name: key for name, key in self.KEYS.items() if key.attribute}, self._given()
+        given = {name: own[key.attribute] for name, key in keys.items() if key.attribute in own}
+        unknown = [name for name, one in given.items() if isinstance(one, float) and one != one]
         return (
             _out_of_bounds(keys, given)
             or broken((*contradictions(keys, given), *self.rules()), self)
-            or [
-                Fault((name,), "nan is no number")
-                for name, one in given.items()
-                if isinstance(one, float) and one != one
-            ]
+            or [NotANumber((name,), "nan is no number") for name in unknown]
         )
 
     @classmethod

@@ -6,12 +6,12 @@ The tree is made of dict, list and texts. Numbers stay text, since their key dec
 import re
 from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
-from typing import Any, Final, Union
+from typing import Final, Union
 
 from kurbel.errors import Fault, Path, RuleError
 from kurbel.quantity import Quantity
 
-Node = Union[str, list["Node"], dict[str, "Node"], "_Reported"]
+Node = Union[str, list["Node"], dict[str, "Node"], "Reported"]
 """The value of a key: a text, a list, a mapping, or REFUSED."""
 Tree = dict[str, Node]
 FAULT_LIMIT = 100
@@ -26,11 +26,13 @@ class Plain(str):
     __slots__ = ()
 
 
-class _Reported(Enum):
+class Reported(Enum):
+    """Its only member replaces a value whose fault has been reported."""
+
     REFUSED = "REFUSED"
 
 
-REFUSED: Final = _Reported.REFUSED
+REFUSED: Final = Reported.REFUSED
 """Replaces a value whose fault has been reported; readers ignore it."""
 
 
@@ -77,7 +79,7 @@ class Reading:
         listed = (near or below)[:3]
         return "it belongs " + " or ".join(listed) if listed else ""
 
-    def note(self, fault: Fault) -> Any:
+    def note(self, fault: Fault) -> Reported:
         """Keep a fault and return REFUSED, which replaces the value that could not be read.
 
         A fault in a copied value is reported once, at the original.
@@ -101,11 +103,11 @@ class Reading:
         )
         return any(other in self.faults or self._is_known(other) for other in others)
 
-    def fault(self, path: Path, message: str, at_key: bool = False) -> Any:
+    def fault(self, path: Path, message: str, at_key: bool = False) -> Reported:
         """Keep a fault at a path of the tree and return REFUSED."""
         return self.note(Fault(path, message, at_key))
 
-    def refuse(self, path: Path, error: RuleError) -> Any:
+    def refuse(self, path: Path, error: RuleError) -> Reported:
         """Keep the faults of an error that was raised for the value at a path, and return REFUSED."""
         for fault in error.faults:
             self.note(fault.below(path))

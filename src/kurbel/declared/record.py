@@ -7,12 +7,13 @@ the record is made; a sweep evaluates both with arrays. Which keys contradict or
 
 import dataclasses
 from collections.abc import Iterable, Iterator
+from dataclasses import MISSING
 from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Truth
-from kurbel.declared.forms.structures import form_of
+from kurbel.declared.forms.structures import Likeness, form_of
 from kurbel.declared.keys import Key, Record, Rule, Values
 
 __all__ = ["Entry", "Record", "Rule", "Values", "alternative", "field", "first_of"]
@@ -30,15 +31,17 @@ def first_of(rules: Iterable[Rule]) -> Iterator[Rule]:
         before = before | rule.broken
 
 
-def field(form: Any, text: str, symbol: str = "", *, default: object = None, absent: str = "", **more: Any) -> Entry:
+def field(
+    form: Likeness, text: str, symbol: str = "", *, default: object = MISSING, absent: str = "", **more: Any
+) -> Entry:
     """Declare an attribute of a record that is an entry of the machine file.
 
     form: see `form_of`; text: its meaning in one sentence; symbol: of the textbooks; default: its value if the file has
-    none; absent: what holds then, if not what the default says; key: its name in the file, if not that of the
-    attribute; more: of `Key` and `form_of`.
+    none; without one it is None where the annotation allows that, else the entry is required; absent: what holds then,
+    if not what the default says; key: its name in the file, if not that of the attribute; more: of `Key` and `form_of`.
 
     >>> class Ring(Record):
-    ...     height: float = field("length", "Height of the ring", "h", above=0, required=True)
+    ...     height: float = field("length", "Height of the ring", "h", above=0)
     >>> Ring(height=-0.1)
     Traceback (most recent call last):
     kurbel.errors.RuleError: height: -0.1 is too small; it must be more than 0
@@ -48,11 +51,10 @@ def field(form: Any, text: str, symbol: str = "", *, default: object = None, abs
     elif default == ():
         absent = absent or "none"
     declared = alternative(form, text, symbol, absent=absent, **more)
-    missing = declared.required and default is None
-    return dataclasses.field(default=dataclasses.MISSING if missing else default, metadata={"key": declared})
+    return dataclasses.field(default=default, metadata={"key": declared})
 
 
-def alternative(form: Any, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
+def alternative(form: Likeness, text: str, symbol: str = "", *, key: str = "", **more: Any) -> Key:
     """Declare an entry that is no attribute: `gives` takes all values by key and returns the attributes it determines.
 
     key: its name in the file, '' for that of the attribute, until the class of the record is made; more: of `Key`, and

@@ -1,20 +1,20 @@
 """Unit systems: in which unit people read a value that kurbel holds in its base."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, Union
 
 from kurbel.declared.units import KINDS, unit_factor, zero_of
 
-SYSTEMS: dict[str, dict[str, Any]] = {
-    "si": {name: kind.si for name, kind in KINDS.items()},
+SI = {name: kind.si for name, kind in KINDS.items()}
+SYSTEMS: dict[str, Mapping[str, Union[str, tuple[str, ...]]]] = {
+    "si": SI,
     "metric": {name: kind.metric or kind.si for name, kind in KINDS.items()},
     "technical": {name: kind.technical or kind.si for name, kind in KINDS.items()},
     "imperial": {name: kind.imperial or kind.si for name, kind in KINDS.items()},
 }
 """Unit system -> kind -> the unit in which results are shown, or several, chosen by size."""
-SI: dict[str, str] = SYSTEMS["si"]
 _TAKEN_FROM = {"m": 10.0, "t": 1e5, "mbar": 0.0, "bar": 1e3, "m^3": 1.0, "bar/deg": 1e3, "m^3/h": 10 / 3600}
 """Larger unit -> base value from which it is used, if that is not 1 of the unit itself."""
 
@@ -40,8 +40,11 @@ def shown_unit(kind: str, system: str, largest: float = 0.0) -> str:
     units = SYSTEMS[system][kind]
     if isinstance(units, str):
         return units
-    fitting = [unit for unit in units[1:] if abs(largest) >= _taken_from(unit, kind)]
-    return fitting[-1] if fitting else str(units[0])
+    for unit in reversed(units[1:]):
+        up, down = unit_factor(unit, kind)
+        if abs(largest) >= _TAKEN_FROM.get(unit, up / down):
+            return unit
+    return units[0]
 
 
 def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
@@ -54,11 +57,6 @@ def units_of(sized: Sequence[tuple[str, str, float]], system: str) -> list[str]:
     for kind, family, size in sized:
         largest[kind, family] = max(size, largest.get((kind, family), 0.0))
     return [shown_unit(kind, system, largest[kind, family]) for kind, family, _ in sized]
-
-
-def _taken_from(unit: str, kind: str) -> float:
-    up, down = unit_factor(unit, kind)
-    return _TAKEN_FROM.get(unit, up / down)
 
 
 def convert(value: Any, kind: str, unit: str) -> Any:

@@ -6,7 +6,6 @@ and no quotient of values from a file leaves their range. They hold for the file
 
 import math
 import re
-from collections.abc import Iterable
 from functools import cache
 from typing import NamedTuple
 
@@ -386,25 +385,6 @@ _FITTING = {
     "speed": (("rpm", 10), ("1/s", 0)),
 }
 """Kind -> units with the bare numbers from which on they are likely, the largest first."""
-
-
-def plain_quantities(texts: Iterable[str], kind: str) -> list[float] | None:
-    """Return the values of texts in the base of `kind`; None where one is more than a decimal number and its unit.
-
-    Such a one is to be read by itself. A bare number is one of the kind `ratio`.
-
-    >>> plain_quantities(["450 mm", "0.5 m"], "length"), plain_quantities(["2 1/4 in"], "length")
-    ([0.45, 0.5], None)
-    """
-    units = {"": (1, 1)} if kind == "ratio" else _units_of(kind)
-    values = []
-    for text in texts:
-        number, _, unit = text.partition(" ")
-        factor = units.get(unit)
-        if factor is None or not NUMBER.fullmatch(number):
-            return None
-        values.append((float(number) + zero_of(unit)) * factor[0] / factor[1])
-    return values if all(map(math.isfinite, values)) else None
 
 
 def written_unit(text: str) -> str:

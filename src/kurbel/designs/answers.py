@@ -10,11 +10,11 @@ from typing import Any, NamedTuple, Union
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Indices
 from kurbel.declared.forms.figures import MACHINE, scoped
 from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import SI, units_of
-from kurbel.designs.binding import Batch, Binder
+from kurbel.declared.unit_systems import units_of
+from kurbel.designs.binding import Batch, Binder, KeyColumn
 from kurbel.errors import KurbelError, MachineFileError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
@@ -105,7 +105,7 @@ def requested_answers(
     return tuple(part for each in once.values() for part in each)
 
 
-def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
+def _named(case: Case, name: str, option: str) -> list[tuple[Answer, object]]:
     """Return (key value, its value for this machine: see `_holding`) for `c_max`, `LP.c_max`, or `machine.T_max`."""
     declared = every_quantity().all_key_values
     prefix, _, own = name.rpartition(".")
@@ -121,7 +121,7 @@ def _named(case: Case, name: str, option: str) -> list[tuple[Answer, Any]]:
     raise UsageError(f"{option}: this machine has no {shown(name)}; kurbel check shows why")
 
 
-def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, Any]]:
+def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterator[tuple[Answer, object]]:
     """Yield a key value of every subject of a command that has it, or of its owner; without id all that it prints.
 
     Each comes with its value for this machine, or the error, since other designs may have a value.
@@ -130,7 +130,7 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
         for quantity in subject.lists.key_values(command).values():
             if owner not in ("", subject.name) or (quantity.id != id if id else quantity.residual):
                 continue
-            value: Any
+            value: object
             try:
                 value = subject.answer(quantity) if id or subject.is_printed(quantity) else None
             except KurbelError as error:
@@ -142,21 +142,15 @@ def _holding(case: Case, command: str, id: str = "", owner: str = "") -> Iterato
 # their values
 
 
-def answered(binder: Binder, rows: Sequence[Sequence[str]], requested: Sequence[Answer]) -> list[Values]:
-    """Return the key values of the designs with these texts (rows, keys) under the keys of a binder.
+def answered(binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[Answer]) -> list[Values]:
+    """Return the key values of the designs with these values of the keys of a binder.
 
     In older versions of numpy rounding depends on the length of an array, and so on the designs that are computed
     together: for the same digits of a row in every run, give the same rows each time.
     """
-    bound = binder.bound(rows)
-    found = bound.failures | answers_of(bound.batches, requested)
-    return [found[row] for row in range(len(rows))]
-
-
-def texts_of(binder: Binder, numbers: Array) -> list[list[str]]:
-    """Return numbers (rows, keys) in SI as texts under the keys of a binder."""
-    units = [SI[kind] for kind in binder.kinds]
-    return [[f"{value!r} {unit}".rstrip() for value, unit in zip(row, units)] for row in numbers.tolist()]
+    batches, failures = binder.bound(columns)
+    found = failures | answers_of(batches, requested)
+    return [found[row] for row in range(len(columns[0].places))]
 
 
 @np.errstate(all="ignore")
@@ -183,12 +177,10 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     """
     if any(one.command == "torsion" for one in requested):
         return True
-    pistons = [piston for one in machine.cylinders for piston in one.pistons]
-    cards = [chamber for piston in pistons for chamber in piston.chambers.values()]
     return any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders) or any(
         isinstance(one, Trace)
         or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
-        for one in cards
+        for one in machine.chambers
     )
 
 
@@ -346,14 +338,14 @@ class Study:
             heads.append(Head(f"{one.owner}.{id}" if owned else id, unit, one.kind, listed=one.quantity.listed))
         return heads
 
-    def of(self, rows: Sequence[Sequence[str]]) -> list[Found]:
-        """Return what the designs with these texts (rows, keys) give; for the same digits give the same rows."""
+    def of(self, columns: Sequence[KeyColumn]) -> list[Found]:
+        """Return what the designs with these values of the keys give; for the same digits give the same rows."""
         count = len(self.answers)
         return [
             Found(failure=values)
             if isinstance(values, str)
             else Found(values[:count], "", *self._judged(values[count:]))
-            for values in answered(self.binder, rows, self.every)
+            for values in answered(self.binder, columns, self.every)
         ]
 
     def _judged(self, values: Sequence[Value]) -> tuple[tuple[str, ...], tuple[str, ...]]:

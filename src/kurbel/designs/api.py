@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.unit_systems import SI
-from kurbel.designs.answers import Design
 from kurbel.designs.binding import Binder, written_texts
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
@@ -21,7 +20,7 @@ from kurbel.machine_file.reader import machine_of
 
 def sweep(
     machine: Machine | str | os.PathLike[str],
-    inputs: Mapping[str, Any],
+    inputs: Mapping[str, object],
     columns: Sequence[str] | str = (),
     with_angles: bool = False,
 ) -> dict[str, Any]:
@@ -45,7 +44,17 @@ def sweep(
     names = (columns,) if isinstance(columns, str) else tuple(columns)
     axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
     found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
-    return _arrays(found, list(rows_of(found, range(found.rows))))
+    rows = list(rows_of(found, range(found.rows)))
+    arrays: dict[str, Any] = {}
+    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
+        if not head.input:
+            listed = any(isinstance(one, tuple) for one in values)
+            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
+    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
+    arrays["failure"] = np.array(texts["failure"])
+    if "keeps" in texts:
+        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
+    return arrays
 
 
 def find(
@@ -90,26 +99,16 @@ def _read(machine: Machine | str | os.PathLike[str]) -> Origin:
     return origin
 
 
-def _inputs(binder: Binder, inputs: Mapping[str, Any]) -> Iterator[Input]:
-    """Yield the inputs with their values as texts of the machine file; raises UsageError for different lengths."""
+def _inputs(binder: Binder, inputs: Mapping[str, object]) -> Iterator[Input]:
+    """Yield the inputs with their values; raises UsageError for different lengths."""
     columns = [np.atleast_1d(np.asarray(values)) for values in inputs.values()]
     count = max(map(len, columns), default=0)
     if not count or any(column.shape not in ((count,), (1,)) for column in columns):
         each = ", ".join(f"{key} has {len(column)}" for key, column in zip(inputs, columns))
         raise UsageError(f"give as many values of every key, one or more of them; {each or 'there is none'}")
     for key, column, kind in zip(inputs, columns, binder.kinds):
-        unit = f" {SI[kind]}".rstrip() if kind in SI and column.dtype.kind in "fiu" else ""
-        yield Input(key, tuple(f"{one}{unit}" for one in np.broadcast_to(column, count).tolist()))
-
-
-def _arrays(found: Sweep, rows: Sequence[Design]) -> dict[str, Any]:
-    arrays: dict[str, Any] = {}
-    for head, values in zip(found.heads, zip(*(row.values for row in rows))):
-        if not head.input:
-            listed = any(isinstance(one, tuple) for one in values)
-            arrays[head.id] = np.fromiter(values, object) if listed else np.array(values, dtype=float)
-    texts = dict(zip(found.texts, zip(*(row.texts for row in rows))))
-    arrays["failure"] = np.array(texts["failure"])
-    if "keeps" in texts:
-        arrays["keeps"] = np.array(texts["keeps"]) == "yes"
-    return arrays
+        values = np.broadcast_to(column, count).tolist()
+        if column.dtype.kind in "fiu":
+            yield Input(key, (), tuple(values), SI.get(kind, ""))
+        else:
+            yield Input(key, tuple(map(str, values)))

@@ -5,25 +5,47 @@ for arrays, too. Words, counts and points of cards are structure: rows that diff
 is each row that breaks a rule, for its message.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Flags, Indices, Indivisible
+from kurbel.arrays import Array, Indices, Indivisible
 from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import Plain, Reading, StopReading, Tree, shown
-from kurbel.errors import KurbelError, MachineFileError, Path, UsageError, path_text
+from kurbel.declared.reading import Reading, StopReading, Tree, shown
+from kurbel.declared.unit_systems import SI
+from kurbel.declared.units import parse_quantity, unit_factor, zero_of
+from kurbel.designs.plan import Input
+from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.events import parse
-from kurbel.machine_file.overrides import dotted, leaves, path_of, set_over, tree_of, value_at
-from kurbel.machine_file.reader import read_tree, read_values, reading_of
+from kurbel.machine_file.overrides import dotted, leaves, path_of, tree_of, value_at
+from kurbel.machine_file.reader import read_values, reading_of
 from kurbel.near_words import did_you_mean
+
+INFINITE = "infinite"
+"""The word for the length of an infinite rod."""
+
+
+class KeyColumn(NamedTuple):
+    """The values of a key in rows, by their places (rows,) among those of the input.
+
+    numbers: the values of the input in the base of their kind, nan for a word.
+    """
+
+    input: Input
+    numbers: Array
+    places: Indices
+
+    def text(self, row: int) -> str:
+        """Return the value in a row as the machine file would have it."""
+        return self.input.text(int(self.places[row]))
 
 
 class Batch(NamedTuple):
@@ -35,13 +57,6 @@ class Batch(NamedTuple):
     def one(self, place: int) -> Machine:
         """Return a single machine, counted from 0."""
         return changed(self.machine, lambda numbers: numbers[place].item())
-
-
-class Batches(NamedTuple):
-    """The machines of rows, in batches, and the reasons why other rows have none; rows are counted from 0."""
-
-    batches: list[Batch]
-    failures: dict[int, str]
 
 
 class Binder:
@@ -66,22 +81,29 @@ class Binder:
             bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
             self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
+        self._words, self._root = self._structure(start), root
 
-    def bound(self, rows: Sequence[Sequence[str]]) -> Batches:
-        """Return the machines of rows of texts, in batches, and why other rows have none."""
-        found = Batches([], {})
-        groups: dict[tuple[str, ...], list[int]] = {}
-        for place, row in enumerate(rows):
-            words = tuple(text for text, number in zip(row, self._numeric) if not number)
-            groups.setdefault(words, []).append(place)
-        for places in groups.values():
-            apart = places
-            if len(places) > 1:
-                batches, apart = self._together(np.array(places), rows)
-                found.batches.extend(batches)
-            for place in apart:
-                self._bind_alone(place, rows[place], found)
-        return found
+    def columns(self, numbers: Array) -> list[KeyColumn]:
+        """Return columns of numbers (rows, keys) in the base of the kinds of all keys."""
+        rows = np.arange(len(numbers))
+        each = zip(self._keys, self.kinds, numbers.T)
+        return [KeyColumn(Input(key, (), tuple(own.tolist()), SI[kind]), own, rows) for key, kind, own in each]
+
+    def bound(self, columns: Sequence[KeyColumn]) -> tuple[list[Batch], dict[int, str]]:
+        """Return the machines of rows in batches, and why other rows have none; columns: the values of the keys."""
+        found, failures, rows = list[Batch](), dict[int, str](), np.arange(len(columns[0].places))
+        texts = (map(column.text, rows.tolist()) for column, number in zip(columns, self._numeric) if not number)
+        words = [np.unique(list(each), return_inverse=True)[1] for each in texts]
+        for places in _alike(words, rows):
+            batches, apart = self._together(columns, places) if len(places) > 1 else ([], places)
+            found += batches
+            for row in apart.tolist():
+                alone = self._alone([column.text(row) for column in columns])
+                if isinstance(alone, str):
+                    failures[row] = alone
+                else:
+                    found.append(Batch(alone, [row]))
+        return found, failures
 
     def _with(self, texts: Sequence[str]) -> Origin:
         """Return the file with these texts under the keys."""
@@ -89,77 +111,86 @@ class Binder:
         case = texts[0] if self._cases else self._origin.case
         return self._origin._replace(case=case, varied=given[self._cases :])
 
-    def _bind_alone(self, row: int, texts: Sequence[str], found: Batches) -> None:
-        """Add the machine of one row, or the reason why there is none."""
+    def _alone(self, texts: Sequence[str]) -> Machine | str:
+        """Return the machine of one row, or the reason why there is none."""
         reading = reading_of(self._origin)
         try:
-            machine = read_values(self._with(texts), reading).made
+            machine: Machine = read_values(self._with(texts), reading).made
         except UsageError as error:
-            found.failures[row] = str(error)
+            return str(error)
         except MachineFileError:
             faults = (f"{path_text(one.path)}: {one.message}" if one.path else one.message for one in reading.faults)
-            found.failures[row] = "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
-        else:
-            found.batches.append(Batch(machine, [row]))
+            return "; ".join(dict.fromkeys(faults))  # identical cylinders have the same fault
+        return machine
 
-    def _together(self, places: Indices, rows: Sequence[Sequence[str]]) -> tuple[list[Batch], list[int]]:
+    def _structure(self, texts: Iterable[str]) -> list[str]:
+        """Return the texts of a row that are words, and those of the first machine in place of numbers."""
+        return [one if number else text for text, one, number in zip(texts, self._start, self._numeric)]
+
+    def _together(self, columns: Sequence[KeyColumn], places: Indices) -> tuple[list[Batch], Indices]:
         """Return the machines of rows with the same words, and the rows that must be read one by one."""
-        words = rows[places[0]]
-        origin = self._with([one if number else word for one, number, word in zip(self._start, self._numeric, words)])
-        columns = {
-            key: [rows[place][column] for place in places]
-            for column, key in enumerate(self._keys)
-            if self._numeric[column]
-        }
-        reading = reading_of(origin)
+        within = np.ones(len(places), dtype=bool)
+        slots: list[tuple[Given, str, NumberForm, Array]] = []
         try:
-            tree = parse(origin.text, reading)
-            set_over(tree, origin)
-            every = list(_every(read_tree(tree, origin, reading)))
-            read = _put(columns, every, len(places))
-            maker = Maker(reading, int(read.sum()))
+            words = self._structure(column.text(places[0]) for column in columns)
+            if words != self._words:
+                self._words, self._root = words, read_values(self._with(words), reading_of(self._origin))
+            every = list(_every(self._root))
+            for column in (column for column, is_number in zip(columns, self._numeric) if is_number):
+                owner, name, _ = _owner(path_of(column.input.key), every)
+                number = owner.form.keys[name].form.number
+                if number is None:
+                    return [], places
+                numbers = column.numbers[column.places[places]]
+                within &= number.within(numbers)
+                # a cylinder that is `like` the one of a key gets its numbers, too
+                text = owner.mapping.get(name)
+                alike = (one for one in every if _reads(one, name) and one.mapping.get(name) is text)
+                slots += [(one, name, number, numbers) for one in alike]
+            for one, name, number, numbers in slots:
+                one.values[name] = number.becomes(numbers[within], "") if number.becomes else numbers[within]
+            maker = Maker(Reading(), int(within.sum()))
             with np.errstate(all="ignore"):
-                machine = maker.made(every[-1])
-            if reading.faults or not read.any():
-                return [], places.tolist()
+                machine = maker.made(self._root)
+            if maker.reading.faults or not within.any():
+                return [], places
         # a formula works for a single machine only
         except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
-            return [], places.tolist()
-        batches = []
+            return [], places
+        read, batches = places[within], []
         for fit in _structures(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
             batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
-            batches.append(Batch(batch, places[read][fit].tolist()))
-        return batches, [*places[~read].tolist(), *places[read][maker.broken].tolist()]
+            batches.append(Batch(batch, read[fit].tolist()))
+        return batches, np.concatenate([places[~within], read[maker.broken]])
 
 
-def _put(columns: Mapping[str, Sequence[str]], every: Sequence[Given], count: int) -> Flags:
-    """Put arrays in place of numbers, of the rows that have all of them; return which rows these are.
-
-    columns: texts (count,) by dotted key. A cylinder that is `like` the one of a key gets its numbers, too. Raises
-    UsageError for a key whose value is not a number.
-    """
-    slots: list[tuple[Given, str, NumberForm, Array]] = []
-    read = np.ones(count, dtype=bool)
-    for key, texts in columns.items():
-        owner, name, _ = _owner(path_of(key), every)
-        form = owner.form.keys[name].form
-        if form.number is None:
-            raise UsageError(f"{key}: no number")
-        plain = form.number.numbers(texts)
-        if plain is None:  # one by one, nan for a text that is no number
-            known = {text: form.read(Reading(), Plain(text), ()) for text in dict.fromkeys(texts)}
-            plain = [one if isinstance(one := known[text], float) else np.nan for text in texts]
-        alike = [one for one in every if _reads(one, name) and one.mapping.get(name) is owner.mapping.get(name)]
-        slots += [(one, name, form.number, np.array(plain)) for one in alike]
-        read &= ~np.isnan(plain)
-    for one, name, number, numbers in slots:
-        one.values[name] = number.of_numbers(numbers[read])
-    return read
+def numbers_of(one: Input, kind: str) -> Array:
+    """Return the values (n,) of an input in the base of their kind; nan for words, and for what cannot be read."""
+    if one.texts:
+        known = {INFINITE: math.inf}
+        for text in dict.fromkeys(one.texts):
+            with suppress(UnitError):
+                known[text] = parse_quantity(text, kind) if kind else math.nan
+        return np.array([known.get(text, math.nan) for text in one.texts])
+    with suppress(UnitError):
+        if kind:
+            share = kind == "ratio" and one.unit == "%"
+            up, down = (1, 100) if share else unit_factor(one.unit, kind)
+            return (np.array(one.numbers, dtype=float) + zero_of(one.unit)) * up / down
+    return np.full(one.length, math.nan)
 
 
-def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
-    """Yield places, among those that fit, of machines that take the same branches in the solver.
+def _alike(columns: Sequence[Array | Indices], places: Indices) -> list[Indices]:
+    """Return places in groups, in each of which every column has one value."""
+    groups = [places] if len(places) else []
+    for column in columns:
+        groups = [group[column[group] == value] for group in groups for value in np.unique(column[group])]
+    return groups
+
+
+def _structures(machine: Machine, fit: Indices) -> list[Indices]:
+    """Return places, among those that fit, of machines that take the same branches in the solver.
 
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
     axial position.
@@ -177,12 +208,7 @@ def _structures(machine: Machine, fit: Indices) -> Iterator[Indices]:
         for apart in map(np.abs, (one.crank_position - other.crank_position - turned, turned, places[0] - places[1])):
             if np.ndim(apart):
                 codes.append(np.minimum(apart, np.abs(apart - 360.0)) < 1e-9)
-    if not codes:
-        yield from (fit,) if len(fit) else ()
-        return
-    kinds = np.unique(np.stack(codes)[:, fit], axis=1, return_inverse=True)[1].ravel()
-    for kind in range(kinds.max(initial=-1) + 1):
-        yield fit[kinds == kind]
+    return _alike(codes, fit)
 
 
 def _column(values: Array) -> Array | list[object]:

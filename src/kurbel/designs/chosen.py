@@ -4,7 +4,7 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,12 +14,13 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Cell, Design, Head
+from kurbel.designs.binding import INFINITE
 from kurbel.errors import UnitError, UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantities import every_quantity
 from kurbel.quantity import called
 
-_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
+_RELATIONS: dict[str, Callable[..., bool]] = {
     "<=": operator.le,
     ">=": operator.ge,
     "!=": operator.ne,
@@ -32,8 +33,6 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "=": operator.eq,
 }
 _OF_WORDS = ("=", "==", "!=", "≠")
-_INFINITE = "infinite"
-"""The text of a row for an infinite rod length."""
 _CONDITION = re.compile(rf"(.+?)\s*({'|'.join(_RELATIONS)})\s*(.*)")
 
 
@@ -48,7 +47,7 @@ class Condition(NamedTuple):
         """Return whether it holds; a row without that value keeps no condition."""
         value = (*row.values, *row.texts)[self.place]
         known = value if isinstance(self.value, str) else _number(value)
-        return known is not None and bool(_RELATIONS[self.relation](known, self.value))
+        return known is not None and _RELATIONS[self.relation](known, self.value)
 
 
 def parts_of(text: str) -> tuple[str, str, str]:
@@ -74,7 +73,7 @@ def read_condition(text: str, heads: Sequence[Head], option: str = "--where") ->
             raise UsageError(f"{where}: keeps is yes, no, or empty where a limit cannot be judged")
         return Condition(place, relation, written)
     try:
-        value = math.inf if head.input and written == _INFINITE else parse_quantity(written, head.kind)
+        value = math.inf if head.input and written == INFINITE else parse_quantity(written, head.kind)
     except UnitError as error:
         raise UsageError(f"{where}: {error}") from None
     return Condition(place, relation, float(convert(value, head.kind, head.unit)))
@@ -95,7 +94,7 @@ def place_of(name: str, heads: Sequence[Head], option: str) -> int:
 
 def _number(value: Cell) -> float | None:
     """Return the number in a cell, inf for an infinite rod; None where there is none."""
-    if value == _INFINITE:
+    if value == INFINITE:
         return math.inf
     return value if isinstance(value, (int, float)) else None
 

@@ -13,7 +13,7 @@ from kurbel.arrays import Array
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert, show
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, Design, Head, Study, texts_of
+from kurbel.designs.answers import Design, Head, Study
 from kurbel.designs.chosen import parts_of, place_of, read_condition
 from kurbel.designs.plan import read_span
 from kurbel.errors import NoSolutionError, UsageError
@@ -77,27 +77,6 @@ class Failed(NamedTuple):
     why: str
 
 
-class Solutions(NamedTuple):
-    """Solutions in the order of the first key, and jumps: places where a key value jumps across the wanted value.
-
-    machine: its name. heads, answers: of the key values of a solution, in SI. met: least and greatest value of each
-    wanted key value. places (n, keys), values (n, answers): all designs that were computed, in SI, in the order of the
-    keys.
-    """
-
-    machine: str
-    varied: tuple[Varied, ...]
-    wanted: tuple[Target, ...]
-    heads: tuple[Head, ...]
-    answers: tuple[Answer, ...]
-    found: tuple[Solution, ...]
-    jumps: tuple[Solution, ...]
-    failed: tuple[Failed, ...]
-    met: tuple[tuple[float, float], ...]
-    places: Array
-    values: Array
-
-
 class _Design(NamedTuple):
     """A design that was computed: its numbers and key values in SI, nan where it fails.
 
@@ -133,19 +112,23 @@ def find(
         raise UsageError(f"{shown(wrong)}: write an equation, such as 'N_max = 4 kN'; a bound has --where")
     if not 1 <= len(vary) <= 2 or (least and greatest) or len(equations) != (0 if extreme else len(vary)):
         raise UsageError("give --vary KEY=low:high and 'KEY_VALUE = value', two of both, or --least or --greatest")
-    search = _Search(origin, vary, [extreme] if extreme else equations, conditions, progress)
+    found = Solutions(origin, vary, [extreme] if extreme else equations, conditions, progress)
     if extreme:
-        search.find_extreme("least" if least else "greatest")
+        found.find_extreme("least" if least else "greatest")
     else:
-        search.solve()
-    found = search.findings()
+        found.solve()
     if not found.found:
-        raise NoSolutionError(_nothing(found, search.excluded))
+        raise NoSolutionError(_nothing(found))
     return found
 
 
-class _Search:
-    """Designs of a file by their places (n, keys), from 0 to 1 in each range, and all that was computed of them."""
+class Solutions:
+    """Solutions in the order of the first key, and jumps: places where a key value jumps across the wanted value.
+
+    machine: its name; heads, answers: of the key values of a solution, in SI; computed: all designs of the search, in
+    the order of their keys; excluded: the number of solutions that break a condition. A place is one of (n, keys), from
+    0 to 1 in each range.
+    """
 
     def __init__(
         self,
@@ -164,6 +147,7 @@ class _Search:
         names += [name for name in (parts_of(one)[0] for one in conditions) if name not in keys]
         ends = product(*((low, high) for _, low, high, _ in spans))
         self.study = Study(origin, keys, ends, names, option="find")
+        self.machine, self.answers = self.study.binder.machine.name, self.study.answers
         self.varied = [_varied(span, kind) for span, kind in zip(spans, self.study.binder.kinds)]
         heads = [*(Head(one.key, SI[one.kind], one.kind, input=True) for one in self.varied), *self.study.heads("si")]
         self.heads = tuple(heads[len(keys) :])
@@ -177,7 +161,6 @@ class _Search:
         self.found: list[Solution] = []
         self.jumps: list[Solution] = []
         self.excluded = 0
-        """Solutions that break a condition."""
 
     def at(self, places: Array) -> list[_Design]:
         """Return the designs at places (n, keys)."""
@@ -186,13 +169,13 @@ class _Search:
         low, high = np.array([(one.low, one.high) for one in self.varied]).T
         numbers = low * (1 - places) + high * places
         found = []
-        for row, one in zip(numbers.tolist(), self.study.of(texts_of(self.study.binder, numbers))):
+        for row, one in zip(numbers.tolist(), self.study.of(self.study.binder.columns(numbers))):
             values = tuple(np.array(one.values or [np.nan] * len(self.study.answers), dtype=float).tolist())
             design = Design(0, (*row, *one.values))
             unmet = one.failure or ", ".join(text for text, each in self.conditions if not each.holds(design))
             broken = one.failure or ", ".join(f"limits.{name}" for name in one.broken)
             found.append(_Design(tuple(row), values, one.failure, broken, unmet))
-        self.computed += found
+        self.computed = sorted([*self.computed, *found])
         return found
 
     def solve(self) -> None:
@@ -214,6 +197,7 @@ class _Search:
             if not one.unmet:
                 notes = (f"breaks {one.broken}",) if one.broken else ()
                 (self.jumps if jump else self.found).append(Solution(one.numbers, one.values, notes))
+        self.found.sort()
 
     def find_extreme(self, aim: str) -> None:
         """Find the design whose key value is the `least` or the `greatest` within all limits, if there is one."""
@@ -243,54 +227,54 @@ class _Search:
         if len(place) == 1:
             (key,), column = self.varied, self.wanted[0].place
             for same, part in groupby(
-                sorted(self.computed), key=lambda one: abs(one.values[column] - best) <= _EQUAL * abs(best)
+                self.computed, key=lambda one: abs(one.values[column] - best) <= _EQUAL * abs(best)
             ):
                 level = [one.numbers[0] for one in part]
                 if same and level[-1] - level[0] > _FLAT * (key.high - key.low):
                     notes.append(f"as good from {key.in_unit(level[0]):.6g} to {key.written(level[-1])}")
         return tuple(notes)
 
-    def findings(self) -> Solutions:
-        """Return what was found together with what was computed."""
-        computed = sorted(self.computed)
-        values = np.array([one.values for one in computed])
-        columns = [values[:, one.place] for one in self.wanted]
-        met = [(np.nanmin(one, initial=np.inf), np.nanmax(one, initial=-np.inf)) for one in columns]
-        failed: list[Failed] = []
-        for fails, part in groupby(computed, key=lambda one: bool(one.failure)):
-            if fails and len(self.varied) == 1:
-                inside = list(part)
-                failed.append(Failed(inside[0].numbers[0], inside[-1].numbers[0], inside[0].failure))
-        return Solutions(
-            self.study.binder.machine.name,
-            tuple(self.varied),
-            tuple(self.wanted),
-            self.heads,
-            self.study.answers,
-            tuple(sorted(self.found)),
-            tuple(self.jumps),
-            tuple(failed),
-            tuple(met),
-            np.array([one.numbers for one in computed]),
-            values,
-        )
+    @property
+    def places(self) -> Array:
+        """All designs that were computed (n, keys), in SI."""
+        return np.array([one.numbers for one in self.computed])
+
+    @property
+    def values(self) -> Array:
+        """Their key values (n, answers) in SI."""
+        return np.array([one.values for one in self.computed])
+
+    @property
+    def met(self) -> list[tuple[float, float]]:
+        """Least and greatest value of each wanted key value."""
+        columns = [self.values[:, one.place] for one in self.wanted]
+        return [(np.nanmin(one, initial=np.inf), np.nanmax(one, initial=-np.inf)) for one in columns]
+
+    @property
+    def failed(self) -> list[Failed]:
+        """The parts of the range of the only key in which designs fail."""
+        along = self.computed if len(self.varied) == 1 else []
+        parts = [list(part) for fails, part in groupby(along, key=lambda one: bool(one.failure)) if fails]
+        return [Failed(part[0].numbers[0], part[-1].numbers[0], part[0].failure) for part in parts]
 
 
-def _nothing(found: Solutions, excluded: int) -> str:
-    """Return the message that nothing was found, with the values that were met; excluded: solutions by --where."""
+def _nothing(found: Solutions) -> str:
+    """Return the message that nothing was found, with the values that were met."""
     ranges = " and ".join(
         f"{one.key} from {one.in_unit(one.low):.6g} to {one.written(one.high)}" for one in found.varied
     )
     wanted = " and ".join(one.text for one in found.wanted)
     if not np.isfinite(found.met).all():
-        return f"{ranges}: no design has {wanted}: {found.failed[0].why if found.failed else 'it has no value there'}"
+        why = next((one.why for one in found.failed), "it has no value there")
+        return f"{ranges}: no design has {wanted}: {why}"
     if found.wanted[0].aim != "=":
         return f"{ranges}: no design keeps all limits and conditions"
     met = []
     for one, (low, high) in zip(found.wanted, found.met):
         met.append(f"{one.head.id} is {show(low, one.head.kind)} to {show(high, one.head.kind)}")
     more = "; it is passed by a jump" if found.jumps else ""
-    more += f"; --where leaves out {excluded} that {'has' if excluded == 1 else 'have'} it" if excluded else ""
+    if found.excluded:
+        more += f"; --where leaves out {found.excluded} that {'has' if found.excluded == 1 else 'have'} it"
     return f"{ranges}: no design has {wanted}: {' and '.join(met)}{more}"
 
 

@@ -6,14 +6,14 @@ These are a grid of all values, or of values side by side, each with every point
 import math
 import re
 from collections.abc import Sequence
-from decimal import Decimal, InvalidOperation
+from fractions import Fraction
 from itertools import chain
 from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array
+from kurbel.arrays import Array, Indices
 from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.units import written_unit
@@ -43,12 +43,27 @@ class Uniform(NamedTuple):
 
 
 class Input(NamedTuple):
-    """A key that varies: texts of its values as the machine file would have them, or a distribution in a unit."""
+    """A key that varies: its values, as texts of the machine file or as numbers in a unit.
+
+    distribution: of such numbers, from which a `Plan` draws them.
+    """
 
     key: str
     texts: tuple[str, ...] = ()
-    distribution: NormalDist | Uniform | None = None
+    numbers: tuple[float, ...] = ()
     unit: str = ""
+    distribution: NormalDist | Uniform | None = None
+
+    @property
+    def length(self) -> int:
+        """The number of its values."""
+        return len(self.texts or self.numbers)
+
+    def text(self, place: int) -> str:
+        """Return a value as the machine file would have it."""
+        if self.texts:
+            return self.texts[place]
+        return f"{str(self.numbers[place]).removesuffix('.0')} {self.unit}".rstrip()
 
 
 def read_axis(text: str) -> tuple[Input, ...]:
@@ -71,16 +86,18 @@ def read_input(text: str) -> Input:
 
     >>> read_input("speed=40,50,60 rpm").texts
     ('40 rpm', '50 rpm', '60 rpm')
-    >>> read_input("rod_ratio=3:4:0.25").texts
-    ('3.00', '3.25', '3.50', '3.75', '4.00')
+    >>> read_input("rod_ratio=3:4:0.25").numbers
+    (3.0, 3.25, 3.5, 3.75, 4.0)
     """
     key, _, values = (part.strip() for part in plain(text).partition("="))
     if not key or not values:
         raise _refused(text, "write KEY=…, such as rod_ratio=3:6:0.25, speed=40,50,60 rpm, bore=normal(450 mm, 0.2 mm)")
     if call := _CALL.fullmatch(values):
-        return Input(key, (), *_distribution(text, call[1], call[2]))
+        distribution, unit = _distribution(text, call[1], call[2])
+        return Input(key, unit=unit, distribution=distribution)
     if ":" in values and "," not in values and NUMBER.match(values):
-        return Input(key, _range(text, values))
+        numbers, unit = _range(text, values)
+        return Input(key, (), numbers, unit)
     return Input(key, _list(text, [part.strip() for part in values.split(",")]))
 
 
@@ -125,19 +142,18 @@ def _numbers(text: str, parts: Sequence[str], count: int, expected: str) -> tupl
     return numbers, "".join(units)
 
 
-def _range(text: str, values: str) -> tuple[str, ...]:
-    """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last one."""
+def _range(text: str, values: str) -> tuple[tuple[float, ...], str]:
+    """Return first, first + step, … as decimal fractions, exactly, as far as they do not pass the last; their unit."""
     expected = "a range has three numbers, first:last:step, such as 3:6:0.25"
     numbers, unit = _numbers(text, values.split(":"), 3, expected)
-    try:
-        first, last, step = map(Decimal, numbers)
-    except InvalidOperation:
-        raise _refused(text, expected) from None
-    if not float(step) or (last - first) / step < 0:
-        raise _refused(text, f"a range from {first} by steps of {step} never reaches {last}")
+    first, last, step = (Fraction(repr(float(number))) for number in numbers)
+    if not step or (last - first) / step < 0:
+        raise _refused(text, f"a range from {numbers[0]} by steps of {numbers[2]} never reaches {numbers[1]}")
     if (last - first) / step >= _MOST_VALUES:
         raise _refused(text, f"this range has more than {_MOST_VALUES} values, as no key may")
-    return tuple(f"{first + step * i:f} {unit}".rstrip() for i in range(int((last - first) / step) + 1))
+    whole = math.lcm(first.denominator, step.denominator)
+    start, by = int(first * whole), int(step * whole)
+    return tuple((start + by * i) / whole for i in range(int((last - first) / step) + 1)), unit
 
 
 def _distribution(text: str, name: str, inside: str) -> tuple[NormalDist | Uniform, str]:
@@ -171,17 +187,21 @@ class Plan:
         most: int | None = None,
     ) -> None:
         self.inputs = tuple(chain(*axes))
-        self._drawn = [one for one in self.inputs if one.distribution]
-        listed = [axis for axis in axes if not axis[0].distribution]
-        self._axes = [tuple(chain(*listed))] if side_by_side and listed else listed
-        self._sample = sample or 1
-        self._refuse(sample, "--zip" if side_by_side else "")
-        self.rows = math.prod(len(axis[0].texts) for axis in self._axes) * self._sample
+        drawn = [one for one in self.inputs if one.distribution]
+        self._axes = [axis for axis in axes if not axis[0].distribution]
+        if side_by_side and self._axes:
+            self._axes = [tuple(chain(*self._axes))]
+        self._refuse(drawn, sample, "--zip" if side_by_side else "")
+        self.rows = math.prod(axis[0].length for axis in self._axes) * (sample or 1)
         if most and self.rows > most:
             raise UsageError(f"these are {self.rows} rows; --yes computes more than {most}")
-        self._points = latin_hypercube(self._sample, len(self._drawn), seed)
+        if sample:
+            shares = latin_hypercube(sample, len(drawn), seed).T.tolist()
+            self._axes.append(tuple(map(_drawn, drawn, shares)))
+            known = {one.key: one for one in chain(*self._axes)}
+            self.inputs = tuple(known[one.key] for one in self.inputs)
 
-    def _refuse(self, sample: int | None, option: str) -> None:
+    def _refuse(self, drawn: Sequence[Input], sample: int | None, option: str) -> None:
         paths = [path_of(one.key) for one in self.inputs]
         for place, (one, path) in enumerate(zip(self.inputs, paths)):
             if path in paths[:place]:
@@ -190,27 +210,33 @@ class Plan:
                 raise UsageError(
                     f"--vary {one.key}: limits are the same for all rows; --where chooses those within others"
                 )
-        if self._drawn and not sample:
-            raise UsageError(f"--vary {self._drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
-        if sample and not self._drawn:
+        if drawn and not sample:
+            raise UsageError(f"--vary {drawn[0].key}: a distribution needs --sample N, such as --sample 1000")
+        if sample and not drawn:
             raise UsageError("--sample: no key has a distribution, such as bore=normal(450 mm, 0.2 mm)")
         for axis in self._axes:
-            if len({len(one.texts) for one in axis}) > 1:
-                each = ", ".join(f"{one.key} has {len(one.texts)}" for one in axis)
+            if len({one.length for one in axis}) > 1:
+                each = ", ".join(f"{one.key} has {one.length}" for one in axis)
                 where = option or f"--vary {'; '.join(one.key for one in axis)}"
                 raise UsageError(f"{where}: the lists must be of one length; {each}")
 
-    def texts(self, row: int) -> tuple[str, ...]:
-        """Return the texts of the keys in a row, in the order of the inputs."""
-        combination, point = divmod(row, self._sample)
-        found: dict[str, str] = {}
+    def places(self, rows: Indices) -> list[Indices]:
+        """Return which of its values each input has in these rows (n,)."""
+        found: dict[str, Indices] = {}
         for axis in reversed(self._axes):
-            combination, place = divmod(combination, len(axis[0].texts))
-            found.update((one.key, one.texts[place]) for one in axis)
-        for one, share in zip(self._drawn, self._points[point].tolist()):
-            assert one.distribution
-            found[one.key] = f"{one.distribution.inv_cdf(share)!r} {one.unit}".rstrip()
-        return tuple(found[one.key] for one in self.inputs)
+            rows, place = np.divmod(rows, axis[0].length)
+            found |= dict.fromkeys((one.key for one in axis), place)
+        return [found[one.key] for one in self.inputs]
+
+    def texts(self, row: int) -> tuple[str, ...]:
+        """Return the values of the inputs in a row as the machine file would have them."""
+        return tuple(one.text(int(place[0])) for one, place in zip(self.inputs, self.places(np.array([row]))))
+
+
+def _drawn(one: Input, shares: Sequence[float]) -> Input:
+    """Return an input with the values of its distribution below which these shares of all lie."""
+    assert one.distribution
+    return Input(one.key, (), tuple(map(one.distribution.inv_cdf, shares)), one.unit)
 
 
 def latin_hypercube(count: int, width: int, seed: int) -> Array:

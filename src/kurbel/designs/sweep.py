@@ -1,6 +1,7 @@
 """A sweep: rows of inputs and key values, computed in order, block by block, here or by other processes."""
 
 import logging
+import math
 import os
 import pickle
 import re
@@ -17,14 +18,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kurbel.declared.unit_systems import convert, shown_unit
-from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Cell, Design, Found, Head, Study, Value, is_slow
+from kurbel.designs.binding import KeyColumn, numbers_of
 from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
-from kurbel.machine.cylinder import gathered, work_alike
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
-from kurbel.report.alike import grouped, together
+from kurbel.report.tables import grouped, together
+from kurbel.solver.case import Case
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""
@@ -70,6 +71,7 @@ class Sweep:
         self._keys = [one.key for one in self.plan.inputs]
         texts = chain([spec.start] if spec.start else [], map(self.plan.texts, starts))
         self._study = Study(spec.origin, self._keys, texts, spec.columns, spec.with_angles, cases=spec.cases)
+        self._numbers = list(map(numbers_of, self.plan.inputs, self._study.binder.kinds))
         self.texts = ("keeps", "broken", "failure") if self._study.limits else ("failure",)
         """Columns after the values: whether all limits are kept, `yes`, `no` or `` where one cannot be judged, the
         first that is not; why there are no values, or which limits cannot be judged."""
@@ -78,9 +80,10 @@ class Sweep:
     def heads(self) -> tuple[Head, ...]:
         """The heads of the columns, with units that are chosen by the first values."""
         heads = []
-        for key, text, kind in zip(self._keys, self.plan.texts(0), self._study.binder.kinds):
-            unit = shown_unit(kind, self.spec.system, _number(text, kind) or 0.0) if kind else ""
-            heads.append(Head(key, unit, kind, input=True))
+        for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
+            first = float(column.numbers[column.places[0]])
+            unit = shown_unit(kind, self.spec.system, first if math.isfinite(first) else 0.0) if kind else ""
+            heads.append(Head(column.input.key, unit, kind, input=True))
         return (*heads, *self._study.heads(self.spec.system))
 
     @cached_property
@@ -92,8 +95,7 @@ class Sweep:
         heads = [(head.id, place) for place, head in enumerate(self.heads)]
         if self.spec.cases or any(re.match(r"cylinders\W*\d", key) for key in self._keys):
             return heads
-        groups = gathered(self._study.binder.machine.cylinders, work_alike)
-        alike = {one.name: number for number, group in enumerate(groups) for one in group}
+        alike = {one.drive.name: one.twin or one for one in Case(self._study.binder.machine).cylinders}
         count, answers = len(self._keys), self._study.answers
 
         def content(place: int) -> Hashable:
@@ -114,8 +116,8 @@ class Sweep:
     def types(self) -> list[str]:
         """Return the type of each column: `number`, `list`, or `text`, also where words occur among numbers."""
         types = ["list" if head.listed else "number" for head in self.heads]
-        for place, one in enumerate(self.plan.inputs):
-            if any(_number(text, self.heads[place].kind) is None for text in one.texts):
+        for place, numbers in enumerate(self._numbers):
+            if not np.isfinite(numbers).all():
                 types[place] = "text"
         return types
 
@@ -133,7 +135,7 @@ class Sweep:
 
     def block(self, rows: range) -> list[Design]:
         """Return the rows of a block."""
-        found = self._study.of([self.plan.texts(row) for row in rows])
+        found = self._study.of(self._columns(rows))
         lacking = [None] * len(self._study.answers)
         heads = self.heads[len(self._keys) :]
         columns = (
@@ -142,28 +144,23 @@ class Sweep:
         each = zip(rows, self.inputs(rows), zip(*columns), found)
         return [Design(row + 1, (*inputs, *values), self._texts(one)) for row, inputs, values, one in each]
 
-    def inputs(self, rows: Iterable[int]) -> Iterable[tuple[Cell, ...]]:
+    def inputs(self, rows: Sequence[int]) -> Iterable[tuple[Cell, ...]]:
         """Return the values of the inputs in these rows, counted from 0."""
-        columns: list[list[Cell]] = []
-        for head, texts in zip(self.heads, zip(*map(self.plan.texts, rows))):
-            known: dict[str, Cell] = {}
-            for text in dict.fromkeys(texts):
-                number = _number(text, head.kind)
-                known[text] = text if number is None else float(convert(number, head.kind, head.unit)) + 0.0
-            columns.append([known[text] for text in texts])
-        return zip(*columns)
+        cells: list[list[Cell]] = []
+        for head, column in zip(self.heads, self._columns(rows)):
+            shown = convert(column.numbers[column.places], head.kind, head.unit) + 0.0
+            each = enumerate(shown.tolist())
+            cells.append([one if math.isfinite(one) else column.text(row) for row, one in each])
+        return zip(*cells)
+
+    def _columns(self, rows: Sequence[int]) -> list[KeyColumn]:
+        """Return the values of the keys in these rows, counted from 0."""
+        return list(map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows))))
 
     def _texts(self, found: Found) -> tuple[str, ...]:
         failure = found.failure or "; ".join(found.unjudged)
         keeps = "no" if found.broken else "" if failure else "yes"
         return (keeps, next(iter(found.broken), ""), failure)[-len(self.texts) :]
-
-
-def _number(text: str, kind: str) -> float | None:
-    """Return the value of a text in the base unit of its kind; None for a word or an unreadable number."""
-    with suppress(KurbelError):
-        return parse_quantity(text, kind) if kind else None
-    return None
 
 
 def _in_unit(column: Sequence[Value], head: Head) -> list[Value]:

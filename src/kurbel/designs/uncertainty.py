@@ -7,7 +7,7 @@ rounding. Where a key value is too nonlinear over the width of an uncertainty, a
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
-from kurbel.designs.answers import Answer, answered, is_slow, texts_of
+from kurbel.designs.answers import Answer, answered, is_slow
 from kurbel.designs.binding import Binder, written
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
@@ -40,7 +40,7 @@ _ROUNDING = 1e-9
 
 Spreads = Sequence[tuple[str, str]]
 """Dotted keys, each with its standard uncertainty as a text."""
-Counted = Callable[[Sequence[Any]], Iterable[Any]]
+Counted = Callable[[Sequence[Array]], Iterable[Array]]
 """Yields what it is given, and may report the progress."""
 
 _NOISE = 1e-12
@@ -155,8 +155,8 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
 
     shifts: (machines, inputs), in uncertainties.
     """
-    texts = texts_of(inputs.binder, inputs.values + shifts * inputs.spreads)
-    every = answered(inputs.binder, texts, requested)
+    columns = inputs.binder.columns(inputs.values + shifts * inputs.spreads)
+    every = answered(inputs.binder, columns, requested)
     lacking = [None] * len(requested)
     rows = [lacking if isinstance(one, str) else one for one in every]
     values = [[math.nan if isinstance(one, tuple) else one for one in row] for row in rows]

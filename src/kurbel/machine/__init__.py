@@ -15,7 +15,16 @@ from typing import Any
 import numpy as np
 
 from kurbel.crank_angle import CrankAngle
-from kurbel.declared.forms.figures import EXPECTATIONS, LIMITS, MACHINE, SETTINGS, UNCERTAINTIES, Expected, scoped
+from kurbel.declared.forms.figures import (
+    EXPECTATIONS,
+    LIMITS,
+    MACHINE,
+    SETTINGS,
+    UNCERTAINTIES,
+    Bound,
+    Expected,
+    scoped,
+)
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
 from kurbel.declared.reading import REFUSED, shown
@@ -24,12 +33,22 @@ from kurbel.errors import Fault, RuleError, UsageError, refuse
 from kurbel.machine.crankshaft import BalanceShaft, Counterweight, Crankshaft, Locomotive, SharedCounterweights
 from kurbel.machine.cylinder import CYCLES, Cylinder, counterweights, crowded
 from kurbel.machine.ideal_cards import Diesel, Otto
-from kurbel.machine.indicator import Rectangle
+from kurbel.machine.indicator import Chamber, Rectangle
 from kurbel.machine.origin import Origin
 from kurbel.machine.pumped import Gas, Pump
 from kurbel.machine.several import EqualCylinders, in_order, within_cycle
 from kurbel.machine.shaft_line import SHAFT, ShaftLine, ShaftPart, line_of, shaft_faults
-from kurbel.machine.turning import MOST_TURNS, Coupling, Effort, Flywheel, Known, KnownEffort, Load, Swing
+from kurbel.machine.turning import (
+    MOST_TURNS,
+    Coupling,
+    Effort,
+    Flywheel,
+    Known,
+    KnownEffort,
+    Load,
+    Swing,
+    rules_of_cycle,
+)
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.near_words import did_you_mean
 from kurbel.traces.correct import Trace
@@ -49,11 +68,10 @@ def _names(cylinders: Sequence[Cylinder] | EqualCylinders) -> list[str]:
 class LoadCase(Record):
     """A load case: values by dotted key that replace those of the file."""
 
-    name: str = field(str, "Name of the case, for `--case`", required=True, example="full load")
+    name: str = field(str, "Name of the case, for `--case`", example="full load")
     values: tuple[tuple[str, object], ...] = field(
         SETTINGS,
         "Values instead of those of the file, by dotted key",
-        required=True,
         example="{speed: 40 rpm}",
         key="set",
     )
@@ -253,8 +271,7 @@ class Machine(Record):
             yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
         for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
-            if diagram is not None and (message := diagram.cycle_fault(self._common_cycle, self.revolutions)):
-                yield Rule((key, diagram.key), True, message)
+            yield from (rule.below(key) for rule in rules_of_cycle(diagram, self._common_cycle, self.revolutions))
         if isinstance(self.effort, Swing):
             message = "needs the effort over the angle; of this one the swing of energy alone is given"
             yield Rule("load", self.load is not None and self.load.varies, message)
@@ -283,7 +300,7 @@ class Machine(Record):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
-                    written = getattr(figure, "name", "") or id
+                    written = (figure.name if isinstance(figure, (Bound, Expected)) else "") or id
                     message = f"no cylinder is called '{shown(scope)}'{hint}"
                     yield Rule((key, written), True, message, at_key=True)
 
@@ -317,11 +334,14 @@ class Machine(Record):
         return math.lcm(CYCLES[self._common_cycle], self.cycle_turns)
 
     @property
+    def chambers(self) -> list[Chamber]:
+        """What the indicators of all pistons show."""
+        return [chamber for one in self.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+
+    @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        pistons = [piston for cylinder in self.cylinders for piston in cylinder.pistons]
-        measured = (*(chamber for piston in pistons for chamber in piston.chambers.values()), self.effort)
-        files = (one.files for one in measured if isinstance(one, (Trace, Effort)))
+        files = (one.files for one in (*self.chambers, self.effort) if isinstance(one, (Trace, Effort)))
         return tuple(dict.fromkeys(chain(*files)))
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:

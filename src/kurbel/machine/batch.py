@@ -5,11 +5,13 @@ The rules of each machine were checked when it was made, and are not checked aga
 
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Indivisible
+
+R = TypeVar("R")
 
 
 def values_of(record: Any) -> dict[str, Any]:
@@ -56,6 +58,7 @@ def changed(record: Any, change: Callable[[Array], object], known: dict[int, obj
     return known[id(record)]
 
 
-def taken(record: Any, index: Indices) -> Any:
+def taken(record: R, index: Indices) -> R:
     """Return a record of many machines with the numbers of these, of the shape of the index."""
-    return changed(record, lambda numbers: numbers[index])
+    found: R = changed(record, lambda numbers: numbers[index])
+    return found

@@ -2,11 +2,10 @@
 
 import functools
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Truth
+from kurbel.arrays import Number, Truth
 from kurbel.declared.forms.values import Choice
 from kurbel.declared.record import Record, Rule, alternative, field
 
@@ -22,19 +21,13 @@ class Crankshaft(Record):
     overhung: the pin is outside bearing A, on a single web.
     """
 
-    a: float = field(
-        "length", "From the middle of the crank pin to bearing A, away from the flywheel", "a", above=0, required=True
-    )
-    b: float = field(
-        "length", "From the middle of the crank pin to bearing B, next to the flywheel", "b", above=0, required=True
-    )
-    web_distance: float = field(
-        "length", "From the middle of the crank pin to the middle of a web", "e", above=0, required=True
-    )
-    web_thickness: float = field("length", "Thickness of a web along the shaft", "t", above=0, required=True)
-    web_width: float = field("length", "Width of a web across its arm", "w", above=0, required=True)
-    pin_diameter: float = field("length", "Diameter of the crank pin", "d_z", above=0, required=True)
-    pin_length: float = field("length", "Length of the crank pin", "l_z", above=0, required=True)
+    a: float = field("length", "From the middle of the crank pin to bearing A, away from the flywheel", "a", above=0)
+    b: float = field("length", "From the middle of the crank pin to bearing B, next to the flywheel", "b", above=0)
+    web_distance: float = field("length", "From the middle of the crank pin to the middle of a web", "e", above=0)
+    web_thickness: float = field("length", "Thickness of a web along the shaft", "t", above=0)
+    web_width: float = field("length", "Width of a web across its arm", "w", above=0)
+    pin_diameter: float = field("length", "Diameter of the crank pin", "d_z", above=0)
+    pin_length: float = field("length", "Length of the crank pin", "l_z", above=0)
     journal_diameter: float | None = field(
         "length", "Diameter of the journals", "d_j", above=0, absent="journals not examined"
     )
@@ -124,7 +117,7 @@ class Crankshaft(Record):
         if self.journal_length is None:
             return
         has_flywheel = (np.asarray(self.flywheel_mass) > 0) & np.not_equal(self.flywheel_position, 0)
-        rooms: dict[str, Any] = {
+        rooms: dict[str, Number] = {
             "the middle of bearing A and web A": self.a - self._web_end,
             "the middle of bearing B and web B": np.inf if self.overhung else self.b - self._web_end,
             "the middle of bearing A and half the way to B": self.span / 2 if self.overhung else np.inf,
@@ -166,7 +159,6 @@ class _Weight(Record):
         "Its mass times the radius of its centre of gravity; or give both",
         "u",
         least=0,
-        required=True,
         example="0.12 kg m",
     )
     _mass = alternative(
@@ -215,7 +207,6 @@ class SharedCounterweights(Record):
         "c",
         least=0,
         most=1,
-        required=True,
         example="0.5",
     )
     planes: tuple[float, ...] = field(
@@ -245,7 +236,7 @@ class BalanceShaft(_Weight):
         required=True,
         gives=lambda given: {"against": given["sense"] == "against"},
     )
-    order: int = field(int, "Its turns per turn of the crank", "n", least=1, most=8, required=True, example="2")
+    order: int = field(int, "Its turns per turn of the crank", "n", least=1, most=8, example="2")
     against: bool = False
     angle: float = field(
         "angle",
@@ -263,9 +254,7 @@ class BalanceShaft(_Weight):
 class Locomotive(Record):
     """The driven wheels of a locomotive, with its counterweights; the cylinders are halfway between them."""
 
-    wheel_distance: float = field(
-        "length", "Between the counterweights of the left and of the right wheel", above=0, required=True
-    )
+    wheel_distance: float = field("length", "Between the counterweights of the left and of the right wheel", above=0)
     wheel_diameter: float | None = field(
         "length", "Diameter of the driven wheels", "D", above=0, absent="speed of the shaft alone"
     )

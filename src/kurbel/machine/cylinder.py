@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -28,8 +27,6 @@ from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.traces.correct import CYCLES as CYCLES
-
-Item = TypeVar("Item")
 
 _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys, apart from those of pistons, of a cylinder whose output slides."""
@@ -66,7 +63,6 @@ class Cylinder(Record):
     mechanism: Mechanism = field(
         Variant("slider-crank", MECHANISMS, _OTHER_NAMES),
         "Kind of crank mechanism",
-        default=dataclasses.MISSING,
         absent="slider-crank",
     )
     name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
@@ -249,15 +245,6 @@ def work_alike(one: Cylinder, other: Cylinder) -> bool:
     """Return whether two cylinders have the same motion and forces, at whatever place along the shaft."""
     keys = (field.name for field in fields(Cylinder) if field.name not in _PLACE)
     return all(_same(vars(one)[key], vars(other)[key]) for key in keys)
-
-
-def gathered(items: Iterable[Item], equal: Callable[[Item, Item], bool]) -> list[list[Item]]:
-    """Return the items in groups of equal ones, in order of first occurrence."""
-    groups: list[list[Item]] = []
-    for item in items:
-        found = next((group for group in groups if equal(group[0], item)), None)
-        groups.append([item]) if found is None else found.append(item)
-    return groups
 
 
 def _same(one: object, other: object) -> bool:

@@ -6,7 +6,6 @@ the stroke volume. Exponents are those of p V^n.
 
 import math
 from collections.abc import Iterator
-from dataclasses import MISSING
 from typing import Any, ClassVar, Union
 
 import numpy as np
@@ -82,10 +81,10 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
 class Steam(Record):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
 
-    admission: float = _pressure("Pressure while steam is admitted", required=True)
-    exhaust: float = _pressure("Pressure while steam leaves", required=True)
-    cut_off: float = field("ratio", "Fraction of the stroke at which admission ends", above=0, most=1, required=True)
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", required=True)
+    admission: float = _pressure("Pressure while steam is admitted")
+    exhaust: float = _pressure("Pressure while steam leaves")
+    cut_off: float = field("ratio", "Fraction of the stroke at which admission ends", above=0, most=1)
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
     release: float = field("ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1)
     compression: float = field(
         "ratio", "Fraction of the return stroke at which the exhaust closes", default=0.0, least=0, below=1
@@ -130,9 +129,9 @@ class Steam(Record):
 class Compressor(Record):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
-    suction: float = _pressure("Pressure while the chamber fills", required=True)
-    delivery: float = _pressure("Pressure while the chamber empties", required=True, also=("discharge",))
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", required=True)
+    suction: float = _pressure("Pressure while the chamber fills")
+    delivery: float = _pressure("Pressure while the chamber empties", also=("discharge",))
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
     exponent: float = _exponent("Exponent of compression and expansion", "1.4, air", AIR_EXPONENT)
     expansion_exponent: float | None = _exponent("Exponent of the expansion", "that of the compression")
     unloaded: bool = field(
@@ -173,7 +172,7 @@ class _Engine(Record):
     changes its gas at the outer dead centre.
     """
 
-    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills", required=True)
+    intake: float = _pressure("Pressure in the cylinder when compression begins, and while it fills")
     peak: float | None = _pressure(
         "Pressure of injection, reached at constant volume", absent="that at the end of compression"
     )
@@ -187,9 +186,7 @@ class _Engine(Record):
         example="8",
         gives=lambda given: {"clearance": 1 / (given["compression_ratio"] - 1)},
     )
-    clearance: float = field(
-        CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", default=MISSING, instead="compression_ratio"
-    )
+    clearance: float = field(CLEARANCE, f"{_CLEARANCE}; or give `compression_ratio`", "c", instead="compression_ratio")
     exhaust: float | None = _pressure(
         "Pressure while the burnt gas leaves, in a four-stroke cycle", absent="that of the intake"
     )
@@ -237,7 +234,7 @@ class _Engine(Record):
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume."""
 
-    peak: float = _pressure("Largest pressure, after combustion", required=True)
+    peak: float = _pressure("Largest pressure, after combustion")
 
 
 class Diesel(_Engine):
@@ -247,7 +244,7 @@ class Diesel(_Engine):
     pressure of injection is that at the end of the compression.
     """
 
-    cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1, required=True)
+    cut_off: float = field("ratio", "Fraction of the stroke at which injection ends", above=0, below=1)
 
 
 IdealCard = Union[Steam, Compressor, Otto, Diesel]

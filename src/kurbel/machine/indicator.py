@@ -62,9 +62,8 @@ class Drawn(Record):
         NumberForm("length", above=0, becomes=lambda length, text: Bound(length, written_unit(text)), apart=True),
         "Length of the card on the paper",
         "l",
-        required=True,
     )
-    spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0, required=True)
+    spring: float = field("spring", "Scale of the spring: height on the paper over pressure", above=0)
 
     @property
     def scales(self) -> tuple[str, Factor, float]:
@@ -226,8 +225,8 @@ def _line_faults(points: list[Point], whole: float, unit: str) -> list[Fault]:
 class Constant(Record):
     """Constant pressure on each stroke: an ideal pump."""
 
-    expansion: float = field("pressure", "Pressure while the chamber grows: suction", required=True)
-    compression: float = field("pressure", "Pressure while the chamber shrinks: delivery", required=True)
+    expansion: float = field("pressure", "Pressure while the chamber grows: suction")
+    compression: float = field("pressure", "Pressure while the chamber shrinks: delivery")
 
     @classmethod
     def of_keys(cls, expansion: float, compression: float) -> Card:
@@ -261,10 +260,9 @@ Chamber = Union[Rectangle, Card, IdealCard, Trace]
 """The pressure in one end of a cylinder; each has `cycles`, of which it can be part, and `rules_in`."""
 
 
-def _loaded(chamber: Any) -> Any:
+def _loaded(chamber: object) -> object:
     """Return a card as it is with its valves at work, for the other end."""
-    unloaded = isinstance(chamber, Compressor) and chamber.unloaded
-    return replace(chamber, unloaded=False) if unloaded else chamber
+    return replace(chamber, unloaded=False) if isinstance(chamber, Compressor) and chamber.unloaded else chamber
 
 
 class Indicator(Record):

@@ -74,14 +74,11 @@ class Columns(Record):
 class Motored(Record):
     """A motored trace, and by how many degrees heat loss and leakage put its peak before the dead centre."""
 
-    motored: str = field(
-        FILE_PATH, "File of a motored trace, in the same layout as the trace", required=True, example="motored.csv"
-    )
+    motored: str = field(FILE_PATH, "File of a motored trace, in the same layout as the trace", example="motored.csv")
     loss_angle: float = field(
         "angle",
         "Thermodynamic loss angle: how far heat loss and leakage move the peak ahead of the dead centre",
         least=0,
-        required=True,
         example="0.7 deg",
     )
 

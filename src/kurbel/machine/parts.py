@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class ConnectingRod(Record):
     """The connecting rod and how it moves: by the share that reciprocates or, exactly, as the rigid body that it is."""
 
-    mass: float = field("mass", "Mass of the rod", least=0, required=True)
+    mass: float = field("mass", "Mass of the rod", least=0)
     share: float = field("ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2")
     center_of_gravity: float | None = field(
         "length",
@@ -140,31 +140,28 @@ class Masses(Record):
 class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
-    gas: float = field(
-        "ratio", "Pressure on the wall over the difference across the piston", "k", least=0, required=True
-    )
+    gas: float = field("ratio", "Pressure on the wall over the difference across the piston", "k", least=0)
 
 
 class Rings(Record):
     """Piston rings."""
 
-    count: int = field(int, "Number of rings", least=1, required=True)
-    height: float = field("length", "Height of one ring along the bore", "h", above=0, required=True)
+    count: int = field(int, "Number of rings", least=1)
+    height: float = field("length", "Height of one ring along the bore", "h", above=0)
     pressure: float | GasOnRings = field(
         OneOf(Choice(("gas",)), NumberForm("pressure", least=0), RecordForm(GasOnRings)),
         "Pressure of the ring on the wall; `gas` or `{gas: k}`: k times the pressure difference across the piston",
         "p_r",
-        required=True,
         gives=lambda given: {"pressure": GasOnRings(1.0)} if given["pressure"] == "gas" else {},
     )
-    coefficient: float = field("ratio", "Coefficient of friction", "f", least=0, required=True)
+    coefficient: float = field("ratio", "Coefficient of friction", "f", least=0)
 
 
 class Guide(Record):
     """The shoe with which a crosshead presses on its guide."""
 
-    length: float = field("length", "Length of the shoe along the stroke", above=0, required=True)
-    width: float = field("length", "Width of the shoe", above=0, required=True)
+    length: float = field("length", "Length of the shoe along the stroke", above=0)
+    width: float = field("length", "Width of the shoe", above=0)
 
 
 _PINS: dict[str, tuple[str, str]] = {
@@ -280,11 +277,10 @@ class RodPoint(Record):
     origin: str = field(
         ("crank_pin", "crosshead_pin", "rocker_pin"),
         "Pin from which the distance counts",
-        required=True,
         example="crank_pin",
         key="from",
     )
-    along: float = field("length", "Distance along the rod, toward its other pin", required=True)
+    along: float = field("length", "Distance along the rod, toward its other pin")
     across: float = field(
         "length",
         "Distance from the centre line of the rod, positive toward the side of the outstroke",
@@ -309,7 +305,7 @@ class Piston(Record):
     lever_ratio: its displacement over that of the crosshead, 1 where both are on one rod; see `TandemPiston`.
     """
 
-    bore: float = field("length", "Diameter of the cylinder", "d", above=0, required=True)
+    bore: float = field("length", "Diameter of the cylinder", "d", above=0)
     head_end_rod: float = field("length", "Diameter of the rod through the head end", default=0.0, least=0)
     crank_end_rod: float = field(
         "length",

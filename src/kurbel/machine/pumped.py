@@ -14,7 +14,7 @@ class Gas(Record):
     """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
 
     inlet_temperature: float = field(
-        "temperature", "Temperature of the gas where it is drawn in", "T_1", above=0, required=True, example="20 °C"
+        "temperature", "Temperature of the gas where it is drawn in", "T_1", above=0, example="20 °C"
     )
     gas_constant: float | None = field(
         "gas_constant",
@@ -81,8 +81,8 @@ class Vessel(Record):
 class Pipe(Record):
     """A pipe with all chambers of the pump on it."""
 
-    length: float = field("length", "Length of the pipe", "l", above=0, required=True, example="12 m")
-    diameter: float = field("length", "Bore of the pipe", "d", above=0, required=True, example="100 mm")
+    length: float = field("length", "Length of the pipe", "l", above=0, example="12 m")
+    diameter: float = field("length", "Bore of the pipe", "d", above=0, example="100 mm")
     lift: float | None = field("length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared")
     friction_factor: float = field(
         "ratio", "Friction factor of the pipe (Darcy)", "f", default=0.0, least=0, most=1, absent="0, no friction"

@@ -15,7 +15,7 @@ from kurbel.machine.cylinder import CYCLES, Cylinder
 class EqualCylinders(Record):
     """Cylinders that differ only in name, crank position and place."""
 
-    count: int = field(int, "Number of cylinders", most=MOST_ITEMS, required=True, example="4")
+    count: int = field(int, "Number of cylinders", most=MOST_ITEMS, example="4")
     firing_order: tuple[int, ...] | None = field(
         FIRING_ORDER,
         "Order in which they fire, at equal intervals over the cycle",
@@ -46,7 +46,7 @@ class EqualCylinders(Record):
         most=360,
         absent="in line",
     )
-    each: Cylinder = field(RecordForm(Cylinder, inline_too=True), "The keys of one cylinder", required=True)
+    each: Cylinder = field(RecordForm(Cylinder, inline_too=True), "The keys of one cylinder")
 
     def rules(self) -> Iterator[Rule]:
         positions, banks = self.crank_positions or (), self.bank_angles

@@ -7,11 +7,11 @@ of the cranks.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import TEXT, Choice
-from kurbel.declared.reading import REFUSED
+from kurbel.declared.reading import REFUSED, Reported
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
 from kurbel.near_words import did_you_mean
@@ -59,7 +59,7 @@ class ShaftPart(Record):
         "length", "Diameter of a shaft segment; if a stiffness is given, used for the stress only", "d", above=0
     )
     length: float | None = field(
-        "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs=("diameter")
+        "length", "Length of a shaft segment", "l", above=0, instead="stiffness", needs="diameter"
     )
     bore: float | None = field("length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter")
     shear_modulus: float | None = field(
@@ -178,7 +178,7 @@ class ShaftLine:
     load: int = -1
 
 
-def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
+def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
     """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
     faults, seen = [], set[str]()
     named = [(index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED]
@@ -190,11 +190,12 @@ def shaft_faults(parts: Sequence[Any], cylinders: Sequence[str]) -> list[Fault]:
             faults.append(Fault(place, f"'{name}' is in the shaft line twice"))
         seen.add(name)
     absent = [name for name in cylinders if name not in seen]
-    if REFUSED not in parts:
+    whole = [part for part in parts if part is not REFUSED]
+    if len(whole) == len(parts):
         if absent and not seen - set(cylinders):
             item = f"give its crank an item '{{cylinder: {absent[0]}}}'"
             faults.append(Fault((), f"{', '.join(absent)} is missing in it; {item}"))
-        faults += (Fault(place, message) for broken, place, message in _of_order(parts) if broken)
+        faults += (Fault(place, message) for broken, place, message in _of_order(whole) if broken)
     return [fault.below(("shaft",)) for fault in faults]
 
 

@@ -3,18 +3,16 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf
 from kurbel.declared.forms.values import NumberForm, Points, order_faults, size_faults, unit_name
-from kurbel.declared.numerals import NUMBER, plain
-from kurbel.declared.reading import Node, Reading
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
-from kurbel.errors import Fault, Path, refuse, refused
+from kurbel.errors import Fault, refuse, refused
 from kurbel.machine.measured import Columns
 from kurbel.numerics.arithmetic import is_whole, some
 from kurbel.traces.correct import CYCLES
@@ -31,7 +29,7 @@ _HIGHEST = 1000
 class Rim(Record):
     """The rim of a flywheel; its width or its mass, with its depth, give its moment of inertia."""
 
-    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, required=True, example="3 m")
+    mean_diameter: float = field("length", "Mean diameter of the rim", "D", above=0, example="3 m")
     _outer_diameter = alternative(
         "length",
         "Outer diameter of the rim",
@@ -196,22 +194,6 @@ class Effort:
     files: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        last, whole = self.angles[-1], 360.0 * turns
-        if whole % last == 0:  # one of a single turn repeats in the second one of a four-stroke cycle
-            return ""
-        name, four = f"a {cycle} cycle", turns < 2 and last == 720
-        if turns != CYCLES[cycle]:
-            name = "the cycle"
-        write = "cycle: four-stroke" if four else f"cycle_turns: {last / 360:g}"
-        return f"the diagram runs to {last:g} deg, {name} has {whole:g} deg; write '{write}' at the top"
-
-    @property
-    def key(self) -> str:
-        """The key of the torques in the machine file."""
-        return "file" if self.files else "points"
-
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
@@ -222,16 +204,6 @@ class Harmonics:
 
     mean: float
     terms: tuple[tuple[float, float, float], ...]
-
-    key: ClassVar[str] = "harmonics"
-
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return what does not fit the cycle of the machine, of so many turns of the shaft, or an empty text."""
-        for order, _, _ in self.terms:
-            if not is_whole(order * turns):
-                name = f"a {cycle} cycle" if turns == CYCLES[cycle] else f"{turns} turns"
-                return f"order {order:g} does not repeat after {name}; orders count periods per turn"
-        return ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,13 +217,7 @@ class Swing:
     coefficient: float | None = None
     mean: float | None = None
 
-    key: ClassVar[str] = "swing"
-
-    def cycle_fault(self, cycle: str, turns: int) -> str:
-        """Return an empty text: it fits every cycle."""
-        return ""
-
-    def energy(self, turns: int) -> Any:
+    def energy(self, turns: int) -> float | None:
         """Return ΔE in J, with the work of a cycle of so many turns, A = 2π turns M_m."""
         return (
             self.swing if self.coefficient is None else self.coefficient * (2 * math.pi * turns) * abs(self.mean or 0.0)
@@ -262,33 +228,34 @@ Known = Effort | Harmonics | Swing
 """A turning effort that is known from elsewhere."""
 
 
+def rules_of_cycle(diagram: Known | None, cycle: str, turns: int) -> Iterator[Rule]:
+    """Yield what in a diagram does not fit the cycle of the machine, of so many turns of the shaft."""
+    name = f"a {cycle} cycle" if turns == CYCLES[cycle] else ""
+    if isinstance(diagram, Effort):
+        last, whole = diagram.angles[-1], 360.0 * turns
+        write = "cycle: four-stroke" if turns < 2 and last == 720 else f"cycle_turns: {last / 360:g}"
+        ends = f"the diagram runs to {last:g} deg, {name or 'the cycle'} has {whole:g} deg; write '{write}' at the top"
+        # one of a single turn repeats in the second one of a four-stroke cycle
+        yield Rule("file" if diagram.files else "points", whole % last != 0, ends)
+    if isinstance(diagram, Harmonics):
+        order = next((order for order, _, _ in diagram.terms if not is_whole(order * turns)), 0)
+        again = f"order {order:g} does not repeat after {name or f'{turns} turns'}; orders count periods per turn"
+        yield Rule("harmonics", order > 0, again)
+
+
 class InUnit(float):
     """A bare number in the unit of the key `unit`."""
-
-
-class _MeanTorque(OneOf):
-    """A mean torque with its unit, or as a bare number in the unit of the diagram, which becomes `InUnit`."""
-
-    def __init__(self) -> None:
-        super().__init__(NumberForm("torque"), NumberForm("ratio"))
-        self.number = None
-
-    def kind_as_written(self, text: Node | None) -> str:
-        """Return `ratio` of a bare number, else `torque`."""
-        return "ratio" if isinstance(text, str) and NUMBER.fullmatch(plain(text)) else "torque"
-
-    def take(self, reading: Reading, value: Node, path: Path) -> object:
-        """Read it as what it looks like."""
-        bare = self.kind_as_written(value) == "ratio"
-        found = self.forms[bare].read(reading, value, path)
-        return InUnit(found) if bare and isinstance(found, float) else found
 
 
 UNIT = alternative(unit_name("torque"), "Unit of the torques")
 POINTS = alternative(
     Points("deg", "torque"), "Torque over the crank angle; two points at one angle are a jump", "M", needs="unit"
 )
-MEAN = alternative(_MeanTorque(), "Mean torque with its unit, or bare in that of the harmonics", "M_m")
+MEAN = alternative(
+    OneOf(NumberForm("torque"), NumberForm("ratio", becomes=lambda number, _: InUnit(number))),
+    "Mean torque with its unit, or bare in that of the harmonics",
+    "M_m",
+)
 HARMONICS = alternative(
     Points("order", "cos", "sin", least=1),
     "Harmonics of the torque: periods per turn, coefficients of cos νφ and sin νφ",
@@ -352,7 +319,8 @@ class Load(Record):
         yield harmonics_need_a_unit(given)
 
     def rules(self) -> Iterator[Rule]:
-        forms = {"power_law": self.power, "slip": self.slip, self.key: self.diagram}
+        by = "harmonics" if isinstance(self.diagram, Harmonics) else "points"
+        forms = {"power_law": self.power, "slip": self.slip, by: self.diagram}
         given = [name for name, value in forms.items() if value is not None]
         message = "give one of 'power_law', 'slip', 'points' or 'harmonics'; or write 'load: constant'"
         yield Rule((), not given, message)
@@ -363,11 +331,6 @@ class Load(Record):
     def varies(self) -> bool:
         """Whether it varies over the turn or with the speed."""
         return self.diagram is not None or self.slip is not None or some(self.power != 0)
-
-    @property
-    def key(self) -> str:
-        """The key of the torques in the machine file."""
-        return self.diagram.key if self.diagram else "points"
 
 
 class KnownEffort(Columns):
@@ -456,8 +419,8 @@ def _from_zero(samples: Samples, angle_zero: float) -> tuple[Array, Array]:
 class Coupling(Record):
     """An elastic coupling and what it drives."""
 
-    stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0, required=True)
-    inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0, required=True)
+    stiffness: float = field("stiffness", "Torque per angle of twist", "k", above=0)
+    inertia: float = field("inertia", "Moment of inertia of the driven machine", "J_2", above=0)
     damping: float = field("damping", "Torque per speed of twist", "d", default=0.0, least=0)
 
 

@@ -63,7 +63,9 @@ class Parser:
         self.values: dict[Path, Place] = {}
         self._path: list[Step] = []
         self._scalars = 0
-        self._events: Iterator[yaml.Event] = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        self._events: Iterator[yaml.Event] = yaml.parse(
+            text, Loader=yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+        )
 
     def document(self) -> Node:
         """Return the tree of the only document."""
@@ -161,7 +163,8 @@ class Parser:
         raise StopReading
 
 
-def _place_of(event: Any) -> Place:
+def _place_of(event: yaml.Event) -> Place:
+    assert event.start_mark
     return event.start_mark.line, event.start_mark.column
 
 
@@ -169,9 +172,10 @@ _GLUED = re.compile(r"^[\s-]*([A-Za-z_]\w*):(?=[^\s/:])(.*)$")
 """A key without a space after its colon."""
 
 
-def explain(error: Any, lines: list[str]) -> Fault:
+def explain(error: yaml.MarkedYAMLError, lines: list[str]) -> Fault:
     """Return the fault for an error of the YAML scanner or parser, in a text of these lines."""
     mark = error.problem_mark or error.context_mark
+    assert mark
     opened = error.context_mark or mark
     # the end of the text lies below the last line when that one is complete
     last = len(lines) - 1, len(lines[-1])

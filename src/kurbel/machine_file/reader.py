@@ -59,7 +59,7 @@ def loads(text: str, name: str = "<text>", overrides: Iterable[str] = ()) -> Mac
     return read_machine(source.decode(name, text.encode("utf-8", "surrogatepass")).set_over(overrides))
 
 
-def machine_of(given: Any) -> Machine:
+def machine_of(given: object) -> Machine:
     """Return the machine: given itself, as the path of a file, or as a text; raises UsageError for anything else.
 
     A text has several lines, or braces, or a colon followed by a blank; a path has none of these.
@@ -90,11 +90,6 @@ def read_machine(origin: Origin) -> Machine:
     return replace(machine, name=name, origin=origin)
 
 
-def read_tree(tree: Node, origin: Origin, reading: Reading) -> Any:
-    """Return the result of the first pass over the tree of a file; REFUSED after reporting its faults."""
-    return ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
-
-
 def read_values(origin: Origin, reading: Reading) -> Given:
     """Return the result of both passes over a file; errors: see `load`; reading: see `reading_of`."""
     tree = parse(origin.text, reading)
@@ -103,7 +98,7 @@ def read_values(origin: Origin, reading: Reading) -> Given:
     given = REFUSED
     try:
         if isinstance(tree, dict):
-            given = read_tree(tree, origin, reading)
+            given = ROOT.read(reading, {"name": origin.stem, **_without_zeros(tree, reading)}, ())
             Maker(reading).made(given)
         elif isinstance(tree, Plain) and not tree:
             reading.fault((), "the file is empty; 'kurbel example' lists machines to start from")

@@ -172,7 +172,7 @@ def describe(record: RecordForm, properties: Schema, rules: list[Schema], defini
             chosen: Schema = {"properties": {name: {"const": word}}}
             if word != form.default:
                 chosen["required"] = [name]
-            others = dict.fromkeys(inner for one in form.inline for inner in one.keys)
+            others = dict.fromkeys(inner for one in form.cases.values() for inner in one.keys)
             foreign = [[inner] for inner in others if inner not in case.keys]
             rules.append({"if": chosen, "then": (_none_of(foreign) if foreign else {}) | _demands(case)})
 

@@ -74,10 +74,10 @@ class FourBar(Mechanism):
     shorter than the other two (Grashof): no other crank turns fully.
     """
 
-    crank: float = field("length", "Crank radius", "a", above=0, required=True)
-    coupler: float = field("length", "Length of the coupler", "b", above=0, required=True)
-    rocker: float = field("length", "Length of the rocker", "c", above=0, required=True)
-    frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0, required=True)
+    crank: float = field("length", "Crank radius", "a", above=0)
+    coupler: float = field("length", "Length of the coupler", "b", above=0)
+    rocker: float = field("length", "Length of the rocker", "c", above=0)
+    frame: float = field("length", "Distance of the rocker's pivot from the shaft", "d", above=0)
 
     name = "four-bar"
     slides = False

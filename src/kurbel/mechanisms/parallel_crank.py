@@ -97,8 +97,8 @@ class ParallelCrank(Mechanism):
     RuleError for lengths that are not positive.
     """
 
-    crank: float = field("length", "Radius of both cranks", "R", above=0, required=True)
-    frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0, required=True)
+    crank: float = field("length", "Radius of both cranks", "R", above=0)
+    frame: float = field("length", "Distance of the shafts; the coupler is as long", "d", above=0)
     coupler_mass: float | None = field("mass", "Mass of the coupler", "m", least=0, absent="no inertia of the coupler")
 
     name = "parallel-crank"

@@ -20,7 +20,7 @@ _INFINITE = {"infinite": math.inf}
 
 def crank_field() -> Entry:
     """Return the field of the crank radius of a mechanism that can be given by its stroke."""
-    return field("length", "Crank radius; or give `stroke`", "R", above=0, required=True, example="400 mm")
+    return field("length", "Crank radius; or give `stroke`", "R", above=0, example="400 mm")
 
 
 def stroke_instead(gives: Callable[[Values], dict[str, object]]) -> Key:
@@ -70,7 +70,6 @@ class SliderCrank(Mechanism):
         "L",
         above=0,
         words=_INFINITE,
-        required=True,
         also=("con_rod", "conrod", "connecting_rod", "rod_length"),
     )
     _rod_ratio = alternative(

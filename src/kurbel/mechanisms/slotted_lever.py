@@ -60,7 +60,7 @@ class SlottedLever(Mechanism):
     Raises RuleError for e = r, and for a link that does not reach the ram or gets into line with the lever.
     """
 
-    crank: float = field("length", "Crank radius; or give `stroke`", "r", above=0, required=True, example="100 mm")
+    crank: float = field("length", "Crank radius; or give `stroke`", "r", above=0, example="100 mm")
     _stroke = alternative(
         "length",
         "Stroke of the ram of a lever that swings; or give `crank`",
@@ -75,7 +75,7 @@ class SlottedLever(Mechanism):
         ),
         key="stroke",
     )
-    frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0, required=True)
+    frame: float = field("length", "Distance of the lever's pivot from the shaft", "e", above=0)
     lever: float | None = field(
         "length", "Length of the lever, pivot to end", "R_l", above=0, absent="angles and times only: no ram"
     )

@@ -38,8 +38,8 @@ class Canvas:
         self.columns, self.side, self.braille = columns - side, side, braille
         self._bits = _BRAILLE if braille else np.array([[1]])
         self._dots = np.zeros((rows, columns), dtype=int)
-        self._texts = [[" "] * columns for _ in range(rows)]
-        self._roles = [["text"] * columns for _ in range(rows)]
+        self._texts = np.full((rows, columns), " ", dtype=object)
+        self._roles = np.full((rows, columns), "text", dtype=object)
         down, across = self._bits.shape
         self.dot = 1 / across, 2 / down
         """Width and height of a dot, in columns."""
@@ -52,9 +52,9 @@ class Canvas:
         )
         inside = (columns >= 0) & (columns < across * self.columns) & (rows >= 0) & (rows < down * len(self._dots))
         columns, rows = columns[inside] + across * self.side, rows[inside]
-        np.bitwise_or.at(self._dots, (rows // down, columns // across), self._bits[rows % down, columns % across])
-        for column, row in zip((columns // across).tolist(), (rows // down).tolist()):
-            self._roles[row][column] = role
+        cells = rows // down, columns // across
+        np.bitwise_or.at(self._dots, cells, self._bits[rows % down, columns % across])
+        self._roles[cells] = role
 
     def write(self, column: int, row: int, text: str, role: str) -> None:
         """Write a text over what is drawn."""
@@ -62,27 +62,24 @@ class Canvas:
         for letter in text:
             wide = width(letter)
             if not wide:  # a mark on the letter before it, as the dots of θ̈
-                self._texts[row][column - 1] += letter
-            for place in range(column, column + wide):
-                self._texts[row][place] = letter if place == column else ""
-                self._dots[row, place] = 0
-                self._roles[row][place] = role
+                self._texts[row, column - 1] += letter
+            else:
+                cells = row, slice(column, column + wide)
+                self._texts[cells], self._dots[cells], self._roles[cells] = "", 0, role
+                self._texts[row, column] = letter
             column += wide
 
     def lines(self) -> list[Line]:
         """Return the rows, neighbours of one role as one piece."""
-        return [
-            tuple(
-                Piece("".join(self._sign(*one) for one in each), role)
-                for role, each in groupby(zip(dots, texts, roles), key=itemgetter(2))
+        found = []
+        for row in zip(self._dots.tolist(), self._texts, self._roles):
+            signs = (
+                (role, text if not dots else chr(0x2800 + dots) if self.braille else _LETTERS[role])
+                for dots, text, role in zip(*row)
             )
-            for dots, texts, roles in zip(self._dots.tolist(), self._texts, self._roles)
-        ]
-
-    def _sign(self, dots: int, text: str, role: str) -> str:
-        if not dots:
-            return text
-        return chr(0x2800 + dots) if self.braille else _LETTERS[role]
+            pieces = groupby(signs, key=itemgetter(0))
+            found.append(tuple(Piece("".join(sign for _, sign in each), role) for role, each in pieces))
+        return found
 
 
 def braille(picture: Picture, look: Look) -> Iterator[Line]:
@@ -101,7 +98,7 @@ def _panel(panel: Panel, look: Look, wide: int, tall: float) -> Iterator[Line]:
     while side < needed:
         side = needed
         frame = PanelFrame(panel, look, TERMINAL, wide - side - dot[0], tall - dot[1])
-        up = [] if panel.plain else ticks(panel.y, frame.y, int(tall / 4), look)
+        up = [] if panel.plain else ticks(frame.y, int(tall / 4), look)
         needed = max((width(text) + 1 for _, text in up), default=0)
     rows = int(frame.tall // 2) + 1
     canvas = Canvas(wide, rows if panel.plain else rows + 2, side, has_dots)

@@ -4,7 +4,6 @@ import importlib.util
 import json
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from itertools import islice
 from typing import Literal
 
@@ -13,7 +12,7 @@ import numpy as np
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.braille import braille
-from kurbel.render.output import opened, stdout_look, write_lines
+from kurbel.render.output import look_at, opened, write_lines
 from kurbel.render.svg import poster_svg, svg_file
 from kurbel.render.text import BLANK, DIGITS, subscripts
 from kurbel.report.picture import Fact, Facts, Picture
@@ -45,14 +44,14 @@ def draw(pictures: Iterable[Picture], look: Look, file_name: str | None) -> None
     if file_name is not None:
         draw_file(list(pictures), look, file_name)
         return
-    look = stdout_look(look)
+    look = look_at(None, look)
     lines = (line for picture in pictures for line in (BLANK, *braille(picture, look)))
     write_lines(islice(lines, 1, None), look)
 
 
 def draw_file(pictures: Sequence[Picture], look: Look, file_name: str) -> None:
     """Draw pictures one below the other to a file. Raises UsageError where it cannot be written."""
-    kind, look = check_file(file_name), replace(look, encoding="utf-8")
+    kind = check_file(file_name)
     drawn = svg_file(pictures, look, paper=kind != "svg").encode()
     if kind != "svg":
         drawn = typeset(_PAGE, file_name, svg=drawn.decode())
@@ -120,7 +119,7 @@ def check_poster(size: str, file_name: str | None) -> str:
 
 def draw_poster(picture: Picture, line: str, facts: Facts, look: Look, file_name: str, size: str) -> None:
     """Draw the first panel of a picture as a sheet of this size to a file; line: what is below its name."""
-    look, panel = replace(look, encoding="utf-8"), picture.panels[0]
+    panel = picture.panels[0]
     x, y = (axis._replace(low=None, high=None) for axis in (panel.x, panel.y))  # no room for forces, which are left out
     panel = panel._replace(x=x, y=y, curves=(), title="")
     across, up = (np.concatenate(one) for one in panel.places)

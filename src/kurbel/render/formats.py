@@ -1,63 +1,60 @@
-"""The text of a report in each format, and its output."""
+"""The text of a report in each format, and its output; only the format that is wanted is loaded."""
 
-import sys
-from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import replace
-from itertools import chain, islice
-from shutil import get_terminal_size
+from collections.abc import Collection, Iterable, Iterator
+from typing import NamedTuple
 
 from kurbel.render import Look
-from kurbel.render.data import csv_text, json_text
-from kurbel.render.markup import Latex, Markdown, document, html
-from kurbel.render.output import stdout_look, write_lines, write_out
-from kurbel.render.page import page
+from kurbel.render.output import look_at, write_lines, write_out
 from kurbel.render.text import Line, plain
-from kurbel.report.alike import first_selection
 from kurbel.report.tables import Report
-
-_SIDE, _CELL = 14, 8
-"""Width in characters of symbol and unit of a row, and of each number."""
-_WRITERS: dict[str, Callable[[Report, Look], Iterable[str]]] = {
-    "table": lambda report, look: plain(page(report, look)),
-    "csv": csv_text,
-    "json": json_text,
-    "markdown": lambda report, look: document(report, look, Markdown()),
-    "html": html,
-    "latex": lambda report, look: document(report, look, Latex()),
-}
-"""Format -> the function that yields the text of a report in pieces, so that a long table needs no memory."""
 
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)
     """Return the report as text that ends with a newline; the same report gives the same text every time."""
-    return "".join(_WRITERS[look.format](report, look))
+    return "".join(_pieces(report, look))
 
 
-def write_report(
-    report: Report, look: Look, file_name: str | None = None, first: Collection[str] | None = None
-) -> None:
-    """Write the report to a file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+def _pieces(report: Report, look: Look) -> Iterable[str]:
+    """Return the text in pieces, so that a long table needs no memory."""
+    if look.format == "csv":
+        from kurbel.render.csv_text import csv_text
 
-    first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+        return csv_text(report, look)
+    if look.format == "json":
+        from kurbel.render.json_text import json_text
 
-    On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text, folded
-    only to a given width.
-    """
-    named = file_name not in (None, "-")
-    look = look if named else stdout_look(look)
-    if named or look.format in ("html", "latex"):  # always read as UTF-8
-        look = replace(look, encoding="utf-8")
-    if named or look.format != "table":
-        write_out(_WRITERS[look.format](report, look), file_name, look.encoding)
-    else:
-        write_lines(page(report, look) if first is None else _fitting(report, look, first), look)
+        return json_text(report, look)
+    if look.format == "table":
+        return plain(_lines(report, look))
+    from kurbel.render.markup import markup
+
+    return markup(report, look)
 
 
-def _fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
-    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
-    lines, most = page(report, look), get_terminal_size().lines
-    begin = list(islice(lines, most)) if sys.stdout.isatty() else []
-    if len(begin) < most:
-        return chain(begin, lines)
-    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page(first_selection(report, first, across, rows=most // 6), look)
+def _lines(report: Report, look: Look, first: Collection[str] | None = None) -> Iterator[Line]:
+    from kurbel.render.page import fitting, page
+
+    return page(report, look) if first is None else fitting(report, look, first)
+
+
+class Output(NamedTuple):
+    """Where a report goes, a file or standard output, and how it looks."""
+
+    look: Look
+    file_name: str | None
+
+    def write(self, report: Report, first: Collection[str] | None = None) -> None:
+        """Write the report to the file (as UTF-8), or to standard output in its encoding. Raises UsageError.
+
+        first: ids shown on a terminal that has too few lines for the whole report; None: always the whole report.
+
+        On a terminal, blocks have as many angles as fit its width, and colours if wanted; a pipe gets plain text,
+        folded only to a given width.
+        """
+        look = look_at(self.file_name, self.look)
+        if look.format == "table" and self.file_name in (None, "-"):
+            write_lines(_lines(report, look, first), look)
+        else:
+            if look.format in ("html", "latex"):  # always read as UTF-8
+                look = look._replace(encoding="utf-8")
+            write_out(_pieces(report, look), self.file_name, look.encoding)

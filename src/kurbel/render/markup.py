@@ -1,7 +1,7 @@
 r"""The second pass for markup: `document` writes a report with a writer for Markdown, HTML or LaTeX.
 
-A writer has no knowledge of reports. Its methods `text`, `sentence` and `symbol` take plain text and escape it; all
-others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
+A writer has no knowledge of reports. Its methods `text`, `sentence`, `symbol`, `words` and `prose` take plain text and
+escape it; all others take escaped text. LaTeX is to be \input into a document with \usepackage{booktabs, longtable}.
 """
 
 import re
@@ -20,29 +20,62 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
-from kurbel.report.alike import shown_once
-from kurbel.report.tables import Report
+from kurbel.report.tables import Report, shown_once
 
 _ON_PAPER = 9
 """Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""
 
 
-# writers: elements are templates for escaped text; across: the most columns of numbers in a table, None for any number
+class Writer:
+    """A writer of one format: its elements are templates for escaped text.
 
+    across: the most columns of numbers in a table, None for any number; parting: what is between the cells of a line.
+    """
 
-class Markdown:
-    """Markdown: one line for each row, a blank line between elements."""
+    across: int | None = _ON_PAPER
+    title = paragraph = strong = list_head = item = list_end = line = parting = table_end = ""
 
-    across: int | None = None
-    title, paragraph, strong = "## {}\n", "\n{}\n", "**{}**"
-    list_head, item, list_end = "\n### {}\n\n", "- {}\n", ""
-    table_end = ""
+    def __init__(self, look: Look) -> None:
+        self.look = look
 
     def text(self, plain: str) -> str:
-        """Return a text in which everything is escaped that Markdown would take for markup."""
-        return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
+        """Return a text in which everything is escaped that would be taken for markup."""
+        raise NotImplementedError
 
-    sentence = symbol = text
+    def sentence(self, plain: str) -> str:
+        """Return an escaped sentence."""
+        return self.text(plain)
+
+    def symbol(self, plain: str) -> str:
+        """Return an escaped symbol."""
+        return self.sentence(plain)
+
+    def words(self, text: str) -> str:
+        """Return a text of a report, in the characters of the output, escaped."""
+        return self.text(self.look.text(text))
+
+    def prose(self, text: str) -> str:
+        """Return a sentence of a report, its numbers as they are wanted, escaped."""
+        return self.sentence(self.look.sentence(text))
+
+    def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
+        """Return the beginning of a table; heads: symbol and unit of each column."""
+        raise NotImplementedError
+
+    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
+        """Return a row."""
+        return self.line.format(self.parting.join(cells))
+
+
+class Markdown(Writer):
+    """Markdown: one line for each row, a blank line between elements."""
+
+    across = None
+    title, paragraph, strong = "## {}\n", "\n{}\n", "**{}**"
+    list_head, item, line, parting = "\n### {}\n\n", "- {}\n", "| {} |\n", " | "
+
+    def text(self, plain: str) -> str:
+        return re.sub(r"([\\|*_<>`\[\]])", r"\\\1", plain)
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return title, heads, and the line that sets the alignment of the columns."""
@@ -51,34 +84,26 @@ class Markdown:
         titled = f"\n### {caption}\n" if caption else ""
         return f"{titled}\n{self.row(table, 0, titles)}{self.row(table, 0, rules)}"
 
-    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
-        """Return a line of cells."""
-        return f"| {' | '.join(cells)} |\n"
 
-
-class Html:
+class Html(Writer):
     """HTML: the content of the body of a page."""
 
-    across: int | None = _ON_PAPER
     title, paragraph, strong = "<h1>{}</h1>\n", "<p>{}</p>\n", "<b>{}</b>"
     list_head, item, list_end = "<h2>{}</h2>\n<ul>\n", "<li>{}</li>\n", "</ul>\n"
     table_end = "</tbody></table></div>\n"
 
     def text(self, plain: str) -> str:
-        """Return a text in which everything is escaped that HTML would take for markup."""
         return escape(plain)
 
     def sentence(self, plain: str) -> str:
         """Return a text with no line break between a number and its unit, and with subscripts.
 
-        >>> print(Html().sentence("φ_P=0"), Html().sentence("T_max 5.1 kN"))
+        >>> print(Html(Look()).sentence("φ_P=0"), Html(Look()).sentence("T_max 5.1 kN"))
         φ<sub>P=0</sub> T<sub>max</sub> <span class="n">5.1 kN</span>
         """
-        parts = subscripts(measures().sub(r'<span class="n">\g<0></span>', escape(plain)))
+        parts = subscripts(measures().sub(r'<span class="n">\g<0></span>', self.text(plain)))
         parts[1::2] = [f"<sub>{one}</sub>" for one in parts[1::2]]
         return "".join(parts)
-
-    symbol = sentence
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table, which can be scrolled in a narrow window."""
@@ -130,43 +155,41 @@ _SPECIAL = {
 }  # fmt: skip
 """Character -> how LaTeX writes it; a bracket or a star right after the end of a row would be its argument."""
 _DOTS = {"\u0307": "dot", "\u0308": "ddot"}
-_LETTER = re.compile(".[\u0307\u0308]?", re.DOTALL)
+_LETTER = "(?s).[\u0307\u0308]?"
 """A character, or a letter with the dots over it."""
-_INDEXED = re.compile("((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)")
+_INDEXED = "((?:[A-Za-zΑ-ω][\u0307\u0308]?){1,3})_([\\w,=−+-]+)"
 
 
-class Latex:
+class Latex(Writer):
     """LaTeX: tables in the style of booktabs, which may run over several pages with the heads on each."""
 
-    across: int | None = _ON_PAPER
     title, paragraph = "% \\usepackage{{booktabs, longtable}}\n\\subsection*{{{}}}\n", "{}\n\n"
     strong = "\\textbf{{{}}}"
     list_head, item = "\\paragraph{{{}}}\n\\begin{{itemize}}\n", "\\item {}\n"
     list_end, table_end = "\\end{itemize}\n\n", "\\bottomrule\n\\end{longtable}}\n\n"
+    line, parting = "{}\\\\\n", " & "
 
     def text(self, plain: str) -> str:
         r"""Return a text in which everything is escaped that LaTeX would take for a command.
 
-        >>> print(Latex().text("50 % of φ_1 ≤ 90°"), Latex().text("−3"))
+        >>> print(Latex(Look()).text("50 % of φ_1 ≤ 90°"), Latex(Look()).text("−3"))
         50 \% of $\varphi$\_1 $\le$ 90$^\circ$ $-$3
         """
         return "".join(
             _SPECIAL.get(one) or (f"${_formula(one)}$" if one[1:] or one in _MATH else one)
-            for one in _LETTER.findall(plain)
+            for one in re.findall(_LETTER, plain)
         )
-
-    sentence = text
 
     def symbol(self, plain: str) -> str:
         r"""Return a symbol, with what follows its underscore as a subscript.
 
-        >>> print(Latex().symbol("P_b"), Latex().symbol("φ_P=0"), Latex().symbol("ΔE"))
+        >>> print(*map(Latex(Look()).symbol, ("P_b", "φ_P=0", "ΔE")))
         $P_{\mathrm{b}}$ $\varphi_{\mathrm{P=0}}$ $\Delta$E
         """
-        found = _INDEXED.fullmatch(plain)
+        found = re.fullmatch(_INDEXED, plain)
         if not found:
             return self.text(plain)
-        name, index = ("".join(map(_formula, _LETTER.findall(part))) for part in found.groups())
+        name, index = ("".join(map(_formula, re.findall(_LETTER, part))) for part in found.groups())
         return f"${name}_{{\\mathrm{{{index}}}}}$"
 
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
@@ -181,10 +204,6 @@ class Latex:
             text += self.row(table, 0, [unit for _, unit in heads])
         return text + "\\midrule\n\\endhead\n"
 
-    def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
-        """Return a line of cells."""
-        return f"{' & '.join(cells)}\\\\\n"
-
 
 def _formula(one: str) -> str:
     """Return a character, or a letter with dots over it, as it is written in a formula."""
@@ -195,18 +214,16 @@ def _formula(one: str) -> str:
 
 # the report, element by element
 
-Writer = Markdown | Html | Latex
 
-
-def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
+def document(report: Report, out: Writer) -> Iterator[str]:
     """Yield the text of the report piece by piece; identical cylinders appear once."""
-    report = shown_once(report)
-    yield out.title.format(out.text(look.text(report.title)))
-    yield from (out.paragraph.format(out.sentence(look.sentence(text))) for text in report.head)
-    yield from written(over_angle(report, look, out), out)
-    yield from written(of_places(report, look, out), out)
+    report, look = shown_once(report), out.look
+    yield out.title.format(out.words(report.title))
+    yield from (out.paragraph.format(out.prose(text)) for text in report.head)
+    yield from written(over_angle(report, out), out)
+    yield from written(of_places(report, out), out)
     notes = [note for note in (report.mirrored, *report.notes) if note]
-    yield from (out.paragraph.format(out.sentence(look.sentence(note))) for note in notes)
+    yield from (out.paragraph.format(out.prose(note)) for note in notes)
     for part in report.all_parts:
         name = part_name(report, part, look)
         of = f": {name}" if name else ""
@@ -214,30 +231,29 @@ def document(report: Report, look: Look, out: Writer) -> Iterator[str]:
             caption = f"Key values{of}{f', {heading.lower()}' if heading else ''}"
             if key_values:
                 yield from written([key_value_table(caption, key_values, look)], out)
-        left_out = [f"{one.what}: {one.why}" for one in part.left_out]
-        yield from listed(f"Left out{of}", left_out, look, out)
-        yield from listed(f"Warnings{of}", part.warnings, look, out)
+        yield from listed(f"Left out{of}", [f"{one.what}: {one.why}" for one in part.left_out], out)
+        yield from listed(f"Warnings{of}", part.warnings, out)
 
 
-def listed(title: str, sentences: Collection[str], look: Look, out: Writer) -> Iterator[str]:
+def listed(title: str, sentences: Collection[str], out: Writer) -> Iterator[str]:
     """Yield a list of sentences under a title, or nothing if there are none."""
     if sentences:
         yield out.list_head.format(out.text(title))
-        yield from (out.item.format(out.sentence(look.sentence(one))) for one in sentences)
+        yield from (out.item.format(out.prose(one)) for one in sentences)
         yield out.list_end
 
 
-def over_angle(report: Report, look: Look, out: Writer) -> Iterator[TextTable]:
+def over_angle(report: Report, out: Writer) -> Iterator[TextTable]:
     """Yield the tables over the crank angle, in parts that are not too wide."""
-    for heads, bands in sheets(report, look):
+    for heads, bands in sheets(report, out.look):
         for name, columns in bands:
             yield from _parts_of(TextTable(name, [*heads, *columns], len(heads)), out)
 
 
-def of_places(report: Report, look: Look, out: Writer) -> Iterator[TextTable]:
+def of_places(report: Report, out: Writer) -> Iterator[TextTable]:
     """Yield the tables of places, in parts that are not too wide."""
     for one in report.printed_tables:
-        yield from _parts_of(place_table(one, look), out)
+        yield from _parts_of(place_table(one, out.look), out)
 
 
 def _parts_of(table: TextTable, out: Writer) -> Iterator[TextTable]:
@@ -264,9 +280,11 @@ def written(tables: Iterable[TextTable], out: Writer) -> Iterator[str]:
         yield out.table_end
 
 
-def html(report: Report, look: Look) -> Iterator[str]:
-    """Yield the report as a page of its own."""
-    yield from page(look.text(report.title), document(report, look, Html()), page_css())
+def markup(report: Report, look: Look) -> Iterator[str]:
+    """Return the text of the report in the format of the look; in HTML it is a page of its own."""
+    if look.format == "html":
+        return page(look.text(report.title), document(report, Html(look)), page_css())
+    return document(report, Latex(look) if look.format == "latex" else Markdown(look))
 
 
 def page(title: str, main: Iterable[str], style: str) -> Iterator[str]:

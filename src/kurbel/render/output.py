@@ -5,16 +5,14 @@ import errno
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import replace
 from io import TextIOWrapper
-from shutil import copyfile, get_terminal_size
 from typing import BinaryIO, TextIO
 
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.text import Line, plain
+from kurbel.render.text import BLANK, Line, in_two_columns, paragraph, plain
 
 STYLES = {
     "title": "bold",
@@ -29,20 +27,51 @@ STYLES = {
     **{f"curve{number}": style for number, style in enumerate(("bold", "blue", "red", "green", "magenta", "yellow"))},
 }
 """Role of a piece of a line -> its colour."""
+_AT_ONCE = 1 << 20
+"""Bytes that are copied at once."""
+
+
+# lists of the commands that print no report
+
+
+def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
+    """Return a title and sections, each a head line with its entries, as plain text."""
+    lines = paragraph(look.text(title), look.width)
+    for name, entries in sections:
+        lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
+    return "".join(plain(lines))
+
+
+def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
+    """Write heads in a column, each with its text, to a file or to standard output."""
+    write_out(plain(in_two_columns(found, look_at(file_name, Look()), "")), file_name)
 
 
 # standard output
 
 
-def stdout_look(look: Look) -> Look:
-    """Return the look with encoding and width of standard output.
+def look_at(file_name: str | None, look: Look) -> Look:
+    """Return the look of what goes to a file, as UTF-8, or with encoding and width of standard output.
 
     The width is that of the terminal; in a pipe that of COLUMNS, or None.
     """
+    if file_name not in (None, "-"):
+        return look
     stdout = _stdout()
     measured = stdout.isatty() or os.environ.get("COLUMNS", "").isdecimal()
-    wide = look.width or (get_terminal_size().columns if measured else None)
-    return replace(look, encoding=stdout.encoding or "utf-8", width=wide)
+    return look._replace(
+        encoding=stdout.encoding or "utf-8", width=look.width or (terminal_size()[0] if measured else None)
+    )
+
+
+def terminal_size(fallback: tuple[int, int] = (80, 24)) -> tuple[int, int]:
+    """Return columns and lines of the terminal: those of the environment, or its own."""
+    given = [os.environ.get(name, "") for name in ("COLUMNS", "LINES")]
+    own: tuple[int, int] = fallback
+    with suppress(ValueError, OSError):  # standard output may be closed, or no terminal
+        own = os.get_terminal_size(sys.__stdout__.fileno()) if sys.__stdout__ else fallback
+    columns, lines = (int(text) if text.isdecimal() else 0 for text in given)
+    return columns or own[0] or fallback[0], lines or own[1] or fallback[1]
 
 
 def _stdout() -> TextIO:
@@ -126,7 +155,8 @@ def _replacing(target: str, resumed: int | None) -> Iterator[BinaryIO]:
     ending = f".kurbel-{os.urandom(8).hex()}"
     path = f"{target}.part" if resumed is not None else os.path.join(os.path.dirname(target), ending)
     if resumed and not os.path.isfile(path):
-        copyfile(target, path)
+        with open(target, "rb") as old, open(path, "wb") as file:
+            file.writelines(iter(lambda: old.read(_AT_ONCE), b""))
     try:
         with open(path, "r+b" if resumed else "wb") as file:
             with suppress(FileNotFoundError):

@@ -1,20 +1,21 @@
 """The printed page: title, tables, key values, reasons and warnings; crank angles across, or a line for each row."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from itertools import islice
+import sys
+from collections.abc import Collection, Iterator, Sequence
+from itertools import chain, islice
 
 from kurbel.render import Look
-from kurbel.render.output import stdout_look, write_out
-from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, plain, width
+from kurbel.render.output import terminal_size
+from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
-from kurbel.report.alike import shown_once
-from kurbel.report.tables import KeyValue, Report
+from kurbel.report.tables import KeyValue, Report, first_selection, shown_once
 
 _NINE = 9  # angles to a block: the book breaks after 80°
+_SIDE, _CELL = 14, 8
+"""Width in characters of symbol and unit of a row, and of each number."""
 _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
-_NARROWEST = 24  # below this a sentence is folded under its head instead of next to it
 
 
 def page(report: Report, look: Look) -> Iterator[Line]:
@@ -58,42 +59,49 @@ def page(report: Report, look: Look) -> Iterator[Line]:
             yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
 
 
+def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
+    """Return the lines of the report, or of a first selection of it if a terminal has fewer lines."""
+    lines, most = page(report, look), terminal_size()[1]
+    begin = list(islice(lines, most)) if sys.stdout.isatty() else []
+    if len(begin) < most:
+        return chain(begin, lines)
+    across = max(((look.width or 80) - _SIDE) // _CELL, 4)
+    return page(first_selection(report, first, across, rows=most // 6), look)
+
+
 # a line for each row
 
 
 def blocks(side: Sequence[TextColumn], columns: Sequence[TextColumn], look: Look, gap: int = _GAP) -> Iterator[Line]:
     """Yield block under block, each with the side columns and as many others as fit the width, at least one."""
-    blocks = [list(side)]
-    for one in columns:
-        wide = sum(_wide(column) + gap for column in blocks[-1]) + _wide(one)
-        if look.width is not None and wide > look.width and len(blocks[-1]) > len(side):
-            blocks.append(list(side))
-        blocks[-1].append(one)
+    every = [(one, max(map(width, (one.symbol, one.unit, *one.cells)))) for one in (*side, *columns)]
+    before, blocks = len(side), [every[: len(side)]]
+    for sized in every[before:]:
+        wide = sum(one + gap for _, one in blocks[-1]) + sized[1]
+        if look.width is not None and wide > look.width and len(blocks[-1]) > before:
+            blocks.append(every[:before])
+        blocks[-1].append(sized)
     for number, block in enumerate(blocks):
         yield from (BLANK,) if number else ()
-        rule = line(look.text("─") * (sum(map(_wide, block)) + gap * (len(block) - 1)), "rule")
-        yield _row(block, gap, [one.symbol for one in block], "head")
-        if any(one.unit for one in block):
-            yield _row(block, gap, [one.unit for one in block], "unit")
+        rule = line(look.text("─") * (sum(wide + gap for _, wide in block) - gap), "rule")
+        yield _row(block, gap, [one.symbol for one, _ in block], "head")
+        if any(one.unit for one, _ in block):
+            yield _row(block, gap, [one.unit for one, _ in block], "unit")
         yield rule
-        for cells in zip(*(one.cells for one in block)):
+        for cells in zip(*(one.cells for one, _ in block)):
             yield _row(block, gap, cells, "cell")
         yield rule
 
 
-def _row(block: Sequence[TextColumn], gap: int, texts: Sequence[str], role: str) -> Line:
+def _row(block: Sequence[tuple[TextColumn, int]], gap: int, texts: Sequence[str], role: str) -> Line:
     return tuple(
-        Piece(" " * gap * (number > 0) + padded(text, _wide(column), not column.words), _role(text, column, role))
-        for number, (column, text) in enumerate(zip(block, texts))
+        Piece(" " * gap * (number > 0) + padded(text, wide, not column.words), _role(text, column, role))
+        for number, ((column, wide), text) in enumerate(zip(block, texts))
     )
 
 
 def _role(text: str, column: TextColumn, role: str) -> str:
     return "name" if column.words else "mark" if text.endswith(MARK) else role
-
-
-def _wide(column: TextColumn) -> int:
-    return max(width(column.symbol), width(column.unit), column.width)
 
 
 # the look of Zusammenstellung 112: quantities down the side, crank angles across, broken as over two pages
@@ -107,7 +115,7 @@ def _book(
     named_beside: the names of bands are short and have a column of their own, as L/R in the book.
     """
     rows = [*heads, *(row for _, band in bands for row in band)]
-    cell = max(row.width for row in rows) + _GAP
+    cell = max((width(text) for row in rows for text in row.cells), default=0) + _GAP
     texts = [name for name, _ in bands if named_beside], [row.symbol for row in rows], [row.unit for row in rows]
     # of names, symbols and units; a column without a text takes no room
     name, symbol, unit = (wide and wide + _GAP for wide in (max(map(width, each), default=0) for each in texts))
@@ -188,40 +196,3 @@ def _below_one_another(texts: Sequence[str], lists: Collection[int]) -> list[str
     before = max(map(len, wholes))
     pairs = [(whole, text[len(whole) :]) for whole, text in zip(wholes, texts)]
     return [whole.rjust(before) + (rest or " ") if whole else rest for whole, rest in pairs]
-
-
-def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
-    """Yield heads in a column, each with its sentence."""
-    heads = [(look.text(head), text) for head, text in found]
-    column = max((width(head) for head, _ in heads), default=0)
-    for head, text in heads:
-        yield from sentence(f"{indent}{padded(head, column)}  ", text, look)
-
-
-def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
-    """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
-    text, room = look.sentence(text), None if look.width is None else look.width - width(head)
-    if room is not None and room < min(width(text), _NARROWEST):
-        if head.strip():
-            yield line(head, "cell")
-        head, room = " " * 6, max((look.width or 0) - 6, _NARROWEST)
-    for one in folded(text, room):
-        yield (Piece(head, "cell"), Piece(one))
-        head = " " * width(head)
-
-
-# lists of the commands that print no report
-
-
-def listing(title: str, sections: Iterable[tuple[str, Sequence[tuple[str, str]]]], look: Look) -> str:
-    """Return a title and sections, each a head line with its entries, as plain text."""
-    lines = paragraph(look.text(title), look.width)
-    for name, entries in sections:
-        lines += [BLANK, *paragraph(look.text(name), look.width), *in_two_columns(entries, look)]
-    return "".join(plain(lines))
-
-
-def write_entries(found: Sequence[tuple[str, str]], file_name: str | None = None) -> None:
-    """Write heads in a column, each with its text, to a file or to standard output."""
-    look = Look() if file_name else stdout_look(Look())
-    write_out(plain(in_two_columns(found, look, "")), file_name)

@@ -1,7 +1,7 @@
 """The layout of a panel, for paper and terminal: scales, ticks, and labels in free space."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -67,17 +67,17 @@ def picture_text(picture: Picture, look: Look) -> str:
 
 
 class AxisScale(NamedTuple):
-    """The places `start` and `end` of the values `low` and `high` on an axis; log: by powers of ten."""
+    """The places `start` and `end` of the values `low` and `high` on an axis."""
 
+    axis: Axis
     low: float
     high: float
     start: float = 0.0
     end: float = 1.0
-    log: bool = False
 
     def place(self, values: Number) -> Array:
         """Return the places of values."""
-        low, high, at = (np.log10(one) if self.log else np.asarray(one) for one in (self.low, self.high, values))
+        low, high, at = (np.log10(one) if self.axis.log else np.asarray(one) for one in (self.low, self.high, values))
         # what is between two dots goes to the same one on every processor, whose sines differ in the last digit
         return np.round(self.start + (at - low) / (high - low) * (self.end - self.start), 9)
 
@@ -96,16 +96,16 @@ def scale_of(axis: Axis, drawn: list[Array], air: bool, level: bool) -> AxisScal
     elif air:
         below = 0.0 if low == axis.low else _AIR * (high - low)
         low, high = low - below, high + _AIR * (high - low)
-    return AxisScale(high, low, log=axis.log) if axis.falling else AxisScale(low, high, log=axis.log)
+    return AxisScale(axis, high, low) if axis.falling else AxisScale(axis, low, high)
 
 
-def ticks(axis: Axis, scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
+def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
     """Return the ticks of an axis, at most so many or a few more: place and text, with the decimals that all need."""
-    low, high = sorted((scale.low, scale.high))
+    axis, (low, high) = scale.axis, sorted((scale.low, scale.high))
     if axis.names:
         values = [float(number) for number in range(len(axis.names)) if low <= number <= high]
         texts = [axis.names[int(value)] for value in values]
-    elif scale.log:
+    elif axis.log:
         powers = range(round(math.log10(low)), round(math.log10(high)) + 1)
         values = [10.0**power for power in powers[:: max(1, -(-len(powers) // most))]]
         texts = [f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e") for value in values]
@@ -142,21 +142,18 @@ class Medium(NamedTuple):
 
 
 class Label(NamedTuple):
-    """The label of a point x + iy; look: of the curve that it names; led: with a leader line if it is far away.
+    """The label of a point x + iy in its place, between left and right, below top.
 
-    spare: it is omitted if there is no free space nearby. Once placed it is between left and right, below top; lead:
-    the end of the leader line.
+    look: of the curve that it names; lead: the end of the line to its point, if that is far away.
     """
 
     text: str
     point: complex
-    look: int | None = None
-    led: bool = False
-    spare: bool = False
-    left: float = 0.0
-    right: float = 0.0
-    top: float = 0.0
-    lead: complex | None = None
+    look: int | None
+    left: float
+    right: float
+    top: float
+    lead: complex | None
 
 
 class PanelFrame:
@@ -179,8 +176,7 @@ class PanelFrame:
             spare = (max(*(sizes / room), _ROUNDING) * room - sizes) / 2
             x, y = (one._replace(low=one.low - more, high=one.high + more) for one, more in zip((x, y), spare))
         self.tall, self.x, self.y = tall, x._replace(end=wide), y._replace(start=tall, end=0.0)
-        names = panel.x.names
-        between = abs(float(self.x.place(1.0) - self.x.place(0.0))) if names else 0.0
+        names, between = panel.x.names, abs(self.points_per_unit)
         numeric = all(name.replace(".", "", 1).isdecimal() for name in names)
         if not numeric and any((width(name) + 1) * medium.letter > between for name in names):
             # names that do not fit below the axis have numbers there, and follow it
@@ -188,8 +184,8 @@ class PanelFrame:
                 f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names, 1)
             )
             numbers = tuple(str(number) for number, _ in enumerate(names, 1))
-            self.panel = panel._replace(x=panel.x._replace(name=Words(key), names=numbers))
-        self.below = folded(axis_text(self.panel.x, look), int(wide / medium.letter))
+            self.x = self.x._replace(axis=panel.x._replace(name=Words(key), names=numbers))
+        self.below = folded(axis_text(self.x.axis, look), int(wide / medium.letter))
         """What is written below the axis, line by line."""
 
     @property
@@ -206,7 +202,7 @@ class PanelFrame:
 
         start, end: how far texts may reach.
         """
-        every, found = ticks(self.panel.x, self.x, most, self.look), []
+        every, found = ticks(self.x, most, self.look), []
         wide = [width(text) * self.medium.letter for _, text in every]
         apart = min(np.abs(np.diff([place for place, _ in every])), default=math.inf)
         of_each = max(math.ceil((max(wide, default=0.0) + self.medium.grain[0]) / apart), 1)
@@ -218,18 +214,42 @@ class PanelFrame:
     def labels(self, named: bool) -> list[Label]:
         """Return the labels of faint lines, marks and shades; named: of forces and of several curves, too.
 
-        Each is on the nearest ground that no other label has and no curve crosses; without room it is left out.
+        Each is on the nearest ground that no other label has and no curve crosses; without room it is left out. Marks
+        far from theirs have a line to it; mere angles, which come after them, are only where there is room nearby.
         """
-        panel = self.panel.at_moment(0)
+        panel, look, letter = self.panel.at_moment(0), self.look, self.medium.letter
         tracks = [self._track(curve) for curve in panel.curves]
         around = np.add.outer([-1.0, 0.0, 1.0], [-1j, 0j, 1j]).ravel() * self.medium.dot
         points = [(mark.x, mark.y) for mark in panel.marks]
         points += [(one.x[0], one.y[0]) for one in panel.curves if one.kind == "pole"]
-        marks = [self.place(*point) + around for point in points]
-        ground = self.medium.covering * self._cells(tracks) + _TAKEN * self._cells(marks)
-        wanted = (*self._of_curves(panel, tracks, named), *self._of_marks(panel), *self._of_shades(panel))
-        placed = [self._on_free_ground(label, ground) for label in wanted]
-        return [label for label in placed if label]
+        ground = self.medium.covering * self._cells(tracks)
+        ground += _TAKEN * self._cells([self.place(*point) + around for point in points])
+        placed: list[Label | None] = []
+
+        def label(text: str, point: ComplexArray, of: int | None = None, led: bool = False, near: bool = False) -> None:
+            placed.append(self._on_free_ground(ground, text, complex(point), of, led, near))
+
+        symbols = [symbol(curve.name, look) for curve in panel.curves]
+        for curve, text in zip(panel.curves, symbols):
+            if text and (curve.kind == "faint" or (named and curve.kind in ("arrow", "force"))):
+                label(text, self.place(curve.x[-1], curve.y[-1]))
+        every = zip(panel.curves, symbols, looks_of(panel), (track[::4] for track in tracks))
+        lines = [one for one in every if one[1] and one[0].kind in ("line", "dots")]
+        for curve, text, number, own in lines if named and len(lines) > 1 else ():
+            others = np.concatenate([track for other, _, _, track in lines if other is not curve])
+            label(text, own[np.abs(own[:, None] - others).min(axis=1).round(6).argmax()], number)
+        figures = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
+        for mark in (*figures, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
+            led = bool(mark.figure.name.symbol)
+            label(figure_text(mark.figure, look), self.place(mark.x, mark.y), led=led, near=not led)
+        shades = [(one, one.figure, figure_text(one.figure, look)) for one in panel.shades if one.figure]
+        # their names alone where not each figure has the room
+        roomy = all(width(text) * letter <= np.ptp(self.x.place(one.x)) for one, _, text in shades)
+        for shade, figure, text in shades:
+            widest = int(np.argmax(np.abs(shade.high - shade.low)))
+            middle = self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)
+            label(text if roomy else symbol(figure.name, look), middle)
+        return [one for one in placed if one]
 
     def _track(self, curve: Curve) -> ComplexArray:
         """Return places along a curve, no farther apart than a quarter of a cell of the grid."""
@@ -246,44 +266,15 @@ class PanelFrame:
         bounds = (0.0, rows * tall), (0.0, columns * wide)
         return np.sign(np.histogram2d(places.imag, places.real, (rows, columns), bounds)[0])
 
-    def _of_curves(self, panel: Panel, tracks: list[ComplexArray], named: bool) -> Iterator[Label]:
-        """Yield the labels of faint lines, of forces and of several curves, not placed yet."""
-        symbols = [symbol(curve.name, self.look) for curve in panel.curves]
-        for curve, text in zip(panel.curves, symbols):
-            if text and (curve.kind == "faint" or (named and curve.kind in ("arrow", "force"))):
-                yield Label(text, complex(self.place(curve.x[-1], curve.y[-1])))
-        every = zip(panel.curves, symbols, looks_of(panel), (track[::4] for track in tracks))
-        lines = [one for one in every if one[1] and one[0].kind in ("line", "dots")]
-        for curve, text, number, own in lines if named and len(lines) > 1 else ():
-            others = np.concatenate([track for other, _, _, track in lines if other is not curve])
-            farthest = np.abs(own[:, None] - others).min(axis=1).round(6).argmax()
-            yield Label(text, complex(own[farthest]), number)
-
-    def _of_marks(self, panel: Panel) -> Iterator[Label]:
-        """Yield the labels of marks: first those of figures, then mere angles where there is room."""
-        figures = [mark for mark in panel.marks if mark.figure.name.symbol][:_MOST_MARKED]
-        for mark in (*figures, *(mark for mark in panel.marks if not mark.figure.name.symbol)):
-            led = bool(mark.figure.name.symbol)
-            yield Label(figure_text(mark.figure, self.look), complex(self.place(mark.x, mark.y)), None, led, not led)
-
-    def _of_shades(self, panel: Panel) -> Iterator[Label]:
-        """Yield the figures of shades, or their names alone where not each figure has the room."""
-        written = [
-            (shade, shade.figure, figure_text(shade.figure, self.look)) for shade in panel.shades if shade.figure
-        ]
-        roomy = all(width(text) * self.medium.letter <= np.ptp(self.x.place(one.x)) for one, _, text in written)
-        for shade, figure, text in written:
-            widest = int(np.argmax(np.abs(shade.high - shade.low)))
-            middle = self.place(shade.x[widest], (shade.high[widest] + shade.low[widest]) / 2)
-            yield Label(text if roomy else symbol(figure.name, self.look), complex(middle))
-
-    def _on_free_ground(self, label: Label, ground: Array) -> Label | None:
+    def _on_free_ground(
+        self, ground: Array, text: str, point: complex, look: int | None, led: bool, near: bool
+    ) -> Label | None:
         """Return a label in its place, whose cells are then taken, or None where labels leave no room for it.
 
         What it costs to be somewhere is the distance from its point, and what the ground that it covers costs.
         """
-        x, y, grain = label.point.real, label.point.imag, self.medium.grain
-        wide, tall = width(label.text) * self.medium.letter, self.medium.line
+        x, y, grain = point.real, point.imag, self.medium.grain
+        wide, tall = width(text) * self.medium.letter, self.medium.line
         rows, columns = math.ceil(tall / grain[1]), math.ceil(wide / grain[0])
         if rows > ground.shape[0] or columns > ground.shape[1]:
             return None
@@ -295,13 +286,13 @@ class PanelFrame:
         off_middle = np.abs(left + wide / 2 - x) + np.abs(top + tall / 2 - y)
         cost = (np.hypot(across, down) + 0.05 * off_middle + covered).round(6)
         row, column = np.unravel_index(cost.argmin(), cost.shape)
-        if cost[row, column] >= (2 * tall if label.spare else _TAKEN):
+        if cost[row, column] >= (2 * tall if near else _TAKEN):
             return None
         ground[row : row + rows, max(column - 1, 0) : column + columns + 1] = _TAKEN
         start, height = float(left[column]), float(top[row, 0])
-        end = label.point + complex(across[column], down[row, 0])
-        far = label.led and abs(end - label.point) > 1.2 * tall
-        return label._replace(left=start, right=start + wide, top=height, lead=end if far else None)
+        end = point + complex(across[column], down[row, 0])
+        far = led and abs(end - point) > 1.2 * tall
+        return Label(text, point, look, start, start + wide, height, end if far else None)
 
 
 def looks_of(panel: Panel) -> list[int]:

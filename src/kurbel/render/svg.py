@@ -231,7 +231,7 @@ def _around(frame: PanelFrame, left: float, legend: Sequence[Row]) -> Iterator[s
     """Yield thin lines with their values, what runs along the axes, and above which stroke is which quantity."""
     wide, tall = frame.wide, frame.tall
     across = frame.ticks_across(max(3, int(wide / 64)), -left, wide + 8)
-    up = ticks(frame.panel.y, frame.y, int(tall / 30), frame.look)
+    up = ticks(frame.y, int(tall / 30), frame.look)
     lines = [_path(np.array([place, place + 1j * tall])) for place, _, _ in across]
     lines += [_path(np.array([1j * place, wide + 1j * place])) for place, _ in up]
     yield _shape("g", "".join(lines)) + _shape("x", _path(np.array([0.0, 1j * tall, wide + 1j * tall])))

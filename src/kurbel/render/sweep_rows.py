@@ -25,12 +25,13 @@ from kurbel.designs.find import Solutions
 from kurbel.designs.sweep import Sweep, rows_of
 from kurbel.errors import UsageError
 from kurbel.render import Look
-from kurbel.render.data import FORMAT, csv_cell, csv_line
+from kurbel.render.csv_text import csv_cell, csv_line
+from kurbel.render.json_text import FORMAT
 from kurbel.render.markup import Markdown, written
-from kurbel.render.output import opened, stdout_look, write_out
+from kurbel.render.output import look_at, opened, write_out
 from kurbel.render.page import blocks
 from kurbel.render.text import plain, single
-from kurbel.render.text_tables import TextTable, texts
+from kurbel.render.text_tables import TextColumn, TextTable
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
 from kurbel.report.picture_source import in_units, level
 
@@ -93,11 +94,13 @@ def _for_people(titles: Titles, look: Look, rows: Sequence[Design]) -> Iterator[
     heads = [(titles.row, ""), *titles.names, *((name, "") for name in titles.last)]
     cells = [[_cell(value, look) for value in titles.values(row)] for row in rows]
     columns = [
-        texts(look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number")
+        TextColumn(
+            look.text(name), look.unit(unit), [row[k] for row in cells], "name" if name in titles.last else "number"
+        )
         for k, (name, unit) in enumerate(heads)
     ]
     if look.format == "markdown":
-        return iter(["".join(written([TextTable("", columns, 1)], Markdown())).lstrip("\n")])
+        return iter(["".join(written([TextTable("", columns, 1)], Markdown(look))).lstrip("\n")])
     return plain(blocks(columns[:1], columns[1:], look))
 
 
@@ -137,7 +140,7 @@ def write_rows(
     headed: csv with its head; early: gets a sentence about what an early end leaves.
     """
     to_file = file_name is not None and file_name != "-"
-    look = look if to_file else stdout_look(look)
+    look = look_at(file_name, look)
     if look.format in ("table", "markdown"):
         write_out(_for_people(titles, look, list(rows)), file_name, look.encoding)
         return
@@ -186,14 +189,13 @@ def _write_lines(file: BinaryIO, lines: Iterable[str], encoding: str) -> None:
 def _write_parquet(file: BinaryIO, titles: Titles, rows: Iterator[Design]) -> None:
     """Write rows as Parquet. Raises UsageError where pyarrow is missing."""
     try:
-        import pyarrow
-        from pyarrow import parquet
+        import pyarrow.parquet
     except ImportError:
         raise UsageError("Parquet needs pyarrow: pip install 'kurbel[parquet]'") from None
     stored = {"number": pyarrow.float64(), "text": pyarrow.string(), "list": pyarrow.list_(pyarrow.float64())}
     types = [pyarrow.int64(), *(stored[one] for one in (*titles.types, *("text" for _ in titles.last)))]
     schema = pyarrow.schema(zip(titles.whole, types))
-    with parquet.ParquetWriter(file, schema) as writer:
+    with pyarrow.parquet.ParquetWriter(file, schema) as writer:
         while group := list(islice(rows, _IN_A_GROUP)):
             arrays = []
             for type, column in zip(types, zip(*map(titles.values, group))):
@@ -285,21 +287,16 @@ def _same(one: str, other: str) -> bool:
 # what kurbel find prints
 
 
-def columns(found: Solutions, system: str) -> list[tuple[str, str, str]]:
-    """Return name, unit and kind of each column: the keys in the units of their ranges, and the key values."""
-    keys = [(one.key, one.unit, one.kind) for one in found.varied]
+def as_rows(found: Solutions, system: str) -> tuple[Titles, list[Design]]:
+    """Return a row for each solution: the keys in the units of their ranges, and the key values."""
+    units = [(one.key, one.kind, one.unit) for one in found.varied]
     largest = [max(map(abs, values)) for values in zip(*(one.key_values for one in found.found))]
-    sized = zip(found.heads, largest)
-    return [*keys, *((one.id, shown_unit(one.kind, system, size), one.kind) for one, size in sized)]
-
-
-def as_rows(found: Solutions, system: str) -> list[Design]:
-    """Return a row for each solution, in the order and the units of the columns."""
-    units = [(kind, unit) for _, unit, kind in columns(found, system)]
-    return [
-        Design(number, tuple(float(convert(value, *of)) for value, of in zip((*one.values, *one.key_values), units)))
-        for number, one in enumerate(found.found, 1)
+    units += [(one.id, one.kind, shown_unit(one.kind, system, size)) for one, size in zip(found.heads, largest)]
+    rows = [
+        Design(number, tuple(float(convert(value, *of)) for value, (_, *of) in zip(values, units)))
+        for number, values in enumerate(((*one.values, *one.key_values) for one in found.found), 1)
     ]
+    return Titles(tuple((name, unit) for name, _, unit in units)), rows
 
 
 def as_json(found: Solutions) -> dict[str, object]:

@@ -3,8 +3,6 @@
 import math
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from decimal import Decimal
 from functools import cache
 from textwrap import wrap
 from typing import NamedTuple
@@ -21,7 +19,6 @@ DIGITS = 4
 
 _LARGE = 7  # from 1e7 on, and below 1e-4, a row gets its power of ten into the head
 _SMALL = -4
-_LONG = re.compile(r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))")
 
 
 class Scale(NamedTuple):
@@ -70,7 +67,8 @@ def cell(value: Value, scale: Scale) -> str:
     if not value:
         return "" if value is None else "0"
     if scale.exponent:
-        value = float(Decimal(value).scaleb(-scale.exponent))
+        mantissa, power = f"{value:.25e}".split("e")
+        value = float(f"{mantissa}e{int(power) - scale.exponent}")  # rounded once
     # adding 0.0 turns -0.0 into 0.0
     return f"{round(value, scale.decimals) + 0.0:.{max(0, scale.decimals)}f}"
 
@@ -81,7 +79,8 @@ def in_thousands(text: str) -> str:
     >>> in_thousands("J = 18066.25, -1234567; 1234, 0.123456, run-10000.csv").replace("\N{NARROW NO-BREAK SPACE}", "_")
     'J = 18_066.25, -1_234_567; 1234, 0.123456, run-10000.csv'
     """
-    return _LONG.sub(lambda found: f"{int(found[0]):_}".replace("_", "\N{NARROW NO-BREAK SPACE}"), text)
+    long = r"(?<![\w.,^-])-?[1-9]\d{4,}(?=[.,]\d|[.,;]?(?:\s|$)|\))"
+    return re.sub(long, lambda found: f"{int(found[0]):_}".replace("_", _THIN), text)
 
 
 def single(value: float, digits: int | None = None, own: int = 0) -> tuple[str, int]:
@@ -147,18 +146,14 @@ _CONTROL = dict.fromkeys((*range(32), *range(127, 160), 0xFFFE, 0xFFFF), "�")
 TURNING = (0x061C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
 """Characters that turn the direction of writing: a name with one could make a line read backward."""
 _TURNING = dict.fromkeys(TURNING, "�")
+_NARROWEST = 24  # below this a sentence is folded under its head instead of next to it
 _NO_BREAK, _THIN = "\N{NO-BREAK SPACE}", "\N{NARROW NO-BREAK SPACE}"
-_POINT = re.compile(r"(?<=\d)\.(?=\d)")
-_HYPHEN = re.compile(r"(?<![\w.-])-(?=\d)")
-_DEGREE = re.compile(r"(?<=\d) deg\b")
-_SQUARE = re.compile(r"(?<=[a-z])\^2")
-_SUBSCRIPT = re.compile(
-    "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;²³]+?)(?=[,.:]?\\s|[,.:]?$|[|()/;²³])"
-)
+_POINT = r"(?<=\d)\.(?=\d)"
+_SUBSCRIPT = "(?:(?<=\\b\\w)|(?<=\\b\\w[\u0307\u0308])|(?<=Δ\\w))_([^\\s|()/;²³]+?)(?=[,.:]?\\s|[,.:]?$|[|()/;²³])"
+"""The decimal point of a number, and what is below the line: patterns that few commands need."""
 
 
-@dataclass(frozen=True, eq=False)
-class Look:
+class Look(NamedTuple):
     """How a report is to look, and what its output can show.
 
     format, layout: of FORMATS and LAYOUTS; comma: decimal comma; digits: significant digits, where None means four in
@@ -199,13 +194,13 @@ class Look:
 
     def sentence(self, text: str) -> str:
         """Return a sentence for people, its numbers as they are wanted."""
-        return self.number(self.text(_SQUARE.sub("²", text)))
+        return self.number(self.text(re.sub(r"(?<=[a-z])\^2", "²", text)))
 
     def number(self, text: str) -> str:
         """Return a text whose numbers have the decimal sign that is wanted; in HTML and LaTeX see `fine`."""
         if self.format in ("html", "latex"):
             return self.fine(text)
-        return _POINT.sub(",", text) if self.comma else text
+        return re.sub(_POINT, ",", text) if self.comma else text
 
     def fine(self, text: str) -> str:
         """Return a text whose numbers have thin spaces, minus signs and degrees as signs, where the output has them.
@@ -214,8 +209,9 @@ class Look:
         'J = 18_066,25, −1,5 and run-10000.csv'
         """
         if self.has("−" + _THIN):
-            text = _DEGREE.sub("°", _HYPHEN.sub("−", in_thousands(text)))
-        return _POINT.sub(",", text) if self.comma else text
+            text = re.sub(r"(?<![\w.-])-(?=\d)", "−", in_thousands(text))
+            text = re.sub(r"(?<=\d) deg\b", "°", text)
+        return re.sub(_POINT, ",", text) if self.comma else text
 
     def value(self, value: float, digits: int | None = None) -> str:
         """Return a single value with its power of ten, to so many digits if no others are wanted."""
@@ -306,6 +302,26 @@ def folded(text: str, cells: int | None) -> list[str]:
     return [one.replace(_NO_BREAK, " ") for one in wrap(kept, cells, break_long_words=False, break_on_hyphens=False)]
 
 
+def in_two_columns(found: Iterable[tuple[str, str]], look: Look, indent: str = "  ") -> Iterator[Line]:
+    """Yield heads in a column, each with its sentence."""
+    heads = [(look.text(head), text) for head, text in found]
+    column = max((width(head) for head, _ in heads), default=0)
+    for head, text in heads:
+        yield from sentence(f"{indent}{padded(head, column)}  ", text, look)
+
+
+def sentence(head: str, text: str, look: Look) -> Iterator[Line]:
+    """Yield a head and its sentence, which is folded next to it, or below it if there is little room."""
+    text, room = look.sentence(text), None if look.width is None else look.width - width(head)
+    if room is not None and room < min(width(text), _NARROWEST):
+        if head.strip():
+            yield line(head, "cell")
+        head, room = " " * 6, max((look.width or 0) - 6, _NARROWEST)
+    for one in folded(text, room):
+        yield (Piece(head, "cell"), Piece(one))
+        head = " " * width(head)
+
+
 @cache
 def measures() -> re.Pattern[str]:
     """Return the pattern of a number with its unit, which stay in one line.
@@ -326,4 +342,4 @@ def subscripts(text: str) -> list[str]:
     >>> subscripts("T_max 5.1 kN"), subscripts("F_x², F_y: forces"), subscripts("my_engine")
     (['T', 'max', ' 5.1 kN'], ['F', 'x', '², F', 'y', ': forces'], ['my_engine'])
     """
-    return _SUBSCRIPT.split(text)
+    return re.split(_SUBSCRIPT, text)

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
-from kurbel.render.text import Scale, angle, angle_scale, cell, scale_of, single, whole_if_integral, width
-from kurbel.report.alike import grouped
-from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value
+from kurbel.render.text import Scale, angle, angle_scale, cell, scale_of, single, whole_if_integral
+from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value, grouped
 
 MARK = "*"
 _MOST_LISTED = 12
@@ -17,23 +16,17 @@ _FEW = 12
 
 
 class TextColumn(NamedTuple):
-    """A column as text; width: of the widest cell; kind: `number`, `name`, `symbol` or `sentence`."""
+    """A column as text; kind: `number`, `name`, `symbol` or `sentence`."""
 
     symbol: str
     unit: str
     cells: Sequence[str]
-    width: int
     kind: str = "number"
 
     @property
     def words(self) -> bool:
         """Whether it holds words, which are flush left."""
         return self.kind != "number"
-
-
-def texts(symbol: str, unit: str, cells: Sequence[str], kind: str = "number") -> TextColumn:
-    """Return a column of texts."""
-    return TextColumn(symbol, unit, cells, max(map(width, cells), default=0), kind)
 
 
 class TextTable(NamedTuple):
@@ -80,7 +73,7 @@ def _scaled(column: Column, scale: Scale, look: Look, pad: str = "", missing: st
 
 
 def _headed(column: Column, cells: Sequence[str], look: Look, exponent: int = 0) -> TextColumn:
-    return texts(look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells)
+    return TextColumn(look.symbol(column.symbol, column.ascii_symbol), look.unit(column.unit, exponent), cells)
 
 
 def part_name(report: Report, part: Part, look: Look) -> str:
@@ -98,7 +91,7 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     """
     blank = "_" if table.headed else " "
     columns = [
-        texts(head, "", [look.number(look.text(name.replace("_", blank))) for name in column], "name")
+        TextColumn(head, "", [look.number(look.text(name.replace("_", blank))) for name in column], "name")
         for head, column in zip(table.heads, zip(*table.names))
     ]
     sharing: dict[str, list[Value]] = {}
@@ -127,7 +120,7 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
         symbol = look.symbol(one.symbol, one.ascii_symbol)
         rows.append((symbol, _value(one, look), look.unit(one.unit), at, look.sentence(one.text)))
     heads = ("Symbol", "symbol"), ("Value", "number"), ("Unit", "name"), ("At", "number"), ("Meaning", "sentence")
-    columns = [texts(head, "", cells, kind) for (head, kind), cells in zip(heads, zip(*rows))]
+    columns = [TextColumn(head, "", cells, kind) for (head, kind), cells in zip(heads, zip(*rows))]
     lists = {row for row, one in enumerate(found) if isinstance(one.value, tuple) and one.value}
     return TextTable(caption, columns, 1, lists=lists)
 

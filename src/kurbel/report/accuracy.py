@@ -3,6 +3,7 @@
 import platform
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from itertools import groupby
 from pathlib import Path
@@ -74,7 +75,7 @@ def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, progress
         tuple(parts),
         notes=(*_NOTES, *found),
         head=(environment(), "Times are of this machine and this run; compare them only with one another."),
-        provenance=provenance(machine) if machine else None,
+        provenance=partial(provenance, machine) if machine else None,
     )
 
 

@@ -1,7 +1,7 @@
 """The report of `kurbel check`: what a machine has, what is left out, and how its limits and expectations compare."""
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -10,11 +10,10 @@ from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
-from kurbel.report.alike import grouped, together
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
 from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.limits import Entry, Unjudged, compared
-from kurbel.report.tables import LeftOut
+from kurbel.report.limits import Entry, compared
+from kurbel.report.tables import LeftOut, grouped, together
 from kurbel.report.turning import torsion_left_out, torsion_warnings
 from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
 from kurbel.solver.case import Case
@@ -38,23 +37,21 @@ class Checked(NamedTuple):
     title: str
     sections: tuple[Topic, ...]
     broken: bool
-    unjudged: tuple[Unjudged, ...]
+    unjudged: tuple[Entry, ...]
 
     @property
     def shown_once(self) -> list[Topic]:
         """The sections, with one for identical cylinders."""
-
-        def content(section: Topic) -> Hashable:
-            return section.cylinder or section.title, tuple(one[:3] for one in section.entries)
-
-        groups = grouped(self.sections, content)
+        groups = grouped(
+            self.sections, lambda one: (one.cylinder or one.title, tuple(entry[:3] for entry in one.entries))
+        )
         return [group[0]._replace(title=together([one.title for one in group])) for group in groups]
 
 
 def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
-    machine, notes = case.machine, machine_notes(case)
-    figures, unjudged = compared(case, cases)
+    machine, notes, every = case.machine, machine_notes(case), compared(case, cases)
+    figures = [one for one in every if not one.error]
     of_whole = (Entry("note", text, "warning") for name, text in notes if name is None)
     topics: dict[str, Iterable[Entry]] = {
         "Cranks": _crank_entries(machine),
@@ -76,7 +73,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     )
     sections = tuple(one for one in found if one.entries)
     broken = any(one.severity == "error" for one in figures)
-    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(unjudged))
+    return Checked(f"{machine.name}: a valid machine", sections, broken, tuple(one for one in every if one.error))
 
 
 def _machine_entries(machine: Machine) -> Iterator[Entry]:
@@ -100,10 +97,11 @@ def _machine_entries(machine: Machine) -> Iterator[Entry]:
 def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> Iterator[Entry]:
     cylinder = machine.cylinders[number]
     mechanism, path = cylinder.mechanism, ("cylinders", number) if len(machine.cylinders) > 1 else ()
+    given = {"stroke": mechanism.stroke, **vars(mechanism)}  # the stroke may be given instead of the crank
     lengths = [
         f"{name} {'infinite' if math.isinf(size) else show(size, key.form.kind)}"
         for name, key in mechanism.KEYS.items()
-        if key.form.kind != "ratio" and isinstance(size := getattr(mechanism, name, None), float) and size
+        if key.form.kind != "ratio" and isinstance(size := given.get(name), float) and size
     ]
     yield Entry("mechanism", f"{mechanism.name}: {', '.join(lengths)}")
     for piston in cylinder.pistons:
@@ -254,7 +252,7 @@ def findings(machine: Machine, checked: Checked, locate: Locate) -> list[Finding
     for section in checked.sections:
         head = f"{section.title}: " if several and section.cylinder else ""
         found += [(one.path, f"{head}{one.what}: {one.text}", one.severity) for one in section.entries if one.severity]
-    found += [(path, str(error).removeprefix(f"{path_text(path)}: "), "error") for path, error in checked.unjudged]
+    found += [(one.path, str(one.error).removeprefix(f"{path_text(one.path)}: "), "error") for one in checked.unjudged]
 
     at_keys = [Fault(path, "", at_key=True) for path in {path for path, _, _ in found if path}]
     located = locate(origin.text, at_keys) if origin and at_keys else ()

@@ -22,8 +22,9 @@ class Command(NamedTuple):
 
     of: of a command that reports on a machine, the function in this file that has its help and returns its `Functions`;
     section: place and title of its section in the whole report; over_angle: whether it has columns over the crank
-    angle. first: ids of the columns, key values and tables that are shown on a terminal with too few lines for all;
-    in_cases: ids of the key values in its table of load cases, '' for a command that has none.
+    angle; options: those of `where` and `uncertainty` that it takes. first: ids of the columns, key values and tables
+    that are shown on a terminal with too few lines for all; in_cases: ids of the key values in its table of load cases,
+    '' for a command that has none.
     """
 
     word: str
@@ -32,6 +33,7 @@ class Command(NamedTuple):
     statuses: tuple[int, ...] = ()
     section: tuple[int, str] = (0, "")
     over_angle: bool = True
+    options: tuple[str, ...] = ()
     first: str = ""
     in_cases: str = ""
 
@@ -128,7 +130,7 @@ def _balance() -> "Functions":
     it. Each order is a vector that turns with the crank and one that turns against it; an order that cancels is
     exactly 0. The best counterweights replace those of FILE.
     """
-    from kurbel.report.balance import BALANCE
+    from kurbel.report.crank import BALANCE
 
     return BALANCE
 
@@ -184,6 +186,7 @@ _ROWS = (
         _forces,
         _STALLS,
         section=(3, "Forces"),
+        options=("uncertainty",),
         first="x theta p_head P N T M_out c_m b_max P_max P_min N_max T_max T_min power mean_pressure",
         in_cases="p_max P_max P_min T_max rod_compression_max rod_tension_max reversal_angle reversal_ratio work power",
     ),
@@ -193,6 +196,7 @@ _ROWS = (
         _flywheel,
         _STALLS,
         section=(1, "Turning effort and flywheel"),
+        options=("where", "uncertainty"),
         first="T M E omega M_mean power_shaft T_max dE energy_fluctuation J J_needed delta",
     ),
     Command(
@@ -201,6 +205,7 @@ _ROWS = (
         _stress,
         _STALLS,
         section=(5, "Strength of the crankshaft"),
+        options=("uncertainty",),
         first="P_dc safety_pin_min safety_web_A_min safety_web_B_min safety_journal_A_min safety_journal_B_min "
         "A_max B_max p_pin_max p_journal_A_max p_journal_B_max",
     ),

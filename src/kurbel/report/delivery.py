@@ -1,15 +1,13 @@
 """The report of `kurbel delivery`: what pumps and compressors deliver."""
 
 from collections.abc import Iterator
-from dataclasses import replace
-from functools import partial
 from itertools import chain, pairwise
 
 from kurbel.declared.unit_systems import show
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Functions, Row, Subject, place_table
+from kurbel.report.frame import Functions, Places, Row, Subject
 from kurbel.report.left_out import missing
-from kurbel.report.tables import LeftOut, PlaceTable
+from kurbel.report.tables import LeftOut
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.delivery import CompressorStage, MachineDelivery
@@ -33,23 +31,21 @@ _COARSE = 0.5
 def _delivering(case: Case) -> list[Subject]:
     found, whole = case.delivery, Subject("whole machine")
     if found.pump:
-        whole = Subject("whole machine", found.pump, found.pump.at, source=found.pump)
+        whole = Subject("whole machine", found.pump, found.pump.at)
     warnings = chain(of_machine(case), delivery_warnings(found))
     return [
-        *(Subject(one.name, one, tables=partial(_ends_tables, one)) for one in found.stages),
-        *(Subject(one.name, one, one.at, source=one) for one in found.pistons),
-        replace(whole, left_out=delivery_left_out(found), warnings=warnings, whole=True),
+        *(Subject(one.name, one, tables=_ends_tables(one)) for one in found.stages),
+        *(Subject(one.name, one, one.at) for one in found.pistons),
+        whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
 
 
-def _ends_tables(stage: CompressorStage, system: str) -> Iterator[PlaceTable]:
-    rows: list[Row] = [
-        ((one.owner, one.end), {id: one.figures[id] for id in ENDS if id in one.figures}) for one in stage.ends
-    ]
+def _ends_tables(stage: CompressorStage) -> Iterator[Places]:
+    rows: list[Row] = [((one.owner, one.end), one.figures) for one in stage.ends]
     pressures = ""
     if stage.suction is not None:
         pressures = f", {show(stage.suction, 'pressure')} to {show(stage.delivery, 'pressure')} absolute"
-    yield place_table("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, system, headed=True)
+    yield Places("ends", f"Ends of {stage.name}{pressures}", ("cylinder", "end"), ENDS, rows, headed=True)
 
 
 def _delivery_notes(case: Case) -> Iterator[str]:

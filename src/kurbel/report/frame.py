@@ -1,27 +1,43 @@
-"""From results and their declared quantities to the tables of a report: shared by all commands on a machine."""
+"""From results and their declared quantities to the tables of a report, and the crank angles of its rows."""
 
+import re
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
-from hashlib import sha256
-from typing import Any, NamedTuple
+from functools import partial
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from kurbel.arrays import Array
-from kurbel.declared.reading import shown
-from kurbel.declared.unit_systems import convert, shown_unit, units_of
-from kurbel.errors import NoSolutionError, Nowhere, UsageError
+from kurbel.arrays import Array, Number
+from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
+from kurbel.declared.reading import LONGEST_VALUE, shown
+from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
+from kurbel.declared.units import example, unit_factor
+from kurbel.errors import NoSolutionError, Nowhere, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme, size_of
+from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
-from kurbel.quantity import Lists, Quantity, called, in_sentences
-from kurbel.report.alike import equal_loads, grouped
-from kurbel.report.tables import Column, InputFile, KeyValue, LeftOut, Part, PlaceTable, Provenance, Report
+from kurbel.quantity import Lists, Quantity, ambiguity, called, in_sentences
+from kurbel.report.tables import (
+    Column,
+    InputFile,
+    KeyValue,
+    LeftOut,
+    Part,
+    PlaceTable,
+    Provenance,
+    Report,
+    equal_loads,
+    grouped,
+    stepped,
+)
+from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.figures import Results
+from kurbel.solver.cycle import Where
+from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.forces import CylinderForces
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""
@@ -38,28 +54,29 @@ _UNCOMPARED = (
 # what a command has results of
 
 
-@dataclass(frozen=True, eq=False)
-class Subject:
+class Subject(NamedTuple):
     """What a command has results of: a cylinder, a pin or bearing, or the whole machine.
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
-    state with the columns, None without columns; lists: the quantities that it can have; source: has `angles_where`,
-    which `--where` searches, None without rows; of: the cylinder that a pin belongs to; pistons: those of a cylinder
+    state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
     whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
-    warnings; tables: a function of the system of units that returns tables of places.
+    warnings, tables.
     """
 
     name: str
     results: Results | None = None
-    at: Callable[[Array], Any] | None = None
-    lists: Lists = field(default_factory=every_quantity)
+    at: Callable[[Array], AtAngles] | None = None
     left_out: Iterable[LeftOut] = ()
     warnings: Iterable[str] = ()
-    tables: Callable[[str], Iterable[PlaceTable]] = lambda system: ()
-    source: Any = None
+    tables: "Iterable[Places]" = ()
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
+
+    @property
+    def lists(self) -> Lists:
+        """The quantities that it can have."""
+        return self.results.lists if self.results else every_quantity()
 
     def is_printed(self, quantity: Quantity) -> bool:
         """Return whether a quantity is worth printing: a time ratio is not if both strokes take equally long."""
@@ -69,16 +86,16 @@ class Subject:
         row = rows.key_values.get(quantity.id) or rows.columns.get(quantity.id)
         return not (row and row.unless and row.unless(self.results))
 
-    def answer(self, quantity: Quantity) -> Any:
+    def answer(self, quantity: Quantity) -> object:
         """Return a key value in SI: a number, an Extreme, or a tuple of numbers; None if there is none."""
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 
-    def key_values(self, command: str) -> Iterator[tuple[Quantity, Any]]:
+    def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
-        for quantity in self.lists.key_values(command).values():
-            value = self.answer(quantity) if command not in quantity.on_request and self.is_printed(quantity) else None
-            if value is not None:
+        for quantity, of, unless in self.results.rows.key_values.values() if self.results else ():
+            printed = command in quantity.commands and command not in quantity.on_request
+            if printed and not (unless and unless(self.results)) and (value := of(self.results)) is not None:
                 yield quantity, value
 
 
@@ -87,20 +104,18 @@ def equal_parts(subjects: Sequence[Subject], command: str) -> list[list[Subject]
     having = [one for one in subjects if one.results]
     if len(having) < 2:
         return [having]
-    kinds = {one: (one.name, one.of) if command == "bearings" else ("", "") for one in having}
-    return grouped(having, lambda one: equal_loads(*kinds[one], shown_key_values(one.key_values(command), "si")))
 
+    def load(one: Subject) -> Hashable:
+        name, of = (one.name, one.of) if command == "bearings" else ("", "")
+        return equal_loads(name, of, shown_key_values(one.key_values(command), "si"))
 
-def cycle_of(case: Case) -> float:
-    """Return the working cycle of a machine in degrees."""
-    return 360.0 * case.machine.revolutions
+    return grouped(having, load)
 
 
 # the request and its report
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
+class Frame(NamedTuple):
     """What is requested of the report of any command on a machine.
 
     angles: the crank angles (n,) of the rows in degrees, or a function that returns those of a subject; columns: ids
@@ -131,30 +146,32 @@ def report_on(
     """
     if not subjects:
         raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
-    tables_of = {one: tuple(one.tables(frame.system)) for one in subjects}
-    subjects = [one for one in subjects if one.whole or one.at or tables_of[one] or any(one.key_values(frame.command))]
-    columns = [_columns(frame, one) for one in subjects]
-    printed = {column.id for of_subject in columns if not isinstance(of_subject, Nowhere) for column in of_subject}
-    nowhere = [str(one) for one in columns if isinstance(one, Nowhere)]
+    having = list[tuple[Subject, tuple[PlaceTable, ...], tuple[Column, ...], str]]()
+    for one in subjects:
+        tables = tuple(table.shown(frame.system) for table in one.tables)
+        if one.whole or one.at or tables or any(one.key_values(frame.command)):
+            having.append((one, tables, *_columns(frame, one)))
+    printed = {column.id for _, _, columns, _ in having for column in columns}
+    nowhere = [why for *_, why in having if why]
     for name in frame.columns or ():
         if name not in printed:
-            raise UsageError(f"--columns: {_absent(name, frame.command, subjects)}")
+            raise UsageError(f"--columns: {_absent(name, frame.command, [one for one, *_ in having])}")
     if nowhere and not printed:
         raise NoSolutionError(nowhere[0])
 
-    with_values = frame.prose or not (printed or any(tables_of.values()))
+    with_values = frame.prose or not (printed or any(tables for _, tables, *_ in having))
     parts = [
         Part(
             one.name,
-            () if isinstance(found, Nowhere) else found,
+            columns,
             tuple(shown_key_values(one.key_values(frame.command), frame.system)) if with_values else (),
             tuple(one.left_out) if frame.prose else (),
             tuple(one.warnings) if frame.prose else (),
-            tables_of[one],
-            str(found) if isinstance(found, Nowhere) else "",
+            tables,
+            why,
             one.of,
         )
-        for one, found in zip(subjects, columns)
+        for one, tables, columns, why in having
     ]
     # the balance has its own note on what it cannot compare
     uncompared = frame.compare and frame.command != "balance" and not any(id.endswith("_book") for id in printed)
@@ -164,10 +181,10 @@ def report_on(
         frame.command,
         machine.name,
         "bearings" if frame.command == "bearings" else "cylinders",
-        whole=parts.pop() if subjects[-1:] and subjects[-1].whole else None,
+        whole=parts.pop() if having and having[-1][0].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),
-        provenance=provenance(machine) if frame.prose else None,
+        provenance=partial(provenance, machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
 
@@ -176,15 +193,15 @@ class Functions(NamedTuple):
     """What a command on a machine consists of: a title, and functions of a case, which raise as `report` does.
 
     title: of its report; subjects: returns what it has results of, the whole machine last; notes: returns sentences
-    below the tables; end: returns the crank angle at which the table ends; own: a function that returns a report of
-    another layout than `report_on`, from the case, the frame, and options of the command by their names.
+    below the tables; end: returns the crank angle at which the table ends; own: returns subjects and notes of a report
+    that depends on the frame, or on options of the command, which it takes by their names.
     """
 
     title: str
     subjects: Callable[[Case], list[Subject]]
     notes: Callable[[Case], Iterable[str]] = lambda case: ()
-    end: Callable[[Case], float] = cycle_of
-    own: Callable[..., Report] | None = None
+    end: Callable[[Case], float] = lambda case: 360.0 * case.machine.revolutions
+    own: Callable[..., tuple[Sequence[Subject], Iterable[str]]] | None = None
 
     @np.errstate(all="ignore")  # what overflows is refused by name
     def report(self, case: Case, frame: Frame, **options: object) -> Report:
@@ -192,27 +209,40 @@ class Functions(NamedTuple):
 
         Raises UsageError without such results, NoSolutionError if the machine jams, stalls, or vibrates without limit.
         """
-        if self.own:
-            return self.own(case, frame, **options)
-        return report_on(frame, case.machine, self.title, self.subjects(case), self.notes(case))
+        found = self.own(case, frame, **options) if self.own else (self.subjects(case), self.notes(case))
+        return report_on(frame, case.machine, self.title, *found)
 
 
-def _columns(frame: Frame, subject: Subject) -> tuple[Column, ...] | Nowhere:
-    """Return the requested columns of a subject, or the usual ones; or why it has no row."""
+def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
+    """Return the function of a command that has results of the whole machine, and of no part of it."""
+
+    def subjects(case: Case) -> list[Subject]:
+        (found,) = case.results(command)
+        return [
+            Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
+        ]
+
+    return subjects
+
+
+def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
+    """Return the requested columns of a subject, or the usual ones; and why it has no row, if it has none."""
     if subject.at is None or not frame.table:
-        return ()
+        return (), ""
     try:
         angles = frame.angles(subject) if callable(frame.angles) else frame.angles
     except Nowhere as error:
-        return error
+        return (), str(error)
     known = subject.lists.columns(frame.command)
     added = [one for one in known.values() if one.id == frame.over or (frame.compare and one.id.endswith("_book"))]
     if frame.columns:
         chosen = [*(known[name] for name in frame.columns if name in known), *added]
     else:
         usual = (one for one in known.values() if frame.command not in one.on_request or one in added)
-        chosen = [one for one in usual if subject.is_printed(one)]
-    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
+        # what adds nothing to forces may be what motion is about
+        elsewhere = subject.results and subject.results.command != frame.command
+        chosen = [one for one in usual if elsewhere or subject.is_printed(one)]
+    return shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system), ""
 
 
 def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
@@ -232,15 +262,15 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
 
 
 def provenance(machine: Machine) -> Provenance:
-    """Return what the results of a machine depend on: files with their SHA-256, overridden values, versions."""
+    """Return what the results of a machine depend on: files with their bytes, overridden values, versions."""
     inputs, origin = [], machine.origin
     if origin:  # standard input cannot be read again
-        inputs.append(InputFile(origin.name, sha256(origin.content).hexdigest()))
+        inputs.append(InputFile(origin.name, origin.content))
     for name in machine.trace_files:
-        digest = None
+        content = None
         with suppress(OSError), open(name, "rb") as file:
-            digest = sha256(file.read()).hexdigest()
-        inputs.append(InputFile(name, digest))
+            content = file.read()
+        inputs.append(InputFile(name, content))
     return Provenance(tuple(inputs), origin.overrides if origin else (), {"numpy": np.__version__})
 
 
@@ -253,7 +283,7 @@ def too_large(quantity: Quantity) -> UsageError:
 
 
 def shown_columns(
-    at: Callable[[Array], Any], quantities: Sequence[Quantity], angles: Sequence[float], system: str
+    at: Callable[[Array], AtAngles], quantities: Sequence[Quantity], angles: Sequence[float], system: str
 ) -> tuple[Column, ...]:
     """Return those of these columns that the machine has, at crank angles (n,) in degrees; at: see `Subject`.
 
@@ -301,41 +331,47 @@ Row = tuple[tuple[str, ...], Mapping[str, float | None]]
 """A row of a table of places: its names, and its values in SI by the ids of their quantities."""
 
 
-def place_table(
-    id: str,
-    title: str,
-    heads: tuple[str, ...],
-    declared: Mapping[str, Quantity],
-    rows: Sequence[Row],
-    system: str,
-    headed: bool = False,
-    alone: int = 0,
-) -> PlaceTable:
-    """Return a table of places; declared: its quantities by id; one that no row has is left out.
+class Places(NamedTuple):
+    """A table of places with its values in SI; see `PlaceTable`.
 
-    Orders and mode numbers have as many decimals as they need (1.5, but 1 and 2), distances three. alone: the digits
-    to which every value is rounded by itself; values of one kind then have one unit. headed: the names of the rows are
-    texts for people; otherwise spaces in them become underscores.
+    declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
+    otherwise spaces in them become underscores. alone: the digits to which every value is rounded by itself; values of
+    one kind then have one unit.
     """
-    found = {id: [values.get(id) for _, values in rows] for id in declared if any(id in values for _, values in rows)}
-    largest: dict[str, float] = {}
-    for id_, each in found.items() if alone else ():
-        kind = declared[id_].kind
-        largest[kind] = max(largest.get(kind, 0.0), *(abs(value or 0.0) for value in each))
 
-    columns = []
-    for id_, each in found.items():
-        kind, decimals = declared[id_].kind, 3 if id_ == "distance" else None
-        if id_ in ("order", "mode"):
-            needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
-            decimals = max(needed, default=0)
-        column = shown_column(declared[id_], each, system, largest=largest.get(kind, 0.0))
-        columns.append(column._replace(decimals=decimals, alone=0 if kind == "angle" else alone))
-    names = tuple(names if headed else tuple(name.replace(" ", "_") for name in names) for names, _ in rows)
-    return PlaceTable(id, title, heads, names, tuple(columns), headed)
+    id: str
+    title: str
+    heads: tuple[str, ...]
+    declared: Mapping[str, Quantity]
+    rows: Sequence[Row]
+    headed: bool = False
+    alone: int = 0
+    in_note: bool = False
+
+    def shown(self, system: str) -> PlaceTable:
+        """Return the table in units; orders and modes have as many decimals as they need, distances three."""
+        found = {
+            quantity: [values.get(id) for _, values in self.rows]
+            for id, quantity in self.declared.items()
+            if any(id in values for _, values in self.rows)
+        }
+        largest: dict[str, float] = {}
+        for quantity, each in found.items() if self.alone else ():
+            largest[quantity.kind] = max(largest.get(quantity.kind, 0.0), *(abs(value or 0.0) for value in each))
+
+        columns = []
+        for quantity, each in found.items():
+            decimals = 3 if quantity.id == "distance" else None
+            if quantity.id in ("order", "mode"):
+                needed = (0 if value % 1 == 0 else 1 if value % 0.5 == 0 else 3 for value in each if value)
+                decimals = max(needed, default=0)
+            column = shown_column(quantity, each, system, largest=largest.get(quantity.kind, 0.0))
+            columns.append(column._replace(decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone))
+        names = [names if self.headed else tuple(name.replace(" ", "_") for name in names) for names, _ in self.rows]
+        return PlaceTable(self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note)
 
 
-def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list[KeyValue]:
+def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
     """Return key values in the units of the system; found: see `Subject.key_values`.
 
     The maximum and the minimum of a column have the same unit. Raises UsageError if one is not finite.
@@ -344,7 +380,7 @@ def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list
     units = units_of([(quantity.kind, quantity.family, size_of(value)) for quantity, value in given], system)
     shown_values = []
     for (quantity, value), unit in zip(given, units):
-        raw, at = value if isinstance(value, Extreme) else (value, None)
+        raw, at = number_of(value), value.degrees if isinstance(value, Extreme) else None
         each = raw if isinstance(raw, tuple) else (raw,)
         if not np.isfinite(each).all():
             raise too_large(quantity)
@@ -356,3 +392,116 @@ def shown_key_values(found: Iterable[tuple[Quantity, Any]], system: str) -> list
             KeyValue(quantity.id, *symbols, quantity.marked(unit), number, quantity.text, at, noise, quantity.heading),
         )
     return shown_values
+
+
+# the crank angles of the rows of a table that are given by a condition or by equal steps of the stroke
+
+_SAME = 1e-9
+"""Degrees by which angles differ by rounding only."""
+_OF_SPEED = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
+
+
+def over_stroke(step: float, end: float) -> Callable[[Subject], Sequence[float]]:
+    """Return a function that finds the angles, up to `end`, at which x is 0, step, 2 step, … percent of the stroke.
+
+    Both strokes count. Raises UsageError for a step that is not positive, and for an output without a stroke.
+    """
+    fractions = np.asarray(stepped(step, 100.0)) / 100
+
+    def angles(subject: Subject) -> Sequence[float]:
+        assert isinstance(subject.results, CylinderForces)
+        mechanism = subject.results.mechanism
+        if mechanism.turns:
+            raise UsageError(f"--over x: the output of a {mechanism.name} turns on and has no stroke")
+        x = mechanism.stroke * fractions
+        out = np.asarray(mechanism.crank_angles_at(x, True))
+        back = np.asarray(mechanism.crank_angles_at(x[::-1], False))
+        turn = np.concatenate((out, back[1:]))
+        # the end of a turn is the beginning of the next one
+        every = [turn[start > 0 :] + start for start in np.arange(0.0, end, 360.0).tolist()]
+        return np.concatenate(every).tolist()
+
+    return angles
+
+
+@runtime_checkable
+class Searchable(Protocol):
+    """Results that `--where` searches; omega: of the crank in rad/s, None where no speed is given."""
+
+    omega: Number | None
+
+    def angles_where(self, column: str, value: float) -> Where | None:
+        """Return where in the cycle a column has a value in SI; None for a column that is left out."""
+
+
+def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Sequence[float]]:
+    """Return a function that finds the angles, up to `end`, at which a condition such as `b = 1/6 b_max` holds.
+
+    They are exact except for rounding; the function raises Nowhere if there are none. Raises UsageError for a text that
+    is no condition.
+    """
+    name, equals, value = (part.strip() for part in plain(text).partition("="))
+    number = re.match(RATIO, value) or NUMBER.match(value)
+    of = value[number.end() if number else 0 :].strip()
+    if len(text) > LONGEST_VALUE or not (text.isprintable() and name and equals and (number or of)):
+        raise UsageError(f"--where: expected a column and a value, such as 'b = 1/6 b_max', got '{shown(text)}'")
+    try:
+        factor = parse_ratio(number.group()) if number else None
+    except UnitError as error:
+        raise UsageError(f"--where: {error}") from None
+
+    def angles(subject: Subject) -> Sequence[float]:
+        own, every = subject.lists.columns(command), every_quantity().columns(command)
+        ids = called(name, own.values()) or called(name, every.values())
+        if not ids:
+            near = did_you_mean(name, tuple(every))
+            raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")
+        if wrong := ambiguity(name, ids):
+            raise UsageError(f"--where: {wrong}")
+        column = own.get(ids[0])  # None for one that only other machines have
+        wanted = _value(subject, command, column, factor, of, text) if column else 0.0
+        results = subject.results
+        assert isinstance(results, Searchable)
+        found = column and results.angles_where(column.id, wanted)
+        if column is None or found is None:
+            why = "; kurbel check shows why"
+            if column and column.kind in _OF_SPEED and results.omega is None:
+                why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
+            raise UsageError(f"--where: '{name}' is left out for this machine{why}")
+        if not found.angles:
+            low, high = (show(one, column.kind) for one in found.span)
+            raise Nowhere(
+                f"{subject.name}: {column.id} is nowhere {show(wanted, column.kind)}: it goes from {low} to {high}"
+            )
+        # a table over one turn has the rows of both turns of a cycle
+        turned = np.sort(np.mod(found.angles, end))
+        return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()
+
+    return angles
+
+
+def _value(subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str) -> float:
+    """Return the value in SI: a number with a unit of the column's kind, or a fraction of a key value."""
+    if not of:
+        if factor and column.kind != "ratio":
+            raise UsageError(f"--where: {text} has no unit; write for instance {example(column.kind)}")
+        return factor or 0.0
+    try:
+        up, down = unit_factor(of, column.kind)
+    except UnitError as error:
+        no_unit = error
+    else:
+        if factor is None:
+            raise UsageError(f"--where: {shown(of)} has no number before the unit; write {example(column.kind)}")
+        return factor * up / down
+    known = {id: one for id, one in subject.lists.key_values(command).items() if one.kind == column.kind}
+    ids = called(of, known.values())
+    value = number_of(subject.answer(known[ids[0]])) if ids else None
+    if not ids:
+        single = ", ".join(id for id, one in known.items() if not one.listed)
+        raise UsageError(
+            f"--where: '{of}' is neither a unit nor a key value of this kind: {no_unit}; key values: {single}"
+        )
+    if not isinstance(value, float):
+        raise UsageError(f"--where: this machine has no {of}")
+    return value * (1.0 if factor is None else factor)

@@ -4,7 +4,7 @@ import math
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Row, place_table, shown_key_values
+from kurbel.report.frame import Places, Row, shown_key_values
 from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.friction import holding_force
 
@@ -32,7 +32,7 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
                 what = f"{quantity.symbol} {name.replace('_', ' ')}"
                 left.append(LeftOut(what, "no force does it, however large: the body locks itself"))
         rows.append(((name,), forces))
-    table = place_table("plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows, "si")
+    table = Places("plane", "Force P over the weight Q", ("direction",), by_id(_UP, _HELD), rows).shown("si")
     (rho,) = shown_key_values([(_RHO, math.degrees(math.atan(coefficient)))], "si")
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (

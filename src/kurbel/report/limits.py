@@ -1,4 +1,4 @@
-"""How key values compare with the limits and the expectations of a machine file."""
+"""How key values compare with limits and expectations of a machine file, and in a table of load cases."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -7,15 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.declared.forms.figures import MACHINE, Expected, scoped
+from kurbel.declared.forms.figures import MACHINE, Bound, Expected, scoped
+from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import SI, convert
 from kurbel.errors import KurbelError, Path, UsageError, path_text
+from kurbel.machine import Machine
+from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
-from kurbel.quantity import NOISE_POWER, Quantity, by_id
-from kurbel.report.alike import grouped, together
-from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Subject, too_large
+from kurbel.quantity import NOISE_POWER, Quantity, by_id, called
+from kurbel.report.commands import COMMANDS, subjects_of
+from kurbel.report.frame import Frame, Places, Row, Subject, report_on, too_large
+from kurbel.report.tables import Report, grouped, together
 from kurbel.solver.case import Case
 
 _ROUNDING = 1e-9
@@ -26,7 +29,8 @@ class Entry(NamedTuple):
     """One line of a section of a check.
 
     severity: `error` for a limit or an expectation that FAILs, `warning`, `info`, or '' for a plain statement; path: of
-    its subject in the machine file. A verdict also has quantity, value with unit, bound, and where: the owner.
+    its subject in the machine file. A verdict also has quantity, value with unit, bound, and where: the owner; a figure
+    that cannot be compared has the error, whose message includes the path.
     """
 
     what: str
@@ -38,53 +42,43 @@ class Entry(NamedTuple):
     bound: str = ""
     where: str = ""
     quantity: Quantity | None = None
+    error: KurbelError | None = None
 
 
-class Unjudged(NamedTuple):
-    """A limit or an expectation that cannot be compared, and why; the message of the error includes the path."""
-
-    path: Path
-    error: KurbelError
-
-
-def compared(case: Case, cases: Sequence[Case] = ()) -> tuple[list[Entry], list[Unjudged]]:
-    """Return how the limits and expectations of a machine compare, in its load cases, too, and which cannot be."""
-    entries, unjudged = list[Entry](), list[Unjudged]()
-    for one in (case, *cases):
-        of_case = f", {one.machine.origin.case}" if one is not case and one.machine.origin else ""
-        for found in judged(one):
-            if isinstance(found, Unjudged):
-                unjudged.append(found)
-            else:
-                entries.append(found._replace(what=found.what + of_case))
-    return entries, unjudged
+def compared(case: Case, cases: Sequence[Case] = ()) -> list[Entry]:
+    """Return how limits and expectations of a machine compare, in its load cases, too."""
+    found = [*judged(case)]
+    for one in cases:
+        of_case = f", {one.machine.origin.case}" if one.machine.origin else ""
+        found += [entry._replace(what=entry.what + of_case) for entry in judged(one)]
+    return found
 
 
 @np.errstate(all="ignore")
-def judged(case: Case) -> Iterator[Entry | Unjudged]:
+def judged(case: Case) -> Iterator[Entry]:
     """Yield how each limit and then each expectation compares, or why it cannot be compared.
 
     Values that are equal to nine digits are compared once.
     """
     machine, declared = case.machine, by_id(*every_quantity().all_key_values)
     figures = [("limits", *one) for one in machine.limits] + [("expect", *one) for one in machine.expect]
-    for key, name, bound in figures:
-        quantity, path = declared[scoped(name)[1]], (key, getattr(bound, "name", "") or name)
+    for key, name, figure in figures:
+        bound = figure if isinstance(figure, (Bound, Expected)) else Bound(figure)
+        quantity, path = declared[scoped(name)[1]], (key, bound.name or name)
         try:
             found = _values(case, name)
             if not found:
                 text = f"{quantity.text[:1].lower()}{quantity.text[1:]}"
                 raise UsageError(f"{without(path[1], quantity.id)}: {text}")
         except KurbelError as error:
-            yield Unjudged(path, type(error)(f"{path_text(path)}: {error}"))
+            yield Entry(name, "", path=path, error=type(error)(f"{path_text(path)}: {error}"))
             continue
         verdicts = [
             _compared(path, quantity, bound, together([where for where, _ in equal]), equal[0][1])
             for equal in grouped(found, lambda one: f"{one[1]:.9g}")
         ]
         yield from verdicts
-        kept = all(isinstance(one, Entry) and one.severity == "info" for one in verdicts)
-        if kept and not isinstance(bound, Expected):
+        if all(one.severity == "info" for one in verdicts) and not isinstance(bound, Expected):
             yield from _beyond_by_sign(case, name, bound, path, declared)
 
 
@@ -94,11 +88,12 @@ def without(name: str, id: str) -> str:
     return f"{scope} has no {id}"
 
 
-def _compared(path: Path, quantity: Quantity, bound: float | Expected, where: str, value: float) -> Entry | Unjudged:
+def _compared(path: Path, quantity: Quantity, bound: Bound | Expected, where: str, value: float) -> Entry:
     """Compare a value in SI with its bound or expectation; a value that is not finite cannot be compared."""
     if not math.isfinite(value):
-        return Unjudged(path, UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}"))
-    kind, unit, noise = quantity.kind, getattr(bound, "unit", ""), quantity.is_noise(value)
+        error = UsageError(f"{path_text(path)} ({where}): {too_large(quantity)}")
+        return Entry(str(path[-1]), "", path=path, error=error)
+    kind, unit, noise = quantity.kind, bound.unit, quantity.is_noise(value)
     size = f"< 1e{NOISE_POWER}" if noise else _shown(value, kind, unit)
     if isinstance(bound, Expected):
         low, high = bound.low - value, value - bound.high
@@ -131,7 +126,7 @@ def _shown(value: float, kind: str, unit: str) -> str:
 
 
 def _beyond_by_sign(
-    case: Case, name: str, bound: float, path: Path, declared: Mapping[str, Quantity]
+    case: Case, name: str, bound: Bound, path: Path, declared: Mapping[str, Quantity]
 ) -> Iterator[Entry]:
     """Yield a note if the extreme of the other sign has a larger magnitude than a limit, which does not apply to it."""
     base, _, end = name.rpartition("_")
@@ -144,7 +139,7 @@ def _beyond_by_sign(
     with suppress(KurbelError):
         for where, value in _values(case, other):
             if -value * upward > abs(bound) * (1 + _ROUNDING):
-                size = _shown(value, quantity.kind, getattr(bound, "unit", ""))
+                size = _shown(value, quantity.kind, bound.unit)
                 text = f"{other} = {size} is beyond it with the other sign; {advice}  ({where})"
                 yield Entry(str(path[-1]), text, "warning", path)
 
@@ -199,3 +194,48 @@ def holders(case: Case, name: str) -> list[Holder]:
         if own:
             return own
     return of_machine
+
+
+# load cases: a row for each, of the key values of a command
+
+
+def name_of(case: Case) -> str:
+    """Return the name of a load case, or of the machine itself."""
+    return case.machine.origin.case if case.machine.origin else case.machine.name
+
+
+@np.errstate(all="ignore")  # what overflows is refused by name
+def cases_report(
+    base: Machine, cases: Sequence[Case], command: str, system: str, names: Sequence[str] | None = None
+) -> Report:
+    """Return the key values of load cases, a row for each, of each part of the machine.
+
+    base: the machine as it is without them; names: ids or symbols of the key values. Raises UsageError for a name that
+    is none, and if no case has any.
+    """
+    declared = every_quantity().key_values(command)
+    known = {name: called(name, declared.values()) for name in names or COMMANDS[command].in_cases.split()}
+    for name in (name for name, ids in known.items() if not ids):
+        near = did_you_mean(name, tuple(declared))
+        raise UsageError(f"--columns: '{shown(name)}' is no key value of kurbel {command}{near}")
+    ids = [ids[0] for ids in known.values()]
+    rows: dict[str, list[Row]] = {}
+    notes: list[str] = []
+    for case in cases:
+        try:
+            for subject in subjects_of(case, command):
+                answers = {id: number_of(subject.answer(declared[id])) for id in ids}
+                values = {id: one for id, one in answers.items() if isinstance(one, float)}
+                if values:
+                    rows.setdefault(subject.name, []).append(((name_of(case),), values))
+        except KurbelError as error:
+            notes.append(f"{name_of(case)}: {error}")
+    if not rows:
+        raise UsageError("; ".join(notes) or f"{base.name}: no case has any of {', '.join(ids)}")
+    chosen = {id: declared[id] for id in ids}
+
+    parts = []
+    for name, of_part in rows.items():
+        title = f"Load cases: {name}" if len(rows) > 1 else "Load cases"
+        parts.append(Subject(name, tables=[Places("cases", title, ("case",), chosen, of_part, headed=True)]))
+    return report_on(Frame(command, (), None, system), base, "Load cases", parts, notes)

@@ -10,6 +10,7 @@ from typing import NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
+from kurbel.quantity import Quantity
 from kurbel.report.tables import PlaceTable, Provenance, Report
 
 
@@ -270,14 +271,22 @@ class Grid(NamedTuple):
 
 
 class Fact(NamedTuple):
-    """A key value on the first page: title, number and unit, symbol, the part that has it, crank angle."""
+    """A key value on the first page, in SI until it has a unit; where: the parts that have it, if others have less.
+
+    at_deg: its crank angle.
+    """
 
     title: str
     value: float
-    unit: str
-    symbol: str
-    where: str = ""
-    at_deg: float | None = None
+    quantity: Quantity
+    where: str
+    at_deg: float | None
+    unit: str = ""
+
+    @property
+    def symbol(self) -> str:
+        """Its symbol as it is printed."""
+        return self.quantity.symbol
 
 
 class Facts(NamedTuple):

@@ -12,10 +12,10 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
-from kurbel.quantity import Quantity
+from kurbel.quantity import Formula, Of, Quantity
 from kurbel.report.frame import too_large
 from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.solver.figures import Results
+from kurbel.solver.figures import AtAngles, Results
 
 PHI = "phi"
 FINENESS = 1 / 2000
@@ -34,7 +34,7 @@ AROUND = np.exp(2j * np.pi * np.linspace(0.0, 1.0, 121))
 """A circle."""
 NO_WORDS: Mapping[str, str] = {}
 
-Line = tuple[Words, Callable[[Any], Any]]
+Line = tuple[Words, Formula]
 """A name, and what takes the columns of results at crank angles (n,) and returns values (n,) in SI."""
 
 
@@ -100,7 +100,7 @@ class Source:
             self.key_values = results.lists.key_values(results.command)
 
     @cached_property
-    def _start(self) -> Any:
+    def _start(self) -> AtAngles:
         """The columns just after crank angle 0."""
         return self.results.at(np.zeros(1), np.full(1, 1e-3))
 
@@ -204,14 +204,14 @@ class Source:
         """Yield a panel for each group of columns of one kind, without columns that the results lack."""
         yield from (self.panel(ids, words=words) for group in groups if (ids := self.having(*group)))
 
-    def point(self, tip: Callable[[Any], ComplexArray], degrees: float, off: float = 0.0) -> complex:
+    def point(self, tip: Of[ComplexArray], degrees: float, off: float = 0.0) -> complex:
         """Return where a tip is at a crank angle, at a jump on the side of the angle that is so far off."""
         at = np.array([degrees])
         return complex(tip(self.results.at(at, at + off))[0])
 
     def locus(
         self,
-        tip: Callable[[Any], ComplexArray],
+        tip: Of[ComplexArray],
         id: str,
         name: Words,
         title: str = "",

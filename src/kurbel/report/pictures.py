@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, islice, pairwise
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +14,6 @@ from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
-from kurbel.report.alike import grouped, together
 from kurbel.report.commands import subjects_of
 from kurbel.report.constructions import construction, polar_force
 from kurbel.report.frame import equal_parts
@@ -46,7 +45,7 @@ from kurbel.report.picture_source import (
     level,
 )
 from kurbel.report.section import mechanism
-from kurbel.report.tables import cylinder_meant
+from kurbel.report.tables import cylinder_meant, grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
@@ -127,12 +126,11 @@ def cards(source: Source, over_volume: bool = False) -> Iterator[Panel]:
     for gas in every:
         across = Axis(Words("V", words="volume"), "volume") if over_volume else source.axis("x")
         curves = list[Curve]()
-        for head, end in ((True, gas.head), (False, gas.crank)):
+        for number, end in enumerate((gas.head, gas.crank)):
             if end:
-                name, _ = source.line("p_head" if head else "p_crank", "head end" if head else "crank end")
-                place = partial(_volume, gas, head) if over_volume else lambda state: state.displacement
-                pressure = partial(_pressure, gas, end)
-                samples = source.samples("P", [(NO_NAME, place), (name, pressure)])
+                name, _ = source.line("p_crank" if number else "p_head", "crank end" if number else "head end")
+                place = partial(_volume, gas, number) if over_volume else attrgetter("displacement")
+                samples = source.samples("P", [(NO_NAME, place), (name, partial(_pressure, gas, end))])
                 curves.append(samples.curve(name, *samples.values).closed())
         marks: tuple[Mark, ...] = ()
         if gas is every[0] and not over_volume and (highest := results.p_max):
@@ -148,10 +146,9 @@ def _pressure(gas: PistonGas, end: Pressure, state: State) -> Array:
     return state.pressure(end) + gas.base
 
 
-def _volume(gas: PistonGas, head: bool, state: State) -> Array:
-    """Return the volume in m³ at an end of a piston, with the clearance where that is known."""
-    passed, number = state.displacement, 0 if head else 1
-    swept = passed if head != gas.turned else gas.stroke - passed
+def _volume(gas: PistonGas, number: int, state: State) -> Array:
+    """Return the volume in m³ at the head end of a piston, 0, or the crank end, 1, with the clearance if known."""
+    swept = gas.stroke - state.displacement if gas.turned != bool(number) else state.displacement
     return np.asarray(swept * gas.areas[number] + gas.clearance_volumes[number])
 
 
@@ -226,8 +223,8 @@ class PictureKind(NamedTuple):
     """A picture: its word and title, the command whose results it shows, and the function that yields its panels.
 
     The docstring of that function is the caption. It yields nothing if the machine lacks what the picture shows.
-    across: panels next to each other; whole: whether all cylinders of the machine are in one picture, drawn from the
-    case and those that are wanted.
+    across: panels next to each other. Without a command all cylinders of the machine are in one picture, drawn from
+    the case and those that are wanted.
     """
 
     id: str
@@ -235,7 +232,6 @@ class PictureKind(NamedTuple):
     command: str
     panels: Callable[[Source], Iterable[Panel]]
     across: int = 1
-    whole: bool = False
 
     @property
     def text(self) -> str:
@@ -266,7 +262,7 @@ PICTURES = (
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
-    PictureKind("mechanism", "Mechanism", "motion", mechanism, whole=True),
+    PictureKind("mechanism", "Mechanism", "", mechanism),
     PictureKind("construction", "Constructions of displacement and velocity", "motion", construction),
 )
 """The pictures, the most informative picture of a machine first."""
@@ -336,7 +332,7 @@ def _drawn(case: Case, kind: PictureKind, options: PictureOptions) -> list[Pictu
 def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator[tuple[Source, str]]:
     """Yield (source of a picture, name of its cylinder or bearing); identical ones are drawn once."""
     command, wanted = kind.command, [one for one in case.cylinders if options.cylinder in (None, one.drive.name)]
-    if kind.whole:
+    if not command:
         yield Source((case, wanted), options.angles), (len(case.cylinders) > 1 and options.cylinder) or ""
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
@@ -351,4 +347,4 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
             if named:
                 several = command == "bearings" or len(case.cylinders) > 1
                 names = together([one.name for one in named]) if several else ""
-                yield Source(named[0].source or named[0].results, options.angles), names
+                yield Source(named[0].results, options.angles), names

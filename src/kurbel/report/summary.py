@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.quantity import Quantity
-from kurbel.report.alike import grouped, together
-from kurbel.report.cases import name_of
 from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Row, Subject, place_table
-from kurbel.report.limits import compared
+from kurbel.report.frame import Places, Row, Subject
+from kurbel.report.limits import compared, name_of
 from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
+from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 
 Thing = TypeVar("Thing")
@@ -143,18 +141,8 @@ def subtitle_of(machine: Machine) -> str:
     return ", ".join(texts)
 
 
-class Headline(NamedTuple):
-    """A key value in SI; where: the parts that have it, if others have less; at_deg: its crank angle."""
-
-    title: str
-    number: float
-    quantity: Quantity
-    where: str
-    at_deg: float | None
-
-
 @np.errstate(all="ignore")
-def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Headline]:
+def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Fact]:
     """Return key values for the first page by their ids; without ids, the eight most informative ones, none zero.
 
     Of several parts the one with the largest value is named, or with the smallest for those of `_SMALLEST`; a key value
@@ -162,51 +150,50 @@ def facts_of(case: Case, ids: Iterable[str] = ()) -> dict[str, Headline]:
     """
     kind = kind_of(case)
     wanted = tuple(ids) or (*_KINDS[kind].split(), *_USUAL.split())
-    known: dict[str, Headline] = {}
+    known: dict[str, Fact] = {}
     for command, labels in _LABELS.items():
         subjects = if_any(partial(subjects_of, case, command))
         for id in labels:
             if id in wanted and (one := _largest(id, command, subjects)):
                 known[id] = one
     # against the rotation, as that of a pump or a compressor
-    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].number) > abs(known["M_max"].number)
+    against = {"M_max", "M_min"} <= set(known) and abs(known["M_min"].value) > abs(known["M_max"].value)
     if against and not ids and kind != "effort":
         wanted = tuple("M_min" if id == "M_max" else id for id in wanted)
     titles = {"P_peak": "Largest ram force"} if kind == "ram" else {}
     if "M_max" not in wanted:
         titles["M_min"] = _LABELS["flywheel"]["M_max"]
-    found: dict[str, Headline] = {}
+    found: dict[str, Fact] = {}
     for id in dict.fromkeys(one for one in wanted if one in known):
-        size, taken = abs(known[id].number), [0.0, *(abs(one.number) for one in found.values())]
+        size, taken = abs(known[id].value), [0.0, *(abs(one.value) for one in found.values())]
         if ids or (size not in taken and len(found) < _MOST_FACTS):
             found[id] = known[id]._replace(title=titles.get(id, known[id].title))
     return found
 
 
-def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Headline | None:
-    each: list[Headline] = []
+def _largest(id: str, command: str, subjects: Sequence[Subject]) -> Fact | None:
+    each: list[Fact] = []
     for one in subjects:
         quantity = one.lists.key_values(command).get(id)
         with suppress(KurbelError):
             value = one.answer(quantity) if quantity and one.is_printed(quantity) else None
             if quantity and isinstance(number := number_of(value), float) and math.isfinite(number):
                 degrees = value.degrees if isinstance(value, Extreme) else None
-                each.append(Headline(_LABELS[command][id], number, quantity, one.name, degrees))
+                each.append(Fact(_LABELS[command][id], number, quantity, one.name, degrees))
     if not each:
         return None
     whole = [one for one in each if one.where == "whole machine"]
-    found = (min if id in _SMALLEST else max)(whole or each, key=lambda one: abs(one.number))
-    equal = [one.where for one in each if f"{one.number:.6g}" == f"{found.number:.6g}"]
+    found = (min if id in _SMALLEST else max)(whole or each, key=lambda one: abs(one.value))
+    equal = [one.where for one in each if f"{one.value:.6g}" == f"{found.value:.6g}"]
     return found._replace(where=together(equal) if len(equal) < len(each) else "")
 
 
-def tiles(facts: Iterable[Headline], system: str) -> Facts:
+def tiles(facts: Iterable[Fact], system: str) -> Facts:
     """Return key values for display as tiles, each in its unit."""
     found = []
     for one in facts:
-        unit = shown_unit(one.quantity.kind, system, abs(one.number))
-        number = float(convert(one.number, one.quantity.kind, unit))
-        found.append(Fact(one.title, number, one.quantity.marked(unit), one.quantity.symbol, one.where, one.at_deg))
+        unit, kind = shown_unit(one.quantity.kind, system, abs(one.value)), one.quantity.kind
+        found.append(one._replace(value=float(convert(one.value, kind, unit)), unit=one.quantity.marked(unit)))
     return Facts(tuple(found))
 
 
@@ -226,9 +213,9 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
     if cases:
         rows: list[Row] = []
         for one in cases:
-            rows.append(((name_of(one),), {id: found.number for id, found in facts_of(one, facts).items()}))
+            rows.append(((name_of(one),), {id: found.value for id, found in facts_of(one, facts).items()}))
         declared = {id: one.quantity for id, one in facts.items()}
-        yield place_table("cases", "Load cases", ("case",), declared, rows, system, headed=True)
+        yield Places("cases", "Load cases", ("case",), declared, rows, headed=True).shown(system)
     yield from (Notice(text, "warning") for text in warnings)
     if not warnings:
         yield Notice("No warnings.", "good")
@@ -236,8 +223,7 @@ def summary(case: Case, cases: Sequence[Case], system: str, warnings: Iterable[s
 
 def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
     """Yield limits and expectations with their bounds and verdicts, and why some cannot be compared."""
-    judged, unjudged = compared(case, cases)
-    rows, marks = list[tuple[Shown, ...]](), list[str]()
+    judged, rows, marks = compared(case, cases), list[tuple[Shown, ...]](), list[str]()
     for equal in grouped((one for one in judged if one.bound), lambda one: (one.path, one.where, one.bound)):
         # in several load cases all that fail, or the one that is nearest to its bound
         nearest = (min if equal[0].bound.startswith("≥") else max)(equal, key=lambda one: one.value or 0.0)
@@ -251,8 +237,8 @@ def verdicts(case: Case, cases: Sequence[Case] = ()) -> Iterator[Item]:
         # in this order: a narrow window shows the first columns
         heads = "Symbol", "Value", "Bound", "Verdict", "Limit or expectation", "Where"
         yield Grid("", heads, tuple(rows), numbers=(1,), verdicts=tuple(marks))
-    yield from (Notice(str(one.error), "bad") for one in unjudged)
-    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not one.bound)
+    yield from (Notice(str(one.error), "bad") for one in judged if one.error)
+    yield from (Notice(f"{one.what}: {one.text}", "warning") for one in judged if not (one.bound or one.error))
 
 
 def firing_order(machine: Machine) -> Iterator[Grid]:

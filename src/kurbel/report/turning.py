@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -13,9 +12,9 @@ from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Row, Subject, place_table, report_on
+from kurbel.report.frame import Frame, Functions, Places, Row, Subject, whole_machine
 from kurbel.report.left_out import flywheel_left_out, left_out, missing
-from kurbel.report.tables import LeftOut, PlaceTable, Report
+from kurbel.report.tables import LeftOut
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.chain import holzer_at
@@ -93,7 +92,6 @@ def _turned(case: Case) -> list[Subject]:
         turning.at if effort.swing is None else None,
         left_out=flywheel_left_out(case.machine),
         warnings=of_machine(case),
-        source=turning,
         whole=True,
     )
     return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
@@ -131,9 +129,9 @@ FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)
 _HIGHEST_ORDER = 1000
 
 
-def harmonics_report(
+def _harmonics(
     case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
-) -> Report:
+) -> tuple[list[Subject], Iterator[str]]:
     """Return the orders of the turning effort; orders: those to show, None for all up to 24.
 
     speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
@@ -146,7 +144,7 @@ def harmonics_report(
         Subject(
             one.forces.drive.name,
             left_out=left_out(machine, one.forces.drive.cylinder),
-            tables=partial(_orders_of_cylinder, one),
+            tables=_orders_of_cylinder(one),
         )
         for one in found.cylinders
     ]
@@ -157,16 +155,13 @@ def harmonics_report(
         found,
         left_out=chain(flywheel_left_out(machine), apart),
         warnings=of_machine(case),
-        tables=partial(_orders_of_machine, found, speeds or (), machine.speed),
+        tables=_orders_of_machine(found, speeds or (), machine.speed),
         whole=True,
     )
-    notes = _harmonics_notes(found)
-    return report_on(frame, machine, HARMONICS.title, [*cylinders, whole], notes)
+    return [*cylinders, whole], _harmonics_notes(found)
 
 
-HARMONICS = Functions(
-    "Harmonics of the turning effort", lambda case: [Subject("whole machine", case.harmonics())], own=harmonics_report
-)
+HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
 
 
 def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
@@ -205,42 +200,38 @@ def _uniform(torque: Orders) -> bool:
     return not any(one.any() for one in (torque.gas, torque.inertia) if one is not None)
 
 
-def _orders_of_cylinder(cylinder: CylinderOrders, system: str) -> Iterator[PlaceTable]:
+def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
     name, torque = cylinder.forces.drive.name, cylinder.own
-    rows = _order_rows(torque)
-    for (_, values), amplitude in zip(rows, torque.whole.tolist()):
-        if cylinder.area:
-            values["t_order"] = abs(amplitude) / cylinder.area
+    rows = _order_rows(torque, cylinder.area)
     title = f"Orders of the torque of {name}, φ from its own inner dead centre"
-    table = place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)
-    yield table._replace(in_note=_uniform(torque))
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
 
 
-def _orders_of_machine(
-    found: MachineOrders, speeds: Sequence[float], working: float | None, system: str
-) -> Iterator[PlaceTable]:
+def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: float | None) -> Iterator[Places]:
     """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
     torque, uniform = found.machine, _uniform(found.machine)
     title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    rows = _order_rows(torque, found.major_orders or ())
-    yield place_table("orders", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+    rows = _order_rows(torque, major=found.major_orders or ())
+    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
     rows = []
     for speed in speeds:
         each = zip(torque.orders.tolist(), torque.at_speed(speed / (working or speed)).tolist())
         rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
     if speeds:
         title = "Orders of the turning effort at other speeds"
-        yield place_table("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, system)._replace(in_note=uniform)
+        yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
 
 
-def _order_rows(torque: Orders, major: Sequence[float] = ()) -> list[tuple[tuple[str], dict[str, float | None]]]:
-    """Return the orders of a torque; major: those to mark."""
-    rows = []
+def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
+    """Return the orders of a torque; area: R A of its cylinder in m³, if it has a piston; major: those to mark."""
+    rows = list[Row]()
     for index, order in enumerate(torque.orders.tolist()):
         values = _of_order(order, complex(torque.whole[index]))
         if torque.inertia is not None:
             values["M_gas"] = float(abs(torque.gas[index]))
             values["M_inertia"] = float(abs(torque.inertia[index]))
+        if area:
+            values["t_order"] = abs(torque.whole[index]) / area
         rows.append((("major" if order in major else "",), values))
     return rows
 
@@ -260,10 +251,6 @@ _MODES = 3
 """Modes whose critical speeds are listed unless others are requested."""
 
 
-def _torsion_subjects(case: Case) -> list[Subject]:
-    return [Subject("shaft line", _limited(case.torsion))]
-
-
 def _limited(found: ShaftVibration) -> ShaftVibration:
     """Return the vibration; raises NoSolutionError if it grows without limit."""
     if found.vibration is not None and found.vibration.endless.any():
@@ -274,7 +261,7 @@ def _limited(found: ShaftVibration) -> ShaftVibration:
     return found
 
 
-def torsion_report(
+def _torsion(
     case: Case,
     frame: Frame,
     orders: Sequence[float] | None = None,
@@ -282,7 +269,7 @@ def torsion_report(
     mode: int | None = None,
     speeds: Sequence[float] | None = None,
     at: float | None = None,
-) -> Report:
+) -> tuple[list[Subject], Iterator[str]]:
     """Return the torsional vibration of the shaft line; columns over the crank angle only if the frame has some.
 
     orders: those to count, None for the usual ones; modes: how many have critical speeds; mode, at: of Holzer's table,
@@ -291,19 +278,19 @@ def torsion_report(
     """
     if mode is not None and at is not None:
         raise UsageError("--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out")
-    found, system = case.torsion_of(_orders(case.machine, orders)), frame.system
+    found = case.torsion_of(_orders(case.machine, orders))
     critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
     _limited(found)
     rows = _critical_rows(found, critical)
     tables = [
-        _modes_table(found, system),
-        _holzer_table(found, mode or 1, at, system),
-        place_table("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows, system),
+        _modes_table(found),
+        _holzer_table(found, mode or 1, at),
+        Places("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows),
     ]
     if found.pieces:
         title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
         of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
-        tables.append(place_table("pieces", title, ("piece",), PIECES, of_pieces, system))
+        tables.append(Places("pieces", title, ("piece",), PIECES, of_pieces))
     if speeds is not None and not found.obstacle:
         by_speed: list[Row] = [
             ((found.piece_name(number),), {"speed": speed, **amplitudes})
@@ -311,23 +298,23 @@ def torsion_report(
             for speed, amplitudes in zip(speeds, piece)
         ]
         title = "Vibratory torque over the speed, all these orders together"
-        tables.append(place_table("speeds", title, ("piece",), SPEEDS, by_speed, system))
+        tables.append(Places("speeds", title, ("piece",), SPEEDS, by_speed))
 
     whole = Subject(
         "shaft line",
         found,
         left_out=torsion_left_out(found),
         warnings=chain(_near_speeds(found, critical), of_machine(case)),
-        tables=lambda _: tables,
+        tables=tables,
         whole=True,
     )
     pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
-    return report_on(frame, case.machine, TORSION.title, [*pieces, whole], notes)
+    return [*pieces, whole], notes
 
 
-TORSION = Functions("Torsional vibration", _torsion_subjects, own=torsion_report)
+TORSION = Functions("Torsional vibration", lambda case: [Subject("shaft line", _limited(case.torsion))], own=_torsion)
 
 
 def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[Row]:
@@ -336,16 +323,14 @@ def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[
     of_reached = dict(zip(reached, _at_speeds(found, [one.speed for one in reached])))
     rows: list[Row] = []
     for one in critical:
-        values = {"order": one.order, "mode": float(one.mode), "speed": one.speed, "phase_sum": one.phase_sum}
-        if one.distance is not None:
-            values["distance"] = one.distance
+        values = {id: float(value) for id, value in one._asdict().items() if value is not None}
         for amplitudes in of_reached.get(one, ()):
             values |= {id: max(values.get(id, 0.0), amplitude) for id, amplitude in amplitudes.items()}
         rows.append((("near" if one.near else "",), values))
     return rows
 
 
-def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
+def _modes_table(found: ShaftVibration) -> Places:
     """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
     rows: list[Row] = []
     names, modes = [mass.name for mass in found.line.masses], found.modes
@@ -360,10 +345,10 @@ def _modes_table(found: ShaftVibration, system: str) -> PlaceTable:
             nodes += f": {', '.join(where)}" if len(where) <= 2 else ""
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
         rows.append(((nodes,), values))
-    return place_table("modes", "Natural frequencies", ("nodes",), MODES, rows, system)
+    return Places("modes", "Natural frequencies", ("nodes",), MODES, rows)
 
 
-def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: str) -> PlaceTable:
+def _holzer_table(found: ShaftVibration, mode: int, at: float | None) -> Places:
     """Return Holzer's table of a mode, or at a frequency in Hz: each mass with the segment after it.
 
     At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
@@ -385,7 +370,7 @@ def _holzer_table(found: ShaftVibration, mode: int, at: float | None, system: st
         values |= {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
     if at is not None and not last:
         rows[-1][1]["torque_sum"] = left
-    return place_table("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows, system)
+    return Places("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows)
 
 
 def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -15,9 +16,10 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.ideal_cards import Diesel, Otto, Steam
+from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, Line
-from kurbel.report.alike import grouped, together
+from kurbel.machine.turning import Effort
+from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.trace import TracePressure
@@ -40,7 +42,8 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
-    add(f"effort: {text}" for text in getattr(machine.effort, "notes", ()))
+    if isinstance(machine.effort, Effort):
+        add(f"effort: {text}" for text in machine.effort.notes)
     add(_speed_warnings(machine))
     for cylinder in machine.cylinders:
         add(_size_warnings(cylinder), cylinder.name)
@@ -77,10 +80,9 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
 
 def of_machine(case: Case) -> Iterator[str]:
     """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
-    for notes in grouped(machine_notes(case), lambda note: note.text):
-        names = [note.cylinder for note in notes if note.cylinder is not None]
-        several = names and len(case.machine.cylinders) > 1
-        yield f"{together(names)}: {notes[0].text}" if several else notes[0].text
+    for notes in grouped(machine_notes(case), itemgetter(1)):
+        names, text = [name for name, _ in notes if name is not None], notes[0][1]
+        yield f"{together(names)}: {text}" if names and len(case.machine.cylinders) > 1 else text
 
 
 # what was given: sizes and speeds
@@ -148,9 +150,12 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (f"{place}: {text}" for text in getattr(chamber, "notes", ()))
+            yield from (f"{place}: {text}" for text in (() if isinstance(chamber, Compressor) else chamber.notes))
+            exponents = {chamber.exponent} if isinstance(chamber, (Steam, Compressor, Otto, Diesel)) else set()
+            if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
+                exponents.add(chamber.expansion_exponent)
             least, most = _EXPONENTS
-            for value in {getattr(chamber, key, None) or least for key in ("exponent", "expansion_exponent")}:
+            for value in exponents:
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [_asymmetry(card) for card in piston.chambers.values() if isinstance(card, Card)]

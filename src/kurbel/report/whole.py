@@ -1,6 +1,7 @@
 """The report of `kurbel report`: all that a machine has, section by section; or two machines side by side."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from functools import partial
 from itertools import zip_longest
 from operator import itemgetter
@@ -12,17 +13,16 @@ from kurbel.errors import KurbelError, NoSolutionError, UsageError
 from kurbel.numerics.extreme import number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
-from kurbel.report.alike import grouped, shown_once, together
-from kurbel.report.cases import cases_report
 from kurbel.report.check import checked
-from kurbel.report.commands import REPORTS, Command, subjects_of
+from kurbel.report.commands import REPORTS, subjects_of
 from kurbel.report.frame import Frame, Subject, provenance
 from kurbel.report.keys import every_place, meaning
+from kurbel.report.limits import cases_report
 from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAngle, Pair, Picture, Section, Shown
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, PictureKind, pictures_if_any
 from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Report, stepped
+from kurbel.report.tables import Report, grouped, shown_once, stepped, together
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
@@ -32,22 +32,19 @@ Given = Sequence[tuple[str, str]]
 Progress = Callable[[str], None]
 """Called with what is computed next."""
 _NONE = "–"
-_MECHANISM = [one for one in PICTURES if one.id == "mechanism"]
 
 
-def _pictures(case: Case, kinds: Iterable[PictureKind], system: str, name: str = "") -> Iterator[Picture | str]:
-    """Yield these pictures of a machine under this name; for one without a solution a sentence."""
-    for kind in kinds:
-        try:
-            for one in pictures_if_any(case, kind, PictureOptions(system)):
-                yield one._replace(machine=name)
-        except NoSolutionError as error:
-            yield f"{kind.title}: {error}"
+def _pictures(case: Case, command: str, system: str) -> list[Picture | str]:
+    """Return the pictures of the section of a command; without one that of the first page."""
+    return [one for kind in PICTURES if kind.command == command for one in _drawn(case, kind, system)]
 
 
-def _kinds_of(command: Command) -> list[PictureKind]:
-    """Return the pictures of the section of a command; the mechanism is on the first page."""
-    return [one for one in PICTURES if one.command == command.word and one not in _MECHANISM]
+def _drawn(case: Case, kind: PictureKind, system: str, name: str = "") -> list[Picture | str]:
+    """Return one picture of a machine under this name, as often as it has it; without a solution a sentence."""
+    try:
+        return [one._replace(machine=name) for one in pictures_if_any(case, kind, PictureOptions(system))]
+    except NoSolutionError as error:
+        return [f"{kind.title}: {error}"]
 
 
 # one machine
@@ -84,9 +81,9 @@ def whole_report(
             # the warnings of a cylinder lack its name, and are among those of the machine
             warnings |= dict.fromkeys(report.whole.warnings if report.whole else ())
         if cases and command.in_cases:
-            items += [Answers(one) for one in if_any(partial(_in_cases, case, cases, command, system))]
-        drawn = _pictures(case, _kinds_of(command), system)
-        sections.append(Section(command.word, command.title, (*drawn, *items)))
+            with suppress(KurbelError):
+                items.append(Answers(cases_report(machine, cases, command.word, system)))
+        sections.append(Section(command.word, command.title, (*_pictures(case, command.word, system), *items)))
 
     rows = tuple((what, why, ", ".join(dict.fromkeys(where))) for (what, why), where in left_out.items())
     sections += [
@@ -95,14 +92,9 @@ def whole_report(
         Section("left-out", "Left out", (Grid("", ("Part", "Why", "Of"), rows),) if rows else ()),
         Section("input", "Input as understood", tuple(_input(case, given))),
     ]
-    mechanism = if_any(partial(_pictures, case, _MECHANISM, system))[:1]
-    first = (*mechanism, *summary(case, cases, system, warnings))
+    first = (*_pictures(case, "", system)[:1], *summary(case, cases, system, warnings))
     sections = [one for one in sections if one.items]
     return Document(machine.name, (subtitle_of(machine),), first, tuple(sections), (provenance(machine),))
-
-
-def _in_cases(case: Case, cases: Sequence[Case], command: Command, system: str) -> Iterator[Report]:
-    yield cases_report(case.machine, cases, command.word, system)
 
 
 def _without_motion(report: Report) -> Report:
@@ -137,11 +129,13 @@ def _energy(case: Case, system: str) -> Iterator[Grid]:
 def _energy_rows(forces: CylinderForces, system: str) -> tuple[tuple[Shown, ...], ...]:
     try:
         left, residual, friction = forces.work_left, forces.energy_residual, forces.friction_works
-        places = {name: place for name, (_, place) in {**SLIDING, **RUBBING}.items()}
         terms = [
             ("Indicated work of the driving pistons", forces.work_driving),
             ("Indicated work of the driven pistons", forces.work_driven),
-            *((f"Friction {place}", -(friction.get(name) or 0.0)) for name, place in places.items()),
+            *(
+                (f"Friction {place}", -(friction.get(name) or 0.0))
+                for name, (_, place) in {**SLIDING, **RUBBING}.items()
+            ),
             ("Friction given as a force", -(friction.get("constant") or 0.0)),
             ("What the output works against", forces.resistance_work),
         ]
@@ -177,8 +171,7 @@ def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, pro
 
     for command in REPORTS:
         progress(command.title.lower())
-        pairs = [pair for kind in _kinds_of(command) for pair in _pairs(cases, kind, names, system)]
-        items = [*pairs, *_key_values(cases, names, command.word, system)]
+        items = [*_pairs(cases, command.word, names, system), *_key_values(cases, names, command.word, system)]
         sections += [Section(command.word, command.title, tuple(items))] if items else []
     subtitles = tuple(f"{name}: {subtitle_of(case.machine)}" for name, case in zip(names, cases))
     sources = tuple(provenance(case.machine) for case in cases)
@@ -186,21 +179,22 @@ def side_by_side(cases: Sequence[Case], given: Sequence[Given], system: str, pro
     return Document(" and ".join(names), subtitles, first, tuple(sections), sources)
 
 
-def _pairs(cases: Sequence[Case], kind: PictureKind, names: Sequence[str], system: str) -> Iterator[Pair]:
-    """Yield a picture of both machines, which has their names in this report."""
-    left, right = (if_any(partial(_pictures, case, [kind], system, name)) for case, name in zip(cases, names))
-    for one, other in zip_longest(left, right):
-        if isinstance(one, Picture) or isinstance(other, Picture):
-            yield Pair(*(each if isinstance(each, Picture) else None for each in (one, other)))
+def _pairs(cases: Sequence[Case], command: str, names: Sequence[str], system: str) -> Iterator[Pair]:
+    """Yield the pictures of a command of both machines, which have their names in this report."""
+    for kind in (one for one in PICTURES if one.command == command):
+        for pair in zip_longest(*(_drawn(case, kind, system, name) for case, name in zip(cases, names))):
+            left, right = (one if isinstance(one, Picture) else None for one in pair)
+            if left or right:
+                yield Pair(left, right)
 
 
 def _both_first(cases: Sequence[Case], names: Sequence[str], system: str) -> Iterator[Item]:
     """Yield both mechanisms, the key values that say most with their differences, verdicts and warnings of each."""
-    yield from (pair for kind in _MECHANISM for pair in _pairs(cases, kind, names, system))
+    yield from _pairs(cases, "", names, system)
     ids = dict.fromkeys(id for case in cases for id in facts_of(case))
     facts = [facts_of(case, ids).values() for case in cases]
     titles = {fact.quantity: fact.title for some in facts for fact in some}
-    numbers = [{fact.quantity: fact.number for fact in some} for some in facts]
+    numbers = [{fact.quantity: fact.value for fact in some} for some in facts]
     yield Grid("", _heads(names), _compared(numbers, system, titles), (1, 2, 4))
     for case, name in zip(cases, names):
         warnings = [*of_machine(case)]

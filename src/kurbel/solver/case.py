@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 from kurbel.arrays import Array
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.quantity import called
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.bearings import Bearing, ShaftBearings
 from kurbel.solver.delivery import CompressorStage, Delivery, MachineDelivery
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.figures import Figure, Shown, rows_of
-from kurbel.solver.flywheel import MachineTurning
+from kurbel.solver.figures import Figure, Results, Shown, rows_of
+from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.harmonics import MachineOrders
 from kurbel.solver.stress import CrankshaftStrength
@@ -37,28 +40,22 @@ class Case(Shown):
 
         Of several cylinders each has its own: `case.cylinders[0]["P_max"]`. Raises UsageError where there is none.
         """
-        of_cylinder = bool(self.cylinders) and self.cylinders[0].rows.named(name)
-        if of_cylinder and len(self.cylinders) == 1:
-            return self.cylinders[0][name]
-        if rows_of(CrankshaftStrength).named(name):
-            return self.stress[name]
-        if rows_of(MachineTurning).named(name):
-            return self.flywheel[name]
-        if rows_of(MachineBalance).named(name):
-            return self.balance[name]
-        if rows_of(ShaftVibration).named(name):
-            return self.torsion[name]
-        if rows_of(Delivery).named(name) and self.delivery.pump:
-            return self.delivery.pump[name]
-        if rows_of(CompressorStage).named(name):
-            if len(self.delivery.stages) == 1:
-                return self.delivery.stages[0][name]
-            raise UsageError(f"each stage has its own {name}: ask one of case.delivery.stages")
-        if of_cylinder:
-            raise UsageError(f"each cylinder has its own {name}: ask one of case.cylinders")
-        if rows_of(Bearing).named(name):
-            raise UsageError(f"each pin and main bearing has its own {name}: ask one of case.bearings.parts")
+        several = ""
+        for chapter in CHAPTERS:
+            with_offers = chapter.kind is CylinderForces and self.cylinders
+            rows = self.cylinders[0].rows if with_offers else rows_of(chapter.kind)
+            if called(name, (row.quantity for row in rows.key_values.values())):
+                found = chapter.of(self)
+                if len(found) == 1:
+                    return found[0][name]
+                several = several or (chapter.each if found else "")
+        if several:
+            raise UsageError(several.format(name))
         return self.flywheel[name]
+
+    def results(self, command: str) -> list[Results]:
+        """Return all results of a command, which raise as they do by themselves."""
+        return [one for chapter in CHAPTERS if chapter.kind.command == command for one in chapter.of(self)]
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
@@ -118,3 +115,37 @@ class Case(Shown):
     def torsion_of(self, orders: Array | None) -> ShaftVibration:
         """Return the torsional vibration by these orders (k,)."""
         return ShaftVibration(self.effort, orders)
+
+
+class Chapter(NamedTuple):
+    """A class of results of a machine, and what returns them.
+
+    each: of a class with several results, the message for a key value that is not named with the one that has it.
+    """
+
+    kind: type[Results]
+    of: Callable[[Case], Sequence[Results]]
+    each: str = ""
+
+
+CHAPTERS = (
+    Chapter(CylinderForces, lambda case: case.cylinders, "each cylinder has its own {}: ask one of case.cylinders"),
+    Chapter(MachineTurning, lambda case: [case.flywheel]),
+    Chapter(DeadCentre, lambda case: [DeadCentre(one, case.effort.cycle) for one in case.cylinders]),
+    Chapter(CrankshaftStrength, lambda case: [case.stress]),
+    Chapter(
+        Bearing,
+        lambda case: case.bearings.parts,
+        "each pin and main bearing has its own {}: ask one of case.bearings.parts",
+    ),
+    Chapter(MachineBalance, lambda case: [case.balance]),
+    Chapter(MachineOrders, lambda case: [case.harmonics()]),
+    Chapter(ShaftVibration, lambda case: [case.torsion]),
+    Chapter(Delivery, lambda case: [case.delivery.pump] if case.delivery.pump else []),
+    Chapter(
+        CompressorStage,
+        lambda case: case.delivery.stages,
+        "each stage has its own {}: ask one of case.delivery.stages",
+    ),
+)
+"""Every class of results, in the order in which its quantities are listed; each includes those of its parts."""

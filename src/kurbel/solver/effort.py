@@ -23,7 +23,6 @@ from kurbel.crank_angle import unit_vector
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
-from kurbel.machine.cylinder import gathered
 from kurbel.machine.turning import Harmonics, Known, Swing
 from kurbel.numerics.arithmetic import some, unless_cancelled, where
 from kurbel.numerics.pieces import Angles, Pieces, SampledExtremes, common
@@ -93,8 +92,11 @@ class TurningEffort:
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
         self.swing: Any = machine.effort.energy(machine.revolutions) if isinstance(machine.effort, Swing) else None
         # cylinders in which a force acts, identical ones in one group
-        acting = [forces for forces in cylinders if forces.drive.has_force]
-        self.groups = gathered(acting, lambda one, other: other.twin is one)
+        groups: dict[CylinderForces, list[CylinderForces]] = {}
+        for forces in cylinders:
+            if forces.drive.has_force:
+                groups.setdefault(forces.twin or forces, []).append(forces)
+        self.groups = list(groups.values())
         # groups with moving masses and a speed
         self._moving = [group for group in self.groups if moves(group)]
 

@@ -7,7 +7,8 @@ the rows of another class to its place, `Searched` the extremes of the columns.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -18,22 +19,21 @@ from kurbel.declared.unit_systems import SI, convert, shown_unit
 from kurbel.errors import UsageError
 from kurbel.mechanisms import KeyOffer, Offer
 from kurbel.near_words import did_you_mean
-from kurbel.numerics.extreme import Extreme
+from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.quantity import (
     ITS_OWN,
     PHI,
     Computed,
     Condition,
     ForEach,
+    Formula,
     Heading,
     Lists,
+    Of,
     Quantity,
     Row,
     ambiguity,
     called,
-    in_order,
-    printed_by,
-    searched,
 )
 
 V = TypeVar("V")
@@ -64,7 +64,7 @@ class Figure(NamedTuple):
 class Shown:
     """How a notebook shows results; `kurbel.notebook` sets it, since the solver may not import tables and pictures."""
 
-    as_html: ClassVar[Callable[[Any], str] | None] = None
+    as_html: ClassVar[Of[str] | None] = None
 
     def _repr_html_(self) -> str | None:
         return Shown.as_html(self) if Shown.as_html else None
@@ -95,22 +95,40 @@ class AtAngles:
         return None if row is None else row.of(self)
 
 
+_COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, Row]] = {}
+
+
 def column_rows(state: type[AtAngles], offers: tuple[Offer, ...] = ()) -> Mapping[str, Row]:
     """Return the rows of a class of columns, and of what mechanisms add to it, in printed order."""
     if (state, offers) in _COLUMN_ROWS:
         return _COLUMN_ROWS[state, offers]
     rows = list[Row]()
-    for owner in [one for one in reversed(state.__mro__) if issubclass(one, AtAngles)]:
+    for owner in (one for one in reversed(state.__mro__) if issubclass(one, AtAngles)):
         for item in vars(owner).values():
             for row in item.rows if isinstance(item, (Computed, ForEach)) else ():
-                rows += printed_by([row], *owner.commands) if row.quantity.commands == ITS_OWN else [row]
+                own = row.quantity.commands == ITS_OWN
+                rows.append(row._replace(quantity=row.quantity._replace(commands=owner.commands)) if own else row)
     rows += [Row(one.quantity, one.of, one.unless) for one in offers]
     over_phi = dict.fromkeys(word for row in rows for word in row.quantity.commands)
-    rows = [Row(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows]
-    return _COLUMN_ROWS.setdefault((state, offers), in_order(rows))
+    every = _in_order([Row(PHI._replace(commands=tuple(over_phi)), lambda one: one.phi), *rows])
+    return _COLUMN_ROWS.setdefault((state, offers), every)
 
 
-_COLUMN_ROWS: dict[tuple[type, tuple[Offer, ...]], Mapping[str, Row]] = {}
+def _in_order(rows: Iterable[Row]) -> dict[str, Row]:
+    """Return rows by id in the order in which they are printed, the first of those with one id.
+
+    Several `after` the same one keep their order; one without a heading has that of the one before it.
+    """
+    found: dict[str, Row] = {}
+    for row in rows:
+        found.setdefault(row.quantity.id, row)
+    ordered = [row.quantity for row in found.values() if not row.quantity.after]
+    for quantity in (row.quantity for row in found.values() if row.quantity.after):
+        place = [other.id for other in ordered].index(quantity.after) + 1
+        while place < len(ordered) and ordered[place].after == quantity.after:
+            place += 1
+        ordered.insert(place, quantity._replace(heading=quantity.heading or ordered[place - 1].heading))
+    return {quantity.id: found[quantity.id]._replace(quantity=quantity) for quantity in ordered}
 
 
 # key values
@@ -121,10 +139,6 @@ class Rows(NamedTuple):
 
     columns: Mapping[str, Row]
     key_values: Mapping[str, Row]
-
-    def named(self, name: str) -> bool:
-        """Return whether an id or printed symbol is that of a key value."""
-        return bool(called(name, (row.quantity for row in self.key_values.values())))
 
     @property
     def lists(self) -> Lists:
@@ -140,26 +154,48 @@ class Rows(NamedTuple):
 class PartResults(Computed[V]):
     """Results that are a part of others; their rows are printed in the place of the attribute."""
 
-    kind: type[Results]
-    unless: Condition | None
+    def __init__(self, function: Of[V], kind: type[Results], unless: Condition | None) -> None:
+        super().__init__(function, Quantity("", "", "", function.__doc__ or ""))
+        self.kind, self.unless = kind, unless
+
+    def of_whole(self, rows: Iterable[Row]) -> Iterator[Row]:
+        """Yield the rows of the part for the results that it is a part of; None where they have no such part."""
+
+        def of_part(function: Formula, results: object) -> Any:
+            found = self.__get__(results)
+            return None if found is None else function(found)
+
+        for quantity, of, unless in rows:
+            yield Row(quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless)))
 
 
-def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Callable[[Any], V]], PartResults[V]]:
+def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V]], PartResults[V]]:
     """Return a decorator for a method that returns results of this class, or None where there is no such part.
 
     unless: takes the results; where it is true, all of the part says nothing new.
     """
-
-    def made(function: Callable[[Any], V]) -> PartResults[V]:
-        found = PartResults(function, Quantity("", "", "", function.__doc__ or ""))
-        found.kind, found.unless = kind, unless
-        return found
-
-    return made
+    return lambda function: PartResults(function, kind, unless)
 
 
 class Searched:
     """The extremes of the columns of the class in which it stands, as the flag `extremes` of a column says."""
+
+    ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
+        "max": lambda both: both.largest,
+        "min": lambda both: both.smallest,
+        "peak": lambda both: both.peak,
+    }
+
+    def rows(self, columns: Iterable[Quantity]) -> Iterator[Row]:
+        """Yield the key values that are extremes of columns, of results that have `extremes_of(id)`."""
+
+        def extreme(column: str, end: str, results: Any) -> Extreme | None:
+            found = results.extremes_of(column)
+            return None if found is None else self.ENDS[end](found)
+
+        for one in columns:
+            for end in self.ENDS if one.peak else ("max", "min"):
+                yield Row(one.extreme(end), partial(extreme, one.id, end))
 
 
 class Results(Shown):
@@ -219,14 +255,15 @@ class Results(Shown):
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given. Raises
+        UsageError for results that have key values alone.
         """
         angles = crank_angles(degrees)
         return self._columns(angles, angles if within is None else within)
 
-    def _columns(self, phi: Array, within: Array) -> Any:
+    def _columns(self, phi: Array, within: Array) -> AtAngles:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
-        raise NotImplementedError
+        raise UsageError("these results have key values, and no columns over the crank angle")
 
     @property
     def _of(self) -> str:
@@ -237,35 +274,34 @@ class Results(Shown):
         return f"<kurbel {self.command} of {self._of}: ['id'], key_values(), columns(degrees)>"
 
 
+_ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
+
+
 def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tuple[KeyOffer, ...] = ()) -> Rows:
     """Return the rows of a class of results, with the columns and key values that mechanisms add."""
     if (kind, offers, key_offers) in _ROWS:
         return _ROWS[kind, offers, key_offers]
     columns = column_rows(kind.state, offers) if kind.state else {}
     quantities = [row.quantity for row in columns.values()] or [one.quantity for one in offers]
-    found, heading = list[Row](), ""
     definitions: dict[str, object] = {}
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
+    found, heading = list[Row](), ""
     for item in definitions.values():
         rows: Iterable[Row] = ()
         if isinstance(item, Heading):
             heading = item.text
         elif isinstance(item, PartResults):
-            inner = rows_of(item.kind, offers, key_offers).key_values.values()
-            seen = (row.through(item.value_of) for row in inner)
-            rows = [row._replace(unless=item.unless) if item.unless else row for row in seen]
+            rows = item.of_whole(rows_of(item.kind, offers, key_offers).key_values.values())
         elif isinstance(item, Searched):
-            rows = searched(quantities, kind.command)
+            rows = item.rows([one for one in quantities if kind.command in one.extremes])
         elif isinstance(item, (Computed, ForEach)):
             rows = item.rows
-        found += [row.under(heading) for row in rows]
-    found += [Row(one.quantity, one.of) for one in key_offers if kind.command in one.quantity.commands]
-    every = Rows(columns, in_order(printed_by(found, *filter(None, [kind.command]))))
-    return _ROWS.setdefault((kind, offers, key_offers), every)
-
-
-_ROWS: dict[tuple[type, tuple[Offer, ...], tuple[KeyOffer, ...]], Rows] = {}
+        found += [one._replace(quantity=one.quantity.printed_by(kind.command, heading)) for one in rows]
+    for offer in key_offers:
+        if kind.command in offer.quantity.commands:
+            found.append(Row(offer.quantity.printed_by(kind.command), offer.of))
+    return _ROWS.setdefault((kind, offers, key_offers), Rows(columns, _in_order(found)))
 
 
 def result(values: Array, count: int | None) -> Any:
@@ -287,7 +323,7 @@ def crank_angles(degrees: object) -> Array:
 def _only(name: str, known: Mapping[str, Row], what: str) -> Row:
     """Return the one row that a name means; raises UsageError for none and for several."""
     found = called(name, (row.quantity for row in known.values()))
-    if not found or ambiguity(name, found):
+    if len(found) != 1:
         raise UsageError(ambiguity(name, found) or f"no {what} '{shown(name)}'{did_you_mean(name, tuple(known))}")
     return known[found[0]]
 

@@ -41,8 +41,8 @@ def at_equal_steps(angles: Array) -> bool:
 class KnownLevel(Record):
     """Where the level of a trace is known, in degrees and Pa: piezoelectric sensors measure changes only."""
 
-    angle: float = field("angle", "Crank angle from the (firing) dead centre", required=True)
-    pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`", required=True)
+    angle: float = field("angle", "Crank angle from the (firing) dead centre")
+    pressure: float = field("pressure", "Pressure there, gauge or absolute as in `pressures`")
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,11 +61,11 @@ def samples_of_file(
     kind: of the values, pressure or torque; base: turns figures of the file into the base of their unit; against:
     angles count against the rotation.
     """
-    table = read_table(file, layout)
+    angles, figures, line = read_table(file, layout)
     with np.errstate(over="ignore"):  # what is beyond all numbers is refused with its line
-        values = base(table.figures)
+        values = base(figures)
     try:
-        return whole_cycles(table.angles, values, lambda row: Fault(("file",), table.line(row)), kind, against)
+        return whole_cycles(angles, values, lambda row: Fault(("file",), line(row)), kind, against)
     except RuleError as error:
         (fault,) = error.faults
         if layout.recorded_speed is None or "angle_unit" in fault.message:

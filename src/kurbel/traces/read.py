@@ -88,16 +88,11 @@ class Layout(NamedTuple):
         return cells, next(bad, 0)
 
 
-class Table(NamedTuple):
-    """What was read: angles (n,) in degrees, figures (m, n) of m columns, and what names the line of a sample."""
+def read_table(file: str, layout: Layout) -> tuple[Array, Array, Callable[[int], str]]:
+    """Return angles (n,) in degrees, figures (m, n) of m columns of a file, and what names the line of a sample.
 
-    angles: Array
-    figures: Array
-    line: Callable[[int], str]
-
-
-def read_table(file: str, layout: Layout) -> Table:
-    """Return angles and columns of a file; raises RuleError with the line of the first that cannot be read."""
+    Raises RuleError with the first line that cannot be read.
+    """
     text = text_of(file)
     if layout.delimiter == layout.decimal and '"' not in text:
         refused("a comma cannot be both in numbers and between columns; write 'delimiter: semicolon'", "decimal")
@@ -120,7 +115,7 @@ def read_table(file: str, layout: Layout) -> Table:
         number, _ = next(itertools.islice(_figure_lines(text, layout), index, None))
         return f"line {number}"
 
-    return Table(angles, numbers[:, -len(layout.columns) :].T, line)
+    return angles, numbers[:, -len(layout.columns) :].T, line
 
 
 @lru_cache(maxsize=4)
@@ -282,6 +277,6 @@ def _advice(text: str, number: int, cells: list[str], column: int, layout: Layou
 
 def _differing_keys(found: Layout, given: Layout) -> list[str]:
     """Return the keys that make the given layout that which was found."""
-    keys = {"skip_rows": found.skip_rows, "delimiter": found.delimiter, "decimal": found.decimal}
-    written = [f"'{key}: {value}'" for key, value in keys.items() if value != getattr(given, key)]
+    now, before = found._asdict(), given._asdict()
+    written = [f"'{key}: {now[key]}'" for key in ("skip_rows", "delimiter", "decimal") if now[key] != before[key]]
     return written if found.columns == given.columns else [*written, f"'pressure_column: {found.columns[0]}'"]

@@ -6,17 +6,16 @@ then `Maker` makes records of these.
 
 import functools
 import math
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Union
 
 import numpy as np
 
 from kurbel.arrays import Indivisible, Truth
 from kurbel.declared.forms.values import TEXT, Choice, Form, NumberForm
 from kurbel.declared.keys import TOO_EXTREME, Key, Keys, Record, required
-from kurbel.declared.numerals import NUMBER
+from kurbel.declared.numerals import NUMBER, plain
 from kurbel.declared.reading import (
     REFUSED,
     Node,
@@ -30,7 +29,7 @@ from kurbel.declared.reading import (
     shown,
 )
 from kurbel.declared.units import MOST_ITEMS
-from kurbel.errors import Path, RuleError, path_text, refused
+from kurbel.errors import NotANumber, Path, RuleError, path_text, refused
 from kurbel.near_words import did_you_mean, near
 from kurbel.numerics.arithmetic import is_number
 
@@ -125,10 +124,13 @@ class RecordForm(Form):
         return moved
 
     def flattened(self, error: RuleError, mapping: Tree) -> RuleError:
-        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline."""
+        """Return the error with the paths of this mapping, where keys of an item may be below `each` or inline.
+
+        What is NaN could not be read, and has been reported.
+        """
         unless = self.listed.unless if self.listed else ""
         faults = []
-        for fault in error.faults:
+        for fault in (one for one in error.faults if not isinstance(one, NotANumber)):
             name, item = (*fault.path, "", "")[:2]
             if unless and name == unless and isinstance(item, int):
                 listed = mapping.get(unless)
@@ -236,28 +238,25 @@ class Maker:
             return tuple(map(self.made, value))
         return value
 
-    def _record(self, form: RecordForm, values: dict[str, object]) -> Any:
+    def _record(self, form: RecordForm, values: dict[str, object]) -> object:
         """Return the record of values by key; REFUSED if one could not be read, after judging the others.
 
         For that the rules get `Form.unread` in its place, a nan, which breaks no rule.
         """
-        unread = [
-            name for name, one in values.items() if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
-        ]
-        stand_ins = {name: form.keys[name].form.unread for name in unread}
-        if None in stand_ins.values():  # nothing can be in place of a word or a mapping
+        unread = {
+            name: form.keys[name].form.unread
+            for name, one in values.items()
+            if one is REFUSED or (isinstance(one, tuple) and has_refused(one))
+        }
+        if None in unread.values():  # nothing can be in place of a word or a mapping
             raise RuleError(*form.record.faults_of_some(values))
-        if stand_ins:
-            try:
-                form.record.from_keys(**(values | stand_ins))
-            except RuleError as error:
-                # a message with nan is about the value that could not be read
-                known = [one for one in error.faults if not re.search(r"\bnan\b", one.message)]
-                raise RuleError(*known) from None
-            except (ArithmeticError, ValueError):  # a formula that takes no nan
-                pass
+        try:
+            record = form.record.from_keys(**(values | unread))
+        except (ArithmeticError, ValueError):
+            if not unread:  # else a formula takes no nan
+                raise
+        if unread:
             return REFUSED
-        record = form.record.from_keys(**values)
         extreme = too_extreme(record, values)
         if len(self.broken):
             rules = [*form.record.rules_of_keys(values), *(record.rules() if isinstance(record, Record) else ())]
@@ -338,7 +337,10 @@ class Listing(Form):
 
 
 class OneOf(Form):
-    """Several forms that differ in shape (text, list, mapping) or are word and number; the first that fits is used."""
+    """Several forms: the first that has the shape of a value (text, list, mapping) and suits what a text looks like.
+
+    A text is a word, a number with its unit, or a bare number.
+    """
 
     def __init__(self, *forms: Form) -> None:
         expected = ", or ".join(form.expected for form in forms)
@@ -346,7 +348,8 @@ class OneOf(Form):
         super().__init__(expected, forms[0].example, written, parts=[("", form) for form in forms])
         self.forms = forms
         self.kind = next((form.kind for form in forms if form.kind), "")
-        self.number = next((form.number for form in forms if form.number), None)
+        numbers = [form.number for form in forms if form.number]
+        self.number = numbers[0] if len(numbers) == 1 else None
         self.unread = next((form.unread for form in forms if form.unread is not None), None)
 
     def take(self, reading: Reading, value: Node, path: Path) -> object:
@@ -357,13 +360,22 @@ class OneOf(Form):
             if name := next((name for name in value if name in words), ""):
                 alone = f"- {name}" if isinstance(path[-1], int) else f"{path[-1]}: {name}"
                 return reading.fault((*path, name), f"takes no value; write '{alone}'", at_key=True)
-        shape = type(value) if isinstance(value, (dict, list)) else str
-        alike = [form for form in self.forms if form.shape is shape]
-        # a word or a number: by what the text looks like
-        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(str(value)))]
-        for form in suiting or alike:
+        for form in self._fitting(value):
             return form.read(reading, value, path)
         return refused(f"expected {self.expected}, got {'nothing' if is_nothing(value) else kind_of(value)}")
+
+    def kind_as_written(self, value: Node | None) -> str:
+        """Return the kind of the number that is written in this way."""
+        return next((form.kind for form in self._fitting(value) if form.kind), self.kind)
+
+    def _fitting(self, value: Node | None) -> list[Form]:
+        """Return the forms that have the shape of a value, or look like it; all of its shape if none does."""
+        shape = type(value) if isinstance(value, (dict, list)) else str
+        alike = [form for form in self.forms if form.shape is shape]
+        text = plain(value) if isinstance(value, str) else ""
+        suiting = [form for form in alike if not (isinstance(form, Choice) and NUMBER.match(text))]
+        bare = NUMBER.fullmatch(text) is not None
+        return [form for form in suiting if (form.kind == "ratio") == bare] or suiting or alike
 
 
 class Keyed(Form):
@@ -409,7 +421,11 @@ class Keyed(Form):
         return REFUSED if others else inner
 
 
-def form_of(form: Any, bounds: Mapping[str, Any] = {}) -> Form:
+Likeness = Union[str, type, tuple[str, ...], list["Likeness"], Form]
+"""What a form may be declared by: see `form_of`."""
+
+
+def form_of(form: Likeness, bounds: Mapping[str, Any] = {}) -> Form:
     """Return the form of a key's value: a kind of quantity with its bounds, a type, words, a record, a list of one.
 
     bounds: `above`, `least`, `below`, `most` in SI, and `words` that mean numbers.

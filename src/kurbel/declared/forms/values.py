@@ -5,12 +5,13 @@ import operator
 import os
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
+from kurbel.arrays import Array, Flags, Number, Truth
 from kurbel.declared.numerals import NUMBER, parse_number, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, REFUSED, Node, Plain, Reading, glued_hint, is_nothing, kind_of, shown
 from kurbel.declared.unit_systems import show
@@ -22,7 +23,6 @@ from kurbel.declared.units import (
     Point,
     example,
     parse_quantity,
-    plain_quantities,
     unit_example,
     unit_factor,
     written_unit,
@@ -50,7 +50,7 @@ class Form(ABC):
     kind: str = ""
     number: "NumberForm | None" = None
     unread: object = None
-    inline: tuple[Any, ...] = ()
+    inline: "tuple[Form, ...]" = ()
 
     def __init__(
         self,
@@ -63,7 +63,7 @@ class Form(ABC):
         self.expected, self.example, self.schema, self.parts = expected, example, schema or {}, tuple(parts)
         self.written = written or (expected if self.shape is str else "a mapping")
 
-    def kind_as_written(self, text: Node | None) -> str:
+    def kind_as_written(self, value: Node | None) -> str:
         """Return the kind of the number that is written in this way, '' if it is no number."""
         return self.kind
 
@@ -92,20 +92,25 @@ def one_line(value: Node, expected: str) -> str:
     return value if value.strip() else refused(f"expected {expected}, got an empty text")
 
 
-def out_of_size(value: Any, kind: str) -> str:
-    """Return the message if a value in the base of its kind, or any of many, is out of the range of machine files.
+def _beyond(value: Number, kind: str) -> tuple[tuple[Truth, str], ...]:
+    """Return whether a value in the base of its kind, or which of many, is too large or too small for machine files."""
+    smallest, largest, *_ = KINDS[kind]
+    return (~(np.abs(value) <= largest), "large"), ((value != 0) & (np.abs(value) < smallest), "small")
+
+
+def out_of_size(value: float, kind: str) -> str:
+    """Return the message if a value in the base of its kind is out of the range of machine files.
 
     >>> out_of_size(1e-200, "length")
     'is too small; a length in a machine file is 0 or at least 1e-09 m'
     """
+    too = next((too for beyond, too in _beyond(value, kind) if beyond), "")
+    if not too:
+        return ""
     smallest, largest, _, unit, *_ = KINDS[kind]
     name = "bare number" if kind == "ratio" else kind.replace("_", " ")
-    held = f"{'an' if name[0] in 'aei' else 'a'} {name} in a machine file is"
-    if not np.all(abs(value) <= largest):
-        return f"is too large; {held} at most {largest:g} {unit}".rstrip()
-    if np.any((value != 0) & (abs(value) < smallest)):
-        return f"is too small; {held} 0 or at least {smallest:g} {unit}".rstrip()
-    return ""
+    within = f"at most {largest:g} {unit}" if too == "large" else f"0 or at least {smallest:g} {unit}"
+    return f"is too {too}; {'an' if name[0] in 'aei' else 'a'} {name} in a machine file is {within}".rstrip()
 
 
 def size_faults(points: Sequence[Point], unit: Factor, kind: str) -> list[Fault]:
@@ -204,36 +209,35 @@ class NumberForm(Form):
             refused(f"{int(text)} is not supported; it must be {self.least}")
         return int(text)
 
-    def numbers(self, texts: Sequence[str]) -> list[float] | None:
-        """Return the numbers of texts that are all plain numbers within the bounds, else None."""
-        found = plain_quantities(texts, self.kind)
-        if found is None or self.out_of_bounds(values := np.array(found)) or out_of_size(values, self.kind):
-            return None
-        return found
-
-    def of_numbers(self, numbers: object) -> object:
-        """Return what a number in the base of its kind, or those of many machines, becomes."""
-        return self.becomes(numbers, "") if self.becomes else numbers
-
     def out_of_bounds(self, value: Any) -> str:
-        """Compare a number, or each of many, with the bounds.
+        """Compare a number with the bounds.
 
         >>> NumberForm("length", least=0.1).out_of_bounds(-0.3)
         'is too small; it must be at least 100 mm'
         """
-        bounds = (
+        for broken, bound, too, must in self._bounds(value) if is_number(value) else ():
+            if broken:
+                return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
+        return "must be finite" if is_number(value) and not self.words and math.isinf(value) else ""
+
+    def within(self, values: Array) -> Flags:
+        """Return which of many numbers (n,) are that of a word, or within the bounds and the range of machine files."""
+        beyond = np.zeros(len(values), dtype=bool)
+        for broken, *_ in (*self._bounds(values), *_beyond(values, self.kind)):
+            beyond |= broken
+        return np.isin(values, list(self.words.values())) | ~beyond
+
+    def _bounds(self, value: Number) -> Iterator[tuple[Truth, float, str, str]]:
+        """Yield whether a number, or which of many, breaks a bound, and what it then is and must be."""
+        counts = (value != 0) | (not self.zero)
+        for bound, breaks, too, must in (
             (self.above, operator.le, "small", "more than"),
             (self.least, operator.lt, "small", "at least"),
             (self.below, operator.ge, "large", "less than"),
             (self.most, operator.gt, "large", "at most"),
-        )
-        known = is_number(value) or isinstance(value, np.ndarray)
-        for bound, wrong, too, must in bounds if known else ():
-            if bound is None:
-                continue
-            if np.any(wrong(value, bound) & ((value != 0) | (not self.zero))):
-                return f"is too {too}; it must be {must} {show(bound, self.kind) if bound else '0'}"
-        return "must be finite" if known and not self.words and np.any(np.isinf(value)) else ""
+        ):
+            if bound is not None:
+                yield counts & breaks(value, bound), bound, too, must
 
 
 class Choice(Form):

@@ -1,10 +1,10 @@
-"""Results for programs: CSV and JSON with all digits. The JSON Schema of the answers is in answers.schema.json."""
+"""Results as JSON, and a check as JUnit XML, for programs. The JSON Schema of the answers is in answers.schema.json."""
 
-import csv
 import json
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from hashlib import sha256
 from itertools import chain, repeat
 from typing import Any
 from xml.etree import ElementTree
@@ -13,117 +13,13 @@ from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
-from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Provenance, Report, Value
+from kurbel.report.tables import PISTONS, Column, InputFile, KeyValue, Part, Provenance, Report, Value
 
-Content = dict[str, Any]
+Content = dict[str, object]
 """What becomes an object of JSON."""
 FORMAT = 1
 """Number of the format of JSON; it changes when a script that reads it would break."""
-_FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
-"""Characters that begin a formula in a spreadsheet, also wide ones."""
 _ESCAPED = {code: f"\\u{code:04x}" for code in TURNING}
-_FIRST = {"ratios": "rod_ratio", "bearings": "bearing", "scenes": "scene"}
-"""Group of the parts of a report -> head of the column with their names, if not `cylinder`."""
-_PISTONS = "pistons"
-"""The table of places that is a list of key values in JSON, and not in CSV."""
-
-
-# CSV
-
-
-class _Echo:
-    """A file for `csv.writer`, which then returns each line."""
-
-    def write(self, text: str) -> str:
-        return text
-
-
-def csv_line(look: Look) -> Callable[[Iterable[object]], str]:
-    """Return a function that makes a line of texts, numbers and None; with a decimal comma the separator is `;`."""
-    return csv.writer(_Echo(), delimiter=";" if look.comma else ",", lineterminator="\n").writerow
-
-
-def csv_cell(value: Value | str | tuple[float, ...], look: Look, in_full: bool = False) -> object:
-    """Return a value for `csv_line`: an apostrophe marks a text that a spreadsheet would take for a formula.
-
-    Numbers have the digits that are wanted, or all; the values of a list are parted by blanks.
-    """
-    if isinstance(value, str):
-        text = look.data(value)
-        return f"'{text}" if text.startswith(_FORMULA) else text
-    if isinstance(value, tuple):
-        return " ".join(str(csv_cell(one, look)) for one in value)
-    number = rounded(value, None if in_full else look.digits)
-    return number if value is None or not look.comma else repr(number).replace(".", ",")
-
-
-Cells = dict[str, Iterable[object]]
-"""The cells of columns by their heads."""
-
-
-def csv_text(report: Report, look: Look) -> Iterator[str]:
-    """Yield head and rows as CSV.
-
-    These are the tables over the crank angle; if there are none, the tables of places; if there are none either, the
-    key values. Several parts follow one another, with their names in a first column.
-    """
-    parts = report.all_parts
-    places = [(part, [one for one in part.place_tables if one.id != _PISTONS]) for part in parts]
-    if any(part.columns for part in parts):
-        blocks = [(part, [_columns(part.columns, look)]) for part in parts if part.columns]
-    elif any(tables for _, tables in places):
-        blocks = [(part, [_of_places(one, look) for one in tables]) for part, tables in places if tables]
-    else:
-        blocks = [(part, [_of_key_values(part, look)]) for part in parts]
-    named = len(blocks) + sum(bool(part.nowhere) for part in parts) > 1 or report.group in ("ratios", "scenes")
-    names = {head for part in parts for one in part.place_tables for head in ("table", *one.heads)}
-    every = dict.fromkeys(head for _, tables in blocks for cells in tables for head in cells)
-    heads = sorted(every, key=lambda head: head not in names)  # otherwise in order of their first occurrence
-    line = csv_line(look)
-    yield line([_FIRST.get(report.group, "cylinder"), *heads] if named else heads)
-    for part, tables in blocks:
-        name = part.name if isinstance(part.name, str) else whole_if_integral(part.name)
-        beside = [csv_cell(name, look, True)] if named else []
-        for cells in tables:
-            rows = zip(*(cells.get(head, repeat("")) for head in heads))
-            yield from (line((*beside, *row)) for row in rows)
-
-
-def _columns(columns: Iterable[Column], look: Look) -> Cells:
-    """Return the cells of columns by id and unit: `x_m`, `b_m/s^2`, `M_Nm`, or the id alone for a ratio."""
-    found: Cells = {}
-    for one in columns:
-        unit = one.unit.replace(" abs", "_abs").replace(" ", "")
-        found[f"{one.id}_{unit}" if unit else one.id] = _cells(one, look)
-    return found
-
-
-def _cells(column: Column, look: Look) -> Iterator[object]:
-    """Yield the values of a column; crank angles have all digits, whole ones no decimal point."""
-    for value in column.values:
-        yield csv_cell(whole_if_integral(value), look, True) if column.id == "phi" else csv_cell(value, look)
-
-
-def _of_places(table: PlaceTable, look: Look) -> Cells:
-    names = ([csv_cell(name, look) for name in column] for column in zip(*table.names))
-    return {
-        "table": repeat(table.id, len(table.names)),
-        **dict(zip(table.heads, names)),
-        **_columns(table.columns, look),
-    }
-
-
-def _of_key_values(part: Part, look: Look) -> Cells:
-    """Return the cells of key values: a row for each, and for each value of a list."""
-    rows = []
-    for one in part.key_values:
-        at = csv_cell(one.at_deg, look, True)
-        values = one.value if isinstance(one.value, tuple) else (one.value,)
-        rows += [(one.id, one.unit, csv_cell(value, look), at) for value in values]
-    return {head: [row[k] for row in rows] for k, head in enumerate(("key_value", "unit", "value", "at_deg"))}
-
-
-# JSON
 
 
 def json_text(report: Report, look: Look) -> Iterator[str]:
@@ -132,7 +28,7 @@ def json_text(report: Report, look: Look) -> Iterator[str]:
         raise UsageError("--decimal comma: JSON has the decimal point only; use it with table, csv or markdown")
     content: Content = {"kurbel": __version__, "format": FORMAT, "command": report.command}
     if report.machine is not None:
-        content |= {"machine": report.machine, **_made_from(report.provenance)}
+        content |= {"machine": report.machine, **_made_from(report.provenance and report.provenance())}
     if report.head:
         content["head"] = list(report.head)
     ratios = report.group == "ratios"
@@ -158,7 +54,13 @@ def _made_from(given: Provenance | None) -> dict[str, object]:
     if given is None:
         return {}
     versions = {"kurbel": __version__, **given.versions}
-    return {"inputs": [one._asdict() for one in given.inputs], "overrides": list(given.overrides), "versions": versions}
+    inputs = [{"file": one.file, "sha256": sha256_of(one)} for one in given.inputs]
+    return {"inputs": inputs, "overrides": list(given.overrides), "versions": versions}
+
+
+def sha256_of(one: InputFile) -> str | None:
+    """Return the SHA-256 of a file that was read, None if it is gone."""
+    return None if one.content is None else sha256(one.content).hexdigest()
 
 
 def _named(part: Part, ratio: bool, look: Look) -> Content:
@@ -179,37 +81,44 @@ def _results(part: Part, look: Look) -> Content:
     def key_value(one: Column | KeyValue, value: object, **more: object) -> dict[str, object]:
         return {"id": one.id, "symbol": one.symbol, "unit": one.unit, "value": value, **more}
 
-    found: Content = {"columns": list(part.columns), "place_tables": [], "key_values": [], "pistons": []}
+    places, key_values, pistons = list[Content](), list[Content](), list[Content]()
     for table in part.place_tables:
-        if table.id == _PISTONS:
+        if table.id == PISTONS:
             for names, *values in zip(table.names, *(one.values for one in table.columns)):
                 own = [key_value(one, number(value)) for one, value in zip(table.columns, values)]
-                found["pistons"].append({"name": names[0], "key_values": own})
+                pistons.append({"name": names[0], "key_values": own})
         else:
             rows = {"rows": [dict(zip(table.heads, names)) for names in table.names]} if table.heads else {}
-            found["place_tables"].append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
+            places.append({"id": table.id, "title": table.title, **rows, "columns": list(table.columns)})
     for one in part.key_values:
         at = {} if one.at_deg is None else {"at_deg": number(one.at_deg)}
         value = list(map(number, one.value)) if isinstance(one.value, tuple) else number(one.value)
-        found["key_values"].append(key_value(one, value, **at))
-    found |= {"left_out": [one._asdict() for one in part.left_out], "warnings": list(part.warnings)}
-    return {key: value for key, value in found.items() if value or key not in ("place_tables", "pistons")}
+        key_values.append(key_value(one, value, **at))
+    return {
+        "columns": list(part.columns),
+        **({"place_tables": places} if places else {}),
+        "key_values": key_values,
+        **({"pistons": pistons} if pistons else {}),
+        "left_out": [one._asdict() for one in part.left_out],
+        "warnings": list(part.warnings),
+    }
 
 
-def _pieces(node: Any, line_end: str, look: Look) -> Iterator[str]:
+def _pieces(node: object, line_end: str, look: Look) -> Iterator[str]:
     """Yield a node in pieces: on one line, or with a line for each entry if one of them is an object."""
     if isinstance(node, Column):
         phi = node.id == "phi"  # crank angles have all digits
         values = [whole_if_integral(one) if phi else rounded(one, look.digits) for one in node.values]
         marked = {"marked": node.marked} if node.marked else {}
         node = {"id": node.id, "symbol": node.symbol, "unit": node.unit, "values": values, **marked}
-    elif _holds_object(node):
-        deeper, is_object = line_end + " ", isinstance(node, dict)
-        for index, (key, child) in enumerate(node.items() if is_object else (("", one) for one in node)):
-            yield ("," if index else "{" if is_object else "[") + deeper
-            yield f"{json.dumps(key)}: " if is_object else ""
-            yield from _pieces(child, deeper, look)
-        yield "}" if is_object else "]"
+    elif isinstance(node, (dict, list)) and _holds_object(node):
+        start, end = "{}" if isinstance(node, dict) else "[]"
+        heads = (f"{json.dumps(key)}: " for key in node) if isinstance(node, dict) else repeat("")
+        for head, child in zip(heads, node.values() if isinstance(node, dict) else node):
+            yield f"{start}{line_end} {head}"
+            yield from _pieces(child, line_end + " ", look)
+            start = ","
+        yield end
         return
     # characters that turn the writing are escaped
     yield json.dumps(node, ensure_ascii=not look.has("φ"), allow_nan=False).translate(_ESCAPED)
@@ -220,10 +129,15 @@ def _holds_object(node: object) -> bool:
     return any(isinstance(child, (dict, Column)) or _holds_object(child) for child in children)
 
 
-def answer_schema() -> Any:
+def answer_schema() -> object:
     """Return the JSON Schema (draft-07) of the answers of all commands but the lines of `kurbel sweep`."""
     with open(os.path.join(os.path.dirname(__file__), "answers.schema.json"), encoding="utf-8") as file:
         return json.load(file)
+
+
+def indented(schema: object) -> str:
+    """Return a schema as text, with escapes instead of Greek: valid in whatever encoding a shell redirects to."""
+    return json.dumps(schema, indent=2, allow_nan=False) + "\n"
 
 
 # JUnit
