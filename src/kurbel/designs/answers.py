@@ -36,14 +36,8 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST, _MOST = 3, 500
+_FEWEST, _MOST = 3, 250
 """Fewest machines of a batch, fewer are computed as quickly one by one; and most: more would only need more memory."""
-_KEPT = 31 << 20
-"""Bytes: as large a block, once freed, makes the C library of Linux keep twice as much of what is freed.
-
-Otherwise it returns the arrays of every batch to the system, and fetches them again page by page for the next one,
-which took as long as half of the arithmetic.
-"""
 _LARGE, _MOST_LARGE = {"stress", "bearings"}, 100
 """Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
@@ -157,7 +151,6 @@ def answered(binder: Binder, columns: Sequence[KeyColumn], requested: Sequence[A
 def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[int, Values]:
     """Return the key values of each of many machines, by its row."""
     found: dict[int, Values] = {}
-    np.empty(_KEPT, np.uint8)
     most = _MOST_LARGE if any(one.command in _LARGE for one in requested) else _MOST
     for batch in batches:
         if not is_slow(batch.machine, requested):
