@@ -311,17 +311,18 @@ TURNING = (
 """How a member turns, by derivatives: end of the id, mark on the symbol, kind, and name."""
 
 
-def _slides(results: Any) -> bool:
-    """Return whether x gives the position of what slides, in forces."""
-    return results.command == "forces" and bool(results.mechanism.slides)
-
-
 def _swing(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     searched, called = (("motion",), f"{name.lower()} of the swing") if order else ((), "")
     text = f"{name} of the swinging member"
     quantity = Quantity(f"theta{end}", f"θ{mark}", kind, text, "", _BOTH, searched, called, after="b")
-    return Offer(quantity, lambda one, angle: one.swing_at(angle)[order], order, unless=_slides)
+    return Offer(
+        quantity,
+        lambda one, angle: one.swing_at(angle)[order],
+        order,
+        # in forces x gives the position of what slides
+        unless=lambda results: results.command == "forces" and bool(results.mechanism.slides),
+    )
 
 
 SWING_OFFERS = (_swing(0), _swing(1), _swing(2))

@@ -142,7 +142,7 @@ class Drive:
         other.gas, other.driving, other.driven, other.pumping = self.gas, self.driving, self.driven, self.pumping
         return other
 
-    @cached_property
+    @property
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
         count = self.count or 1
@@ -195,12 +195,6 @@ class Drive:
     def pumping(self) -> tuple[Truth, ...]:
         """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
-
-    @property
-    def tandem(self) -> tuple[Truth, ...]:
-        """Of the pistons that have an indicator, whether each is a tandem one on the rod itself, without a lever."""
-        own = self.cylinder.pistons[0].indicator is not None if self.gas else False
-        return tuple(False if own and not n else gas.piston.lever_ratio == 1 for n, gas in enumerate(self.gas))
 
     @property
     def drives(self) -> Truth:

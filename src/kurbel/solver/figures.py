@@ -255,14 +255,15 @@ class Results(Shown):
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given. Raises
+        UsageError for results that have key values alone.
         """
         angles = crank_angles(degrees)
         return self._columns(angles, angles if within is None else within)
 
     def _columns(self, phi: Array, within: Array) -> AtAngles:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
-        raise NotImplementedError
+        raise UsageError("these results have key values, and no columns over the crank angle")
 
     @property
     def _of(self) -> str:

@@ -371,7 +371,8 @@ class CylinderForces(SampledCylinder, Results):
     def _extremes(self) -> dict[str, Extremes]:
         """Extremes of the columns that are declared to have them, by id."""
         declared = column_rows(State, self.mechanism.OFFERS)
-        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
+        searched = {id: row for id, row in declared.items() if "forces" in row.quantity.extremes}
+        return self.extremes_over({id: row.of(self.samples) for id, row in searched.items()})
 
     def refuse_locking(self) -> None:
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
@@ -415,8 +416,9 @@ class CylinderForces(SampledCylinder, Results):
         if drive.guide_area is not None and (side := self.extremes_of("N")):
             most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))
             found["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
-        if drive.guide_area is not None and drive.has_force and (wear := self.extremes_over(("wear",))):
-            found["wear_max"] = wear["wear"].largest
+        if drive.guide_area is not None and drive.has_force:
+            wear = self.extremes_over({"wear": self.samples.wear})
+            found["wear_max"] = wear["wear"].largest if wear else None
         lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
         if drive.guide_area is not None and lost is not None:
             if drive.rubs and some(lost != 0):
@@ -447,7 +449,7 @@ class CylinderForces(SampledCylinder, Results):
             return found
 
         def over_cycle(values: Number) -> Number:
-            return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
+            return self.result(self.pieces.integral(self.pieces.filled(values)))
 
         if friction.crosshead is not None and drive.has_force:
             drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None
