@@ -131,6 +131,13 @@ def test_angles_that_are_none_are_refused_by_the_root_class(degrees: object) -> 
                 ask(degrees)
 
 
+def test_results_without_columns_say_so() -> None:
+    case = case_of("compressor-two-stage")
+    for results in (case.delivery.stages[0], case.cylinders[0].rod_loads):
+        with pytest.raises(kurbel.KurbelError, match="no columns over the crank angle"):
+            results.at([0.0])
+
+
 def test_notebooks_show_tables_that_are_escaped() -> None:
     text = "{name: '<b>A&B</b>', " + (PLAIN % PRESSURE)[1:]
     case = kurbel.solve(kurbel.loads(text))

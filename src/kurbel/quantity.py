@@ -121,7 +121,7 @@ class Quantity(NamedTuple):
         return self._replace(text=text)
 
     def printed_by(self, command: str, heading: str = "") -> Quantity:
-        """Return the key value of a command, below a heading unless it has one; of others, too, where it says so."""
+        """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
         words = (() if self.commands == ITS_OWN else self.commands) + ((command,) if command else ())
         return self._replace(commands=tuple(dict.fromkeys(words)), heading=self.heading or heading)
 
@@ -299,7 +299,7 @@ def value(
     unless: Condition | None = None,
     **words: Any,
 ) -> Computed[Any]:
-    """Return a key value or column whose id is the name it is given in its class, and `text` its sentence.
+    """Return a key value or column: its id is the name of the attribute, `text` the sentence that users read.
 
     of: takes the object and returns the value in SI; without it the value is in the mapping `answers` of the object,
     by id, or there is none. words: those of `Quantity`.

@@ -61,6 +61,7 @@ OTHER_COMMANDS = [
     ("four-cylinder-generator", "speed", SPEEDS, "dE delta J omega_max alpha_max M_max E_max work_shaft"),
     ("four-in-line", "speed", SPEEDS, "F_free_max F_free_best M_free_max M_roll_max"),
     ("locomotive-two-cylinders", "speed", SPEEDS, "hammer_blow swaying_couple traction_variation F_free_best"),
+    ("waterworks", "speed", SPEEDS, "piston.power pump.power power"),
     ("generator-coupling", "speed", SPEEDS, "delta M_coupling_max amplification natural_order"),
     ("triplex-pump", "speed", ["50 rpm", "60 rpm", "70 rpm", "80 rpm", "90 rpm"], FLOWS),
     ("triplex-pump", "cylinders.each.bore", [f"{bore} mm" for bore in (76, 78, 80, 82, 84)], f"{FLOWS} work dE"),
@@ -69,7 +70,7 @@ OTHER_COMMANDS = [
     ("compressor-two-stage", "gas.inlet_temperature", [f"{warm} °C" for warm in (10, 15, 20, 25, 30)], GAS),
     ("scotch-yoke-pump", "friction.block", ["0", "0.03", "0.07", "0.1", "0.2"], "work_block loss_guides T_max dE"),
 ]
-"""Key values of flywheel, stress, bearings, balance and delivery; of a gas, whose numbers are arrays, too."""
+"""Key values of flywheel, stress, bearings, balance, delivery, single pistons; of a gas with arrays of numbers, too."""
 
 
 @pytest.mark.parametrize(("name", "key", "values", "columns"), OTHER_COMMANDS)

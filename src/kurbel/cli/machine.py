@@ -140,9 +140,7 @@ def report(**options: Any) -> None:
 @click.option("--list", "listed", is_flag=True, help="List the pictures of this machine; without FILE, all pictures.")
 @click.option("--output", "-o", "file_name", metavar="FILE.svg|png|pdf", help="Draw to this file.")
 @click.option("--angles", type=numbers, metavar="A,B,...", help="Mechanism and constructions at these crank angles.")
-@click.option(
-    "--poster", "size", metavar="A0|...|A5", help="The machine in section as a sheet to hang, to a pdf or svg."
-)
+@click.option("--poster", "size", metavar="A0|...|A5", help="The machine in section as a wall sheet, to a pdf or svg.")
 @cylinder_option
 @units_option
 @number_options
@@ -194,7 +192,8 @@ def accuracy(**options: Any) -> int:
     """Compare kurbel's own methods with others, quantity by quantity: error, time, and what went wrong.
 
     Without FILE for built-in scenes, with FILE for that machine (- for standard input). References have 40 digits
-    and come from other methods than kurbel's. Then what is saved by leaving out friction, masses, cards and speed.
+    and come from other methods than kurbel's. A last table shows the time that leaving out friction, then masses,
+    cards and speed, saves.
     """
     from kurbel.cli.comparing import compare
 
@@ -220,7 +219,12 @@ _what_varies = stacked(
     click.option("--seed", type=click.IntRange(0), default=0, help="Seed of the sample; 0 if not given."),
 )
 _what_is_printed = stacked(
-    key_value_option("--columns", type=words, metavar="ID,ID,...", help="Key values of any command, by id or symbol."),
+    key_value_option(
+        "--columns",
+        type=words,
+        metavar="ID,ID,...",
+        help="Key values of any command, by id or symbol; those of forces if not given.",
+    ),
     click.option("--angles", "with_angles", is_flag=True, help="Also the crank angle of every extreme."),
     key_value_option(
         "--where",
@@ -235,7 +239,7 @@ _what_is_printed = stacked(
         "--pareto",
         type=words,
         metavar="ID,ID",
-        help="Only rows that no other betters; -ID: more is better.",
+        help="Only rows that no other row betters; less is better, of -ID more.",
     ),
     click.option(
         "--summary",
@@ -259,7 +263,7 @@ _who_computes = stacked(
         "-j",
         type=click.IntRange(1),
         metavar="N",
-        help="Processes; if not given, of many rows one for each of up to 4 cores.",
+        help="Processes; if not given, one for each of up to 4 cores where there are many rows.",
     ),
     click.option(
         "--dask", metavar="ADDRESS", help="Scheduler of a Dask cluster that computes, such as tcp://node:8786."
@@ -278,8 +282,8 @@ _who_computes = stacked(
 def sweep(**options: Any) -> None:
     """Compute key values for many designs of the machine in FILE: one row each, inputs and results.
 
-    Any dotted key of the file that holds a value may vary. A design that fails stays, with its reason; where the file
-    gives 'limits', each row shows whether it keeps them, and the first one that it breaks.
+    Any dotted key of the file that holds a value may vary. A design that fails keeps its row, with the reason; where
+    the file gives 'limits', each row shows whether it keeps them, and the first one that it breaks.
     """
     from kurbel.cli.sweeping import run_sweep
 
@@ -308,11 +312,11 @@ def sweep(**options: Any) -> None:
 @output_option
 @number_options
 def find(**options: Any) -> None:
-    """Find the values of a key of FILE for which a key value has the wanted value, all in the range.
+    """Find the values of a key of FILE for which a key value has the wanted value: all solutions in its range.
 
-    Any key value of any command, any dotted key of a number. Two --vary take two equations; --least and --greatest take
-    none. Places where the key value jumps over the wanted one, and parts of the range in which designs fail, are
-    reported. With --write, FILE is printed with what was found; comments stay.
+    It takes any key value of any command, and any dotted key of a number. Two --vary need two equations; --least and
+    --greatest need none. Places where the key value jumps over the wanted one, and parts of the range in which designs
+    fail, are reported. With --write, FILE is printed with what was found; comments stay.
     """
     from kurbel.cli.sweeping import run_find
 

@@ -247,7 +247,7 @@ part_options = stacked(
         "everything",
         is_flag=True,
         expose_value=False,
-        help="On a low terminal, print everything instead of a first selection.",
+        help="Print everything, also on a terminal with too few lines for it.",
     ),
 )
 units_option = click.option(

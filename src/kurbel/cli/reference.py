@@ -53,7 +53,7 @@ def _ratio(text: str) -> float:
     help="book: acceleration of first order, all else exact. first-order: b, c and x, the others exact.",
 )
 @click.option(
-    "--compare", is_flag=True, help="Set the figures that the book prints below the computed ones; mark misprints."
+    "--compare", is_flag=True, help="Print the figures of the book below the computed ones, misprints marked."
 )
 @angle_options
 @units_option

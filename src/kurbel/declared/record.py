@@ -1,5 +1,7 @@
 """How a record of the machine file declares its entries: one `field` or `alternative` each, and rules.
 
+The class `Record` itself is in `keys`, since the forms of entries need it.
+
 A record has `rules`, conditions on its values, and `rules_of_keys`, conditions on the keys of the file, checked before
 the record is made; a sweep evaluates both with arrays. Which keys contradict or require one another follows from
 `instead` and `needs` (`contradictions`).

@@ -37,9 +37,9 @@ _IN_BATCHES = ("slider-crank", "yoke-frame", "scotch-yoke")
 """Mechanisms whose formulas accept arrays as parameters."""
 _MOST_POINTS = 40
 """Most points of a card in a batch."""
-_FEWEST, _MOST = 3, 500
+_FEWEST, _MOST = 3, 250
 """Fewest machines of a batch, fewer are computed as quickly one by one; and most: more would only need more memory."""
-_LARGE, _MOST_LARGE = {"stress", "bearings"}, 200
+_LARGE, _MOST_LARGE = {"stress", "bearings"}, 100
 """Commands with many quantities at the nodes, and most machines of a batch for them: 1000 would need a gigabyte."""
 
 Value = Union[float, tuple[float, ...], None]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.declared.unit_systems import SI
-from kurbel.designs.binding import Binder, written_texts
+from kurbel.designs.binding import Binder
 from kurbel.designs.find import Solutions
 from kurbel.designs.find import find as find_in
 from kurbel.designs.plan import Input
@@ -15,6 +15,7 @@ from kurbel.designs.sweep import Spec, Sweep, rows_of
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.machine.origin import Origin
+from kurbel.machine_file.overrides import texts_at
 from kurbel.machine_file.reader import machine_of
 
 
@@ -40,7 +41,7 @@ def sweep(
     Raises UsageError for inputs of different lengths, keys without a value, and columns that the machine has not.
     """
     origin = _read(machine)
-    start = tuple(written_texts(origin, tuple(inputs)))
+    start = tuple(texts_at(origin, tuple(inputs)))
     names = (columns,) if isinstance(columns, str) else tuple(columns)
     axis = tuple(_inputs(Binder(origin, tuple(inputs), start), inputs))
     found = Sweep(Spec(origin, (axis,), columns=names, with_angles=with_angles, start=start))
@@ -84,7 +85,7 @@ def find(
     for key, (low, high) in vary.items():
         unit = ""
         if not (isinstance(low, str) and isinstance(high, str)):
-            (kind,) = Binder(origin, [key], written_texts(origin, [key])).kinds
+            (kind,) = Binder(origin, [key], texts_at(origin, [key])).kinds
             unit = SI.get(kind, "")
         texts.append(f"{key}={low}:{high} {unit}".rstrip())
     equations, conditions = ([one] if isinstance(one, str) and one else [*one] for one in (wanted, where))

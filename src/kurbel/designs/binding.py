@@ -17,7 +17,7 @@ from kurbel.arrays import Array, Indices, Indivisible
 from kurbel.declared.forms.structures import Given, Maker
 from kurbel.declared.forms.values import NumberForm
 from kurbel.declared.numerals import NUMBER
-from kurbel.declared.reading import Reading, StopReading, Tree, shown
+from kurbel.declared.reading import Reading, StopReading
 from kurbel.declared.unit_systems import SI
 from kurbel.declared.units import parse_quantity, unit_factor, zero_of
 from kurbel.designs.plan import Input
@@ -25,18 +25,17 @@ from kurbel.errors import KurbelError, MachineFileError, Path, UnitError, UsageE
 from kurbel.machine import Machine
 from kurbel.machine.batch import changed
 from kurbel.machine.origin import Origin
-from kurbel.machine_file.overrides import dotted, leaves, path_of, tree_of, value_at
+from kurbel.machine_file.overrides import path_of, value_at
 from kurbel.machine_file.reader import read_values, reading_of
-from kurbel.near_words import did_you_mean
 
 INFINITE = "infinite"
 """The word for the length of an infinite rod."""
 
 
 class KeyColumn(NamedTuple):
-    """The values of a key in rows, by their places (rows,) among those of the input.
+    """The values of a key in rows: row k has value number `places[k]` of the input.
 
-    numbers: the values of the input in the base of their kind, nan for a word.
+    numbers: all values of the input, in the base of their kind, nan for a word.
     """
 
     input: Input
@@ -49,7 +48,10 @@ class KeyColumn(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Machines of the same structure as one record, with arrays (machines,) of numbers that differ; rows: of each."""
+    """Machines of one structure as one record, in which the numbers that differ are arrays (machines,).
+
+    rows: the row of each machine.
+    """
 
     machine: Machine
     rows: Sequence[int]
@@ -73,9 +75,9 @@ class Binder:
         self.kinds: list[str] = [""] * cases
         """The kind of number of each key, '' for words."""
         self._numeric = [False] * cases
-        every = list(_every(root))
+        mappings = list(_mappings(root))
         for key in keys[cases:]:
-            owner, name, inner = _owner(path_of(key), every)
+            owner, name, inner = _owner(path_of(key), mappings)
             form = owner.form.keys[name].form
             text = value_at(owner.mapping.get(name), inner)
             bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
@@ -124,7 +126,7 @@ class Binder:
         return machine
 
     def _structure(self, texts: Iterable[str]) -> list[str]:
-        """Return the texts of a row that are words, and those of the first machine in place of numbers."""
+        """Return the texts of a row with the numbers of the first machine: those of rows of one structure agree."""
         return [one if number else text for text, one, number in zip(texts, self._start, self._numeric)]
 
     def _together(self, columns: Sequence[KeyColumn], places: Indices) -> tuple[list[Batch], Indices]:
@@ -135,9 +137,9 @@ class Binder:
             words = self._structure(column.text(places[0]) for column in columns)
             if words != self._words:
                 self._words, self._root = words, read_values(self._with(words), reading_of(self._origin))
-            every = list(_every(self._root))
+            mappings = list(_mappings(self._root))
             for column in (column for column, is_number in zip(columns, self._numeric) if is_number):
-                owner, name, _ = _owner(path_of(column.input.key), every)
+                owner, name, _ = _owner(path_of(column.input.key), mappings)
                 number = owner.form.keys[name].form.number
                 if number is None:
                     return [], places
@@ -145,7 +147,7 @@ class Binder:
                 within &= number.within(numbers)
                 # a cylinder that is `like` the one of a key gets its numbers, too
                 text = owner.mapping.get(name)
-                alike = (one for one in every if _reads(one, name) and one.mapping.get(name) is text)
+                alike = (one for one in mappings if _reads(one, name) and one.mapping.get(name) is text)
                 slots += [(one, name, number, numbers) for one in alike]
             for one, name, number, numbers in slots:
                 one.values[name] = number.becomes(numbers[within], "") if number.becomes else numbers[within]
@@ -154,11 +156,11 @@ class Binder:
                 machine = maker.made(self._root)
             if maker.reading.faults or not within.any():
                 return [], places
-        # a formula works for a single machine only
+        # a formula that works for a single machine only: these rows are read one by one
         except (KurbelError, StopReading, TypeError, ValueError, AttributeError, ArithmeticError, IndexError):
             return [], places
         read, batches = places[within], []
-        for fit in _structures(machine, np.flatnonzero(~maker.broken)):
+        for fit in _with_same_branches(machine, np.flatnonzero(~maker.broken)):
             # a value that all machines have in common becomes a number
             batch = changed(machine, lambda numbers, fit=fit: _column(numbers[fit]))  # type: ignore[misc]
             batches.append(Batch(batch, read[fit].tolist()))
@@ -189,7 +191,7 @@ def _alike(columns: Sequence[Array | Indices], places: Indices) -> list[Indices]
     return groups
 
 
-def _structures(machine: Machine, fit: Indices) -> list[Indices]:
+def _with_same_branches(machine: Machine, fit: Indices) -> list[Indices]:
     """Return places, among those that fit, of machines that take the same branches in the solver.
 
     The same numbers are 0 or infinite in them, and the same throws share their crank angle, their stroke line and their
@@ -220,15 +222,15 @@ def _column(values: Array) -> Array | list[object]:
 # the place of a key
 
 
-def _every(value: object) -> Iterator[Given]:
+def _mappings(value: object) -> Iterator[Given]:
     """Yield every mapping as read, inner ones first."""
     if isinstance(value, Given):
         for one in value.values.values():
-            yield from _every(one)
+            yield from _mappings(one)
         yield value
     elif isinstance(value, tuple):
         for one in value:
-            yield from _every(one)
+            yield from _mappings(one)
 
 
 def _reads(given: Given, name: object) -> bool:
@@ -236,42 +238,17 @@ def _reads(given: Given, name: object) -> bool:
     return name in given.values and name in given.form.keys
 
 
-def _owner(path: Path, every: Sequence[Given]) -> tuple[Given, str, Path]:
-    """Return what reads a key itself, the innermost one, the name of its own key on the way, and what follows it."""
+def _owner(path: Path, mappings: Sequence[Given]) -> tuple[Given, str, Path]:
+    """Return the innermost mapping whose record reads a key, its own key on the path, and the rest of the path."""
     owner = None
-    for one in every:
+    for one in mappings:
         depth = len(one.path)
         if one.path == path[:depth] and depth < len(path) and _reads(one, path[depth]):
             owner = one if owner is None or depth > len(owner.path) else owner
     if owner is None:
         raise UsageError(f"--vary {path_text(path)}: this key has no value that could be varied")
     if len(owner.path) < len(path) - 1:  # a key next to the deciding one belongs to its mapping
-        for one in every:
+        for one in mappings:
             if len(one.path) == len(path) and one.path[:-1] == path[:-1] and _reads(one, path[-1]):
                 return one, str(path[-1]), ()
     return owner, str(path[len(owner.path)]), path[len(owner.path) + 1 :]
-
-
-def written(tree: Tree, key: str) -> str:
-    """Return the text of a dotted key; raises UsageError where it has no value, with the key probably meant."""
-    text = value_at(tree, path_of(key))
-    if isinstance(text, str):
-        return text
-    paths = [path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"]
-    meant = did_you_mean(key, tuple(map(dotted, paths)))
-    for path in reversed(paths):
-        names = ".".join(step for step in path if isinstance(step, str))
-        if f".{names}".endswith(f".{key}"):
-            meant = f"; did you mean '{dotted(path)}'?"
-    raise UsageError(f"the file has no value for this key{meant}")
-
-
-def written_texts(origin: Origin, keys: Sequence[str]) -> list[str]:
-    """Return the texts that a file has for these dotted keys; raises UsageError for a key without a value."""
-    tree, texts = tree_of(origin), []
-    for key in keys:
-        try:
-            texts.append(written(tree, key))
-        except UsageError as error:
-            raise UsageError(f"{shown(key)}: {error}") from None
-    return texts

@@ -17,12 +17,12 @@ from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import convert, units_of
 from kurbel.declared.units import parse_quantity
 from kurbel.designs.answers import Answer, answered, is_slow
-from kurbel.designs.binding import Binder, written
+from kurbel.designs.binding import Binder
 from kurbel.designs.plan import latin_hypercube
 from kurbel.errors import Fault, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine_file.events import located
-from kurbel.machine_file.overrides import path_of, tree_of
+from kurbel.machine_file.overrides import path_of, text_at, tree_of
 from kurbel.report.commands import subjects_of
 from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
@@ -89,7 +89,7 @@ def given_uncertainty(machine: Machine, more: Spreads = ()) -> Inputs | None:
     paths = [path_of(key) for key, _ in spreads]
     for key, _ in spreads:
         try:
-            texts[key] = written(tree, key)
+            texts[key] = text_at(tree, key)
         except UsageError as error:
             wrong[key] = str(error)
         if paths.count(path_of(key)) > 1:

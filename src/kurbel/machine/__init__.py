@@ -122,7 +122,7 @@ class Machine(Record):
     )
     _brake_torque = alternative(
         "torque",
-        "The same as a torque",
+        "Brake torque, instead of `brake_power`",
         "M_e",
         least=0,
         instead="brake_power",

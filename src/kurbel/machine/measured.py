@@ -118,7 +118,7 @@ class Measured(Columns):
     )
     compression_ratio = alternative(
         "ratio",
-        "The same as a ratio: largest over smallest volume",
+        "Largest over smallest volume, instead of `clearance`",
         "ε",
         above=1,
         instead="clearance",

@@ -318,7 +318,7 @@ class Piston(Record):
         Indicator, "Pressures on the two sides", absent="no gas force", also=("pressure", "card", "trace")
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
-    gas: Gas | None = field(Gas, "The gas that it draws in", absent="that of the machine")
+    gas: Gas | None = field(Gas, "Gas that the piston draws in", absent="that of the machine")
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:

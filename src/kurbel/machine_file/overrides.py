@@ -208,6 +208,31 @@ def leaves(node: Node, path: Path = ()) -> Iterator[tuple[Path, Node]]:
         yield path, node
 
 
+def text_at(tree: Tree, key: str) -> str:
+    """Return the text of a dotted key; raises UsageError where it has no value, with the key probably meant."""
+    text = value_at(tree, path_of(key))
+    if isinstance(text, str):
+        return text
+    paths = [path for path, value in leaves(tree) if isinstance(value, str) and path[0] != "uncertainty"]
+    meant = did_you_mean(key, tuple(map(dotted, paths)))
+    for path in reversed(paths):
+        names = ".".join(step for step in path if isinstance(step, str))
+        if f".{names}".endswith(f".{key}"):
+            meant = f"; did you mean '{dotted(path)}'?"
+    raise UsageError(f"the file has no value for this key{meant}")
+
+
+def texts_at(origin: Origin, keys: Sequence[str]) -> list[str]:
+    """Return the texts that a file has for these dotted keys; raises UsageError for a key without a value."""
+    tree, texts = tree_of(origin), []
+    for key in keys:
+        try:
+            texts.append(text_at(tree, key))
+        except UsageError as error:
+            raise UsageError(f"{shown(key)}: {error}") from None
+    return texts
+
+
 def _short(value: Node) -> str:
     """Return a value in one line; a long list is shortened to its ends and its length."""
     if not isinstance(value, list):

@@ -311,17 +311,18 @@ TURNING = (
 """How a member turns, by derivatives: end of the id, mark on the symbol, kind, and name."""
 
 
-def _slides(results: Any) -> bool:
-    """Return whether x gives the position of what slides, in forces."""
-    return results.command == "forces" and bool(results.mechanism.slides)
-
-
 def _swing(order: int) -> Offer:
     end, mark, kind, name = TURNING[order]
     searched, called = (("motion",), f"{name.lower()} of the swing") if order else ((), "")
     text = f"{name} of the swinging member"
     quantity = Quantity(f"theta{end}", f"θ{mark}", kind, text, "", _BOTH, searched, called, after="b")
-    return Offer(quantity, lambda one, angle: one.swing_at(angle)[order], order, unless=_slides)
+    return Offer(
+        quantity,
+        lambda one, angle: one.swing_at(angle)[order],
+        order,
+        # in forces x gives the position of what slides
+        unless=lambda results: results.command == "forces" and bool(results.mechanism.slides),
+    )
 
 
 SWING_OFFERS = (_swing(0), _swing(1), _swing(2))
@@ -371,7 +372,7 @@ def pin_diameter() -> Entry:
 def pin_length() -> Entry:
     """Return the field of the length of the crank pin."""
     text = "Length of the crank pin in its block; needs `pin_diameter`"
-    return field("length", text, "l_z", above=0, absent="same", needs="pin_diameter")
+    return field("length", text, "l_z", above=0, absent="no pin pressure", needs="pin_diameter")
 
 
 NO_PIN = ("pin pressure", "no pin_diameter and pin_length given")

@@ -9,6 +9,7 @@ yet are halved.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple, Protocol
 
@@ -145,7 +146,7 @@ def periodic(equation: Equation, pieces: Pieces) -> Periodic:
     Newton's method starts from y = 0; where that leads nowhere, from the solution with an endless height, which is
     followed down to the given one. What a linear equation leaves open is as small as can be.
     """
-    pieces = pieces.with_nodes(max(_FEWEST, len(pieces.rule.nodes)))
+    pieces = replace(pieces, rule=rule(max(_FEWEST, len(pieces.rule.nodes))))
     still = _Solution(pieces, np.zeros((equation.unknowns, len(pieces.rule.nodes) + 1, len(pieces.half))))
     with np.errstate(all="ignore"):  # a step too far may overflow; it is taken back
         found, good = _settled(equation, still, np.zeros(pieces.count))

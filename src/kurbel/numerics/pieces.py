@@ -46,6 +46,8 @@ _NEAR = 0.05
 """Of the range of samples on a piece: if they come closer to zero, a summit between them may cross it."""
 _INSIDE = 1 - 1e-10
 """Of half a piece: a summit beyond this is the end of the piece."""
+_SETTLED = 1e-10
+"""Of half a piece: after so short a step to a root the next would be its square."""
 _NO_WIDTH = 1e-11
 """Degrees: a narrower piece is dropped."""
 
@@ -107,12 +109,16 @@ class Pieces:
 
     @classmethod
     def between(cls, breaks: Angles, count: int, cycle: float, nodes: int = 16) -> Pieces:
-        """Return the pieces between these angles, taken modulo the cycle, and all multiples of 45°."""
+        """Return the pieces between these angles, taken modulo the cycle, and all right angles; no wider than 45°."""
         eighths = np.arange(0.0, cycle + 1, 45.0)
         machine = np.append(np.repeat(np.arange(count), len(eighths)), breaks.machine)
         degrees = np.append(np.tile(eighths, count), np.mod(breaks.degrees, cycle))
+        between = np.append(np.tile(eighths % 90 == 45, count), np.zeros(len(breaks.degrees), dtype=bool))
         order = np.lexsort((degrees, machine))
-        machine, degrees = machine[order], degrees[order]
+        machine, degrees, spare = machine[order], degrees[order], between[order]
+        # between the right angles only where a piece would be too wide
+        spare[1:-1] &= degrees[2:] - degrees[:-2] <= 45.0
+        machine, degrees = machine[~spare], degrees[~spare]
         width = np.append(np.diff(degrees), 0.0)
         kept = np.flatnonzero(width > _NO_WIDTH)
         right_angle = 90.0 * np.rint((degrees[kept] + width[kept] / 2) / 90.0)
@@ -134,10 +140,6 @@ class Pieces:
             half=self.half[rows],
             machine=self.machine[rows],
         )
-
-    def with_nodes(self, nodes: int) -> Pieces:
-        """Return these pieces with so many nodes each."""
-        return replace(self, rule=rule(nodes))
 
     def halved(self, rows: Indices | Flags) -> Pieces:
         """Return the halves of these pieces, in order."""
@@ -170,7 +172,7 @@ class Pieces:
         """Their middles in degrees: they decide on which side of a jump a piece is."""
         return self.right_angle + (self.offset + self.half)
 
-    @cached_property
+    @property
     def offsets(self) -> Array:
         """How far the nodes are from the right angles in degrees, (nodes, pieces)."""
         return self.offset + self.half * (1 + self.rule.nodes[:, None])
@@ -199,9 +201,18 @@ class Pieces:
         following = np.where(self.after == self.first[self.machine], self.cycle, following)
         return np.where(np.abs(following - own) < _SAME, following, own)
 
+    @property
+    def ends(self) -> Array:
+        """The angles in degrees at which those of the only machine begin, and the end of the cycle."""
+        return np.append(self.low, self.cycle)
+
     def of(self, numbers: Any) -> Any:
         """Return numbers (machines,) for each piece, (pieces,); a single number is returned as it is."""
         return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
+
+    def filled(self, values: Any) -> Array:
+        """Return a value, or one of every piece (pieces,), at every node, (nodes, pieces)."""
+        return np.broadcast_to(values, self.degrees.shape)
 
     def holding(self, machine: Indices, degrees: Array) -> Indices:
         """Return the pieces (n,) that hold angles (n,) in degrees of these machines, or begin there."""
@@ -255,10 +266,10 @@ class Pieces:
         found = np.empty((*values.shape[:-2], *self.degrees.shape))
         if whole.any():
             found[..., whole] = values[..., row[whole]]
-        places = (from_low + self.half * (1 + self.rule.nodes[:, None])) / width - 1
         for part in np.split(np.flatnonzero(~whole), range(_AT_ONCE, np.count_nonzero(~whole), _AT_ONCE)):
             series = np.moveaxis(source.rule.series @ values[..., row[part]], -2, 0)[..., None, :]
-            own = np.broadcast_to(np.clip(places[:, part], -1, 1), (*values.shape[:-2], len(places), len(part)))
+            places = (from_low[part] + self.half[part] * (1 + self.rule.nodes[:, None])) / width[part] - 1
+            own = np.broadcast_to(np.clip(places, -1, 1), (*values.shape[:-2], *places.shape))
             found[..., part] = series_at(series, own)
         return found
 
@@ -319,7 +330,12 @@ class Pieces:
         may = [top + over >= (one - slack)[:, self.machine] for top, one in zip(tops, best)]
         which, piece = _where(np.logical_or.reduce(may))
         samples = np.concatenate([one[:, piece[which == q]] for q, one in enumerate(values)], axis=1)
-        straight = _STRAIGHT * size[which, self.machine[piece]]
+        # by less, too, than one sample differs from the next
+        steps, owner = np.abs(np.diff(samples, axis=0)).max(axis=0), self.machine[piece]
+        may = [top[which, piece] + steps >= (one - slack)[which, owner] for top, one in zip(tops, best)]
+        near = np.flatnonzero(np.logical_or.reduce(may))
+        which, piece, samples, owner = which[near], piece[near], samples[:, near], owner[near]
+        straight = _STRAIGHT * size[which, owner]
         # where all samples are equal but for rounding, it alone turns
         bent = np.flatnonzero(over[which, piece] > straight)
         rows, places, turning = _turning_points(samples[:, bent], self.rule)
@@ -331,13 +347,9 @@ class Pieces:
         turning = np.where(beyond, turning, np.clip(turning, low, high))
         value = np.concatenate((samples[0], samples[-1], turning))
         degrees = np.concatenate((self.low[piece], self.high[piece], self._at(piece[rows], places)))
-        quantity = np.concatenate((which, which, which[rows]))
-        owner = self.machine[np.concatenate((piece, piece, piece[rows]))]
-        for sign, one in zip(signs, best):
-            np.maximum.at(one, (quantity, owner), sign * value)
-        return [
-            (one, _first_summits(quantity, owner, degrees, sign * value, one, slack)) for sign, one in zip(signs, best)
-        ]
+        cell = which * self.count + owner
+        cell = np.concatenate((cell, cell, cell[rows]))
+        return [_first_summits(cell, degrees, sign * value, one, slack) for sign, one in zip(signs, best)]
 
     def _at(self, rows: Indices, places: Array) -> Array:
         """Return the angles in degrees at places in [−1, 1] of these pieces."""
@@ -428,12 +440,19 @@ def _halved_until_smooth(
         top, first = np.zeros((len(tested), pieces.count)), np.flatnonzero(np.diff(todo.machine, prepend=-1))
         top[:, todo.machine[first]] = np.maximum.reduceat(np.maximum(high, -low), first, axis=-1)
         size = np.maximum(size, top)
+        may = np.True_
         if only_highest:
-            values, may = np.asarray(values), ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
+            may = ~(2 * high - low < (1 - _REPEATED) * size[:, todo.machine])
             some = may.any(axis=0)
-            todo, values, parts = todo.taken(some), values[..., some], parts[..., some]
-            tested = values * may[:, None, some]
-        rough = _rough(todo, tested, size, len(done))
+            todo, may, parts = todo.taken(some), may[:, some], parts[..., some]
+            values = tested = [one[:, some] for one in values]
+        # a crowd of rough pieces that halving does not thin out is noise
+        tails = may * np.array([np.abs(todo.rule.series[-2:] @ one).max(axis=0) for one in tested])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.nan_to_num(tails / size[:, todo.machine], nan=0.0, posinf=0.0).max(axis=0)
+        rough = (share > TAIL) & (todo.half > NARROWEST / 2)
+        crowd = np.bincount(todo.machine[rough], minlength=todo.count) > _CROWD
+        rough &= ((share > _NOISE) & (len(done) < _OFTEN)) | ~crowd[todo.machine]
         if not (done or rough.any()):
             return todo, values, parts
         done.append((todo, np.flatnonzero(~rough), [*values, *parts]))
@@ -447,19 +466,6 @@ def _halved_until_smooth(
     return whole, both[: len(values)], both[len(values) :]
 
 
-def _rough(pieces: Pieces, values: Samples, size: Array, halvings: int) -> Flags:
-    """Return which pieces are to be halved; size: of the quantities, (q, machines), as far as it is known.
-
-    halvings: how many times these have been. A crowd of rough pieces that halving does not thin out is noise.
-    """
-    tails = np.array([np.abs(pieces.rule.series[-2:] @ one).max(axis=0) for one in values])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.nan_to_num(tails / size[:, pieces.machine], nan=0.0, posinf=0.0).max(axis=0)
-    rough: Flags = (share > TAIL) & (pieces.half > NARROWEST / 2)
-    crowd = np.bincount(pieces.machine[rough], minlength=pieces.count) > _CROWD
-    return rough & (((share > _NOISE) & (halvings < _OFTEN)) | ~crowd[pieces.machine])
-
-
 def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pieces, Array]:
     """Return pieces that together fill the cycles as one row, in order, and samples of quantities (q, …, pieces) there.
 
@@ -470,31 +476,32 @@ def joined(parts: Sequence[tuple[Pieces, Indices, Sequence[Array]]]) -> tuple[Pi
     right_angle, offset, half, machine = (np.concatenate(column) for column in zip(*columns))
     order = np.lexsort((offset, right_angle, machine))
     whole = replace(taken[0], right_angle=right_angle, offset=offset, half=half, machine=machine).taken(order)
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    places = np.split(place, np.cumsum([len(rows) for _, rows, _ in parts])[:-1])
-    count = len(parts[0][2])
-    found = np.empty((count, *parts[0][2][0].shape[:-1], len(order)))
-    for at, (_, rows, values) in zip(places, parts):
-        for quantity, one in enumerate(values):
-            found[quantity][..., at] = one[..., rows]
+    before = np.cumsum([0, *(len(pieces.half) for pieces, _, _ in parts)])
+    source = np.concatenate([rows + passed for (_, rows, _), passed in zip(parts, before)])[order]
+    values = [part for _, _, part in parts]
+    found = np.empty((len(values[0]), *values[0][0].shape[:-1], len(order)))
+    for quantity, each in zip(found, zip(*values)):
+        np.take(np.concatenate(each, axis=-1), source, axis=-1, out=quantity, mode="clip")  # without a buffer
     return whole, found
 
 
-def _first_summits(
-    quantity: Indices, machine: Indices, degrees: Array, value: Array, best: Array, slack: Array
-) -> Array:
-    """Return the angles (q, machines) of the first summits that reach the best values but for the slack."""
-    first, level, found = (np.full(best.shape, empty) for empty in (np.inf, -np.inf, np.inf))
-    reached = value >= (best - slack)[quantity, machine]
-    quantity, machine, degrees, value = quantity[reached], machine[reached], degrees[reached], value[reached]
-    np.minimum.at(first, (quantity, machine), degrees)
-    own = degrees <= first[quantity, machine] + _SUMMIT
-    quantity, machine, degrees, value = quantity[own], machine[own], degrees[own], value[own]
-    np.maximum.at(level, (quantity, machine), value)
-    top = value >= (level - slack / 100)[quantity, machine]  # of a plateau the beginning
-    np.minimum.at(found, (quantity[top], machine[top]), degrees[top])
-    return found
+def _first_summits(cell: Indices, degrees: Array, value: Array, best: Array, slack: Array) -> tuple[Array, Array]:
+    """Return the largest values (q, machines) and the angles of the first summits that reach them but for the slack.
+
+    best: the largest samples; value: of more places (n,), each of a quantity and machine by its place in `best`.
+    """
+    largest, slack = best.ravel(), slack.ravel()
+    np.maximum.at(largest, cell, value)
+    first, level, found = (np.full(largest.shape, empty) for empty in (np.inf, -np.inf, np.inf))
+    reached = value >= (largest - slack)[cell]
+    cell, degrees, value = cell[reached], degrees[reached], value[reached]
+    np.minimum.at(first, cell, degrees)
+    own = degrees <= first[cell] + _SUMMIT
+    cell, degrees, value = cell[own], degrees[own], value[own]
+    np.maximum.at(level, cell, value)
+    top = value >= (level - slack / 100)[cell]  # of a plateau the beginning
+    np.minimum.at(found, cell[top], degrees[top])
+    return largest.reshape(best.shape), found.reshape(best.shape)
 
 
 def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Array]:
@@ -538,5 +545,8 @@ def _where(flags: Flags) -> tuple[Indices, Indices]:
 
 def _roots(series: Array, low: Array, high: Array, first: Array, last: Array) -> Array:
     """Return the zeros of series (k, n) between low and high (n,), where they are first and last."""
-    slopes = slope_of_series(len(series)) @ series
-    return bracketed_roots(lambda at: (series_at(series, at), series_at(slopes, at)), low, high, first, last)
+    both = np.zeros((len(series), 2, len(low)))
+    both[:, 0], both[:-1, 1] = series, slope_of_series(len(series)) @ series
+    return bracketed_roots(
+        lambda at: series_at(both, np.broadcast_to(at, (2, len(at)))), low, high, first, last, _SETTLED
+    )

@@ -5,7 +5,7 @@ A function maps places (n, k), each from 0 to 1, to values (n,); a value is nan 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import product
 
 import numpy as np
@@ -232,24 +232,30 @@ def _cost(function: Function, places: Array) -> Array:
 
 
 def bracketed_roots(
-    function: Callable[[Array], tuple[Array, Array]], low: Array, high: Array, first: Array, last: Array
+    function: Callable[[Array], Sequence[Array] | Array],
+    low: Array,
+    high: Array,
+    first: Array,
+    last: Array,
+    settled: float = 4e-16,
 ) -> Array:
-    """Return one root in each bracket (n,), to the rounding of the function or of the argument.
+    """Return one root in each bracket (n,), by Newton's method.
 
     function: maps all arguments (n,) at once to values and slopes (n,); first, last: its values at the ends, of which
-    the signs differ, or one is zero.
+    the signs differ, or one is zero; settled: the last step, relative to the argument or, of a small one, to 1.
     """
     rising = first < last
     places = low + (high - low) * (np.abs(first) / np.maximum(np.abs(first) + np.abs(last), 1e-300))
-    size = 4e-16 * np.maximum(np.maximum(np.abs(low), np.abs(high)), 1.0)
+    size = settled * np.maximum(np.maximum(np.abs(low), np.abs(high)), 1.0)
     for _ in range(60):
         value, slope = function(places)
         below = (value < 0) == rising
         low, high = np.where(below, places, low), np.where(below, high, places)
         with np.errstate(all="ignore"):
             step = places - value / slope
-        new = np.where((step >= low - 1e-10) & (step <= high + 1e-10), np.clip(step, low, high), (low + high) / 2)
-        moved, places = np.abs(new - places), new
-        if not (moved > size).any():
+        safe = (step >= low - 1e-10) & (step <= high + 1e-10)
+        new = np.where(safe, np.clip(step, low, high), (low + high) / 2)
+        left, places = np.where(safe, np.abs(new - places), high - low), new
+        if not (left > size).any():
             break
     return places

@@ -265,7 +265,7 @@ _ROWS = (
     Command("example", "List the shipped machines, or print one."),
     Command("keys", "The keys of the machine file, or one of them in full."),
     Command("units", "The units of every kind of quantity."),
-    Command("schema", "JSON Schema of the machine file, for editors, or of the answers."),
+    Command("schema", "JSON Schema of the machine file, or of the JSON output."),
 )
 COMMANDS = {one.word: one for one in _ROWS}
 """By its word, in the order in which `kurbel --help` lists them."""

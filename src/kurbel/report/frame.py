@@ -59,8 +59,8 @@ class Subject(NamedTuple):
 
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
-    whose rod has several; whole: it is the whole machine. Only a report asks for the rest, and once: left_out,
-    warnings, tables.
+    whose rod has several; whole: it is the whole machine. The rest is computed only for a report, and
+    once: left_out, warnings, tables.
     """
 
     name: str

@@ -35,7 +35,7 @@ class ListedKey(NamedTuple):
         name = self.path.rpartition(".")[2]
         below = dict.fromkeys(one.path.removeprefix(f"{self.path}.") for one in inner)
         found = {
-            "beside": self.beside,
+            "with": self.beside,
             "meaning": key.text.replace("`", ""),
             "symbol": key.symbol,
             "form": self._form,

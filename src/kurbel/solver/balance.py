@@ -285,7 +285,12 @@ class MachineBalance(Results):
         "Share of the reciprocating mass that this counterweight balances",
         lambda one: one.share_of_least(),
     )
-    F_free_best = value("F_min", "force", "Largest unbalanced force with it", lambda one: one.force_with_least)
+    F_free_best = value(
+        "F_min",
+        "force",
+        "Largest unbalanced force with it",
+        lambda one: one.times_omega_squared(*one.smallest_circle[1:]),
+    )
 
     _locomotive = Heading("Locomotive")
     counterweight_wheel = value("u_R", "unbalance", "Largest counterweight of a wheel, mass times radius")
@@ -360,7 +365,7 @@ class MachineBalance(Results):
             return None
         return vectors.force if name.endswith("force") else vectors.moment
 
-    def _times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
+    def times_omega_squared(self, lengths: Array, degrees: Array) -> Extreme | None:
         """Return the extreme of a vector from its largest magnitude over ω²; None without a speed."""
         if self.omega is None:
             return None
@@ -373,7 +378,7 @@ class MachineBalance(Results):
             return None
         if along:
             curve = ClosedCurve((curve.waves + curve.waves[::-1].conj()) / 2)
-        return self._times_omega_squared(*curve.farthest())
+        return self.times_omega_squared(*curve.farthest())
 
     def largest_of_book(self, name: str) -> Extreme | None:
         """Return the largest magnitude of a vector by the acceleration of first order, where these are compared."""
@@ -434,7 +439,7 @@ class MachineBalance(Results):
         return self.bare.force.of(1)
 
     @cached_property
-    def _circle(self) -> tuple[ComplexArray, Array, Array]:
+    def smallest_circle(self) -> tuple[ComplexArray, Array, Array]:
         """The smallest circle round the curve c, see `least`."""
         return self.bare.force.plus(1, -self.forward).turned_back().least_circle()
 
@@ -446,12 +451,7 @@ class MachineBalance(Results):
         u on the crank adds u, so that max |F + u e^{iφ}| is smallest where −u is the centre of the smallest circle that
         encloses the curve.
         """
-        return -np.asarray(unless_cancelled(self.forward + self._circle[0], np.abs(self.forward)))
-
-    @property
-    def force_with_least(self) -> Extreme | None:
-        """The largest unbalanced force with that counterweight."""
-        return self._times_omega_squared(*self._circle[1:])
+        return -np.asarray(unless_cancelled(self.forward + self.smallest_circle[0], np.abs(self.forward)))
 
     def angle_of(self, product: ComplexArray) -> Any:
         """Return the direction of a weight (machines,) from throw 1 in degrees, in (−180, 180]; none for no weight."""

@@ -163,7 +163,7 @@ class Bearing(Results):
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle[0].low, self._cycle[0].cycle)
+        return self._cycle[0].ends
 
     def _result(self, values: Array) -> Any:
         return result(values, self.count)

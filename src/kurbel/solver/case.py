@@ -7,8 +7,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 from kurbel.arrays import Array
+from kurbel.declared.reading import shown
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.near_words import did_you_mean
 from kurbel.quantity import called
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.bearings import Bearing, ShaftBearings
@@ -40,7 +42,7 @@ class Case(Shown):
 
         Of several cylinders each has its own: `case.cylinders[0]["P_max"]`. Raises UsageError where there is none.
         """
-        several = ""
+        why = ""
         for chapter in CHAPTERS:
             with_offers = chapter.kind is CylinderForces and self.cylinders
             rows = self.cylinders[0].rows if with_offers else rows_of(chapter.kind)
@@ -48,13 +50,12 @@ class Case(Shown):
                 found = chapter.of(self)
                 if len(found) == 1:
                     return found[0][name]
-                several = several or (chapter.each if found else "")
-        if several:
-            raise UsageError(several.format(name))
-        return self.flywheel[name]
+                why = chapter.each.format(name) if found else why or f"this machine has no {name}"
+        every = tuple(id for chapter in CHAPTERS for id in rows_of(chapter.kind).key_values)
+        raise UsageError(why or f"no key value '{shown(name)}'{did_you_mean(name, every)}")
 
     def results(self, command: str) -> list[Results]:
-        """Return all results of a command, which raise as they do by themselves."""
+        """Return all results of a command; raises what these raise, UsageError where the machine has none."""
         return [one for chapter in CHAPTERS if chapter.kind.command == command for one in chapter.of(self)]
 
     def __repr__(self) -> str:
@@ -118,9 +119,9 @@ class Case(Shown):
 
 
 class Chapter(NamedTuple):
-    """A class of results of a machine, and what returns them.
+    """A class of results, and a function that returns those of a case.
 
-    each: of a class with several results, the message for a key value that is not named with the one that has it.
+    each: where these are several, the message for a key value `{}` of which it is not known whose it is.
     """
 
     kind: type[Results]

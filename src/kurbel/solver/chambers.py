@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -43,10 +42,6 @@ def _own_volume(state: Chambers, end: str) -> Number | None:
 def _own_rise(state: Chambers, end: str) -> Array | None:
     chamber = _own_end(state, end)
     return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
-
-
-def _total(forces: Sequence[Any]) -> Any:
-    return sum(forces) if forces else None
 
 
 class Chambers(MotionColumns):
@@ -103,13 +98,13 @@ class Chambers(MotionColumns):
         "P_gas",
         "force",
         "Force of gas, steam or water on all pistons of the rod",
-        lambda state: _total(state.piston_forces),
+        lambda state: sum(state.piston_forces) if state.drive.gas else None,
     )
     P_gas_book = value(
         "P_297",
         "force",
         "The same with the mean of both piston areas (R 297)",
-        lambda state: _total([state.force_on(gas, mean_area=True) for gas in state.drive.gas]),
+        lambda state: sum(state.force_on(gas, mean_area=True) for gas in state.drive.gas) if state.drive.gas else None,
         on_request=("forces",),
     )
 

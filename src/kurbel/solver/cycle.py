@@ -7,7 +7,7 @@ friction it is also cut where the force on the guide, on a pin or on the block o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple, TypeVar, overload
 
@@ -16,6 +16,7 @@ import numpy as np
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import NoSolutionError
+from kurbel.machine.batch import varies
 from kurbel.machine.cylinder import may_lock
 from kurbel.numerics.arithmetic import some
 from kurbel.numerics.extreme import Extremes
@@ -76,27 +77,27 @@ class SampledCylinder:
         return self._cycle[1]
 
     @shared
-    def _cycle(self) -> tuple[Pieces, State]:
-        drive, (cut, state) = self.drive, self._cut
-        _refuse_locking(state, cut)
-        return _smoothed(drive, cut, state, _smooth)[:2]
-
-    @shared
-    def _cut(self) -> tuple[Pieces, State]:
-        """The cycle cut at kinks, jumps and multiples of 45° only, and the state there."""
+    def _cycle(self) -> tuple[Pieces, State, Pieces]:
+        """The pieces, the state at their nodes, and the longer pieces that end at kinks and jumps."""
         drive, pieces = self.drive, self.drive.pieces
-        state = State.on(drive, pieces)
-        if drive.has_force and some(drive.ring_surface != 0):
-            pieces, state, (across,) = _smoothed(drive, pieces, state, lambda one: (one.pressure_difference,))
-            pieces, state = _split(drive, pieces, state, pieces.zeros(across))
-        by_load = drive.rubs or drive.yoke_rubs or drive.pin_friction
-        return _cut_at_sides(drive, pieces, state) if drive.has_force and by_load else (pieces, state)
+        state = _state_on(drive, pieces)
+        if drive.has_force:
+            if some(drive.ring_surface != 0):
+                pieces, state = _cut(drive, pieces, state, lambda one: [one.pressure_difference])
+            if drive.rubs or drive.yoke_rubs:
+                pieces, state = _cut(drive, pieces, state, lambda one: [_sense(one.without_pin_friction)])
+            _refuse_locking(state, pieces)
+            if drive.pin_friction:
+                pieces, state = _cut(drive, pieces, state, _loads_of_pins)
+                if drive.rubs:
+                    pieces, state = _cut(drive, pieces, state, lambda one: [_sense(one)])
+        fine, state, _ = _halved(drive, pieces, state, _smooth)
+        return fine, state, pieces
 
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        cut = self.drive.pieces if may_lock(self.drive.cylinder) else self._cut[0]
-        return np.append(cut.low, self.drive.cycle)
+        return (self.drive.pieces if may_lock(self.drive.cylinder) else self._cycle[2]).ends
 
     @property
     def tail(self) -> float:
@@ -111,14 +112,13 @@ class SampledCylinder:
     def sampled(self, column: str) -> Array | None:
         """Return a column at the nodes of the pieces, (nodes, pieces); None for one that is left out."""
         found = self.samples[column]
-        return None if found is None else np.broadcast_to(found, self.pieces.degrees.shape)
+        return None if found is None else self.pieces.filled(found)
 
-    def extremes_over(self, columns: Iterable[str]) -> dict[str, Extremes]:
-        """Return the extremes in SI of those of the columns that the machine has, by id."""
-        found = {name: values for name in columns if (values := self.sampled(name)) is not None}
-        if not found:
-            return {}
-        return dict(zip(found, self.pieces.extremes([*found.values()]).each(self.result)))
+    def extremes_over(self, columns: Mapping[str, Number | None]) -> dict[str, Extremes]:
+        """Return the extremes in SI of columns of `samples` by id, without those that are None."""
+        pieces, names = self.pieces, [name for name, values in columns.items() if values is not None]
+        found = pieces.extremes(_known(pieces, columns.values())).each(self.result) if names else []
+        return dict(zip(names, found))
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""
@@ -126,11 +126,21 @@ class SampledCylinder:
         return None if values is None else where_is(self.pieces, values, value)
 
 
-def _smoothed(
+def _state_on(drive: Drive, pieces: Pieces) -> State:
+    """Return the state on the pieces of all machines; machines with the same motion and pressures have the same pieces.
+
+    These are computed once.
+    """
+    if drive.count is None or varies((drive.mechanism, drive.cylinder.pistons, drive.machine.ambient)):
+        return State.on(drive, pieces)
+    one = State.on(drive, pieces.taken(pieces.machine == 0))
+    return _restored(drive, pieces, [np.tile(values, drive.count) for values in _before_friction(one)])
+
+
+def _halved(
     drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Number | None]]
 ) -> tuple[Pieces, State, Samples]:
     """Return the pieces, halved until these columns are polynomials, with the state and the columns on them."""
-
     judged = _known(pieces, columns(state))
 
     def sample(some: Pieces) -> list[Array]:
@@ -144,12 +154,16 @@ def _smoothed(
     return fine, finer, values[: len(judged)]
 
 
-def _split(drive: Drive, pieces: Pieces, state: State, at: Angles) -> tuple[Pieces, State]:
-    """Return the pieces cut at more angles, and the state there; values on pieces that are not cut are kept."""
-    cut = pieces.split(at)
+def _cut(
+    drive: Drive, pieces: Pieces, state: State, columns: Callable[[State], Iterable[Number | None]]
+) -> tuple[Pieces, State]:
+    """Return the pieces cut where one of these columns changes sign, and the state on them."""
+    pieces, state, values = _halved(drive, pieces, state, columns)
+    passed = [pieces.zeros(one) for one in values]
+    cut = pieces.split(Angles(*(np.concatenate(each) for each in zip(*passed))))
     if cut is pieces:
         return pieces, state
-    source, new = cut.kept_of(pieces)
+    source, new = cut.kept_of(pieces)  # of pieces that are not cut the values are kept
     fresh = cut.taken(new)
     known = _before_friction(state), _before_friction(State.on(drive, fresh))
     whole, both = joined([(pieces, source, known[0]), (fresh, np.arange(len(new)), known[1])])
@@ -172,26 +186,10 @@ def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:
     return state
 
 
-def _cut_at_sides(drive: Drive, pieces: Pieces, state: State) -> tuple[Pieces, State]:
-    """Return the pieces cut where the guide force, with or without pin friction, changes sign, and the state."""
-
-    def before(some: State) -> tuple[Number | None, ...]:
-        free = some.without_pin_friction
-        return _sense(free), free.curvature, free.P_gas, free.P
-
-    pieces, state, (sense, *_) = _smoothed(drive, pieces, state, before)
-    if drive.rubs or drive.yoke_rubs:
-        pieces, state = _split(drive, pieces, state, pieces.zeros(sense))
-    if drive.pin_friction is None:
-        return pieces, state
-    _refuse_locking(state, pieces)
-    # where the load of a pin passes through zero, its magnitude has a kink
+def _loads_of_pins(state: State) -> list[Number]:
+    """Return the loads of the pins without their friction: where one passes through zero, its magnitude has a kink."""
     free = state.without_pin_friction
-    loads = [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
-    passed = [pieces.zeros(np.asarray(load)) for load in loads]
-    pieces, state = _split(drive, pieces, state, Angles(*(np.concatenate(columns) for columns in zip(*passed))))
-    pieces, state, (sense, *_) = _smoothed(drive, pieces, state, lambda one: (_sense(one), *(one.rubbing or ())))
-    return _split(drive, pieces, state, pieces.zeros(sense)) if drive.rubs else (pieces, state)
+    return [on_pin(free).T, *([on_crosshead_pin(free).D] if free.rod_angle else [])]
 
 
 def _sense(state: State) -> Number:
@@ -202,7 +200,7 @@ def _sense(state: State) -> Number:
 def _refuse_locking(state: State, pieces: Pieces) -> None:
     """Raise NoSolutionError, with the exact angle, if the crosshead of the only machine is self-locking."""
     drive = state.drive
-    if drive.count is None and drive.has_force and may_lock(drive.cylinder):
+    if drive.count is None and may_lock(drive.cylinder):
         below = state.without_pin_friction.guide_denominator
         if (below <= 0).any():
             at = pieces.zeros(below).degrees
@@ -219,7 +217,7 @@ def _smooth(state: State) -> list[Number | None]:
 
 def _known(pieces: Pieces, values: Iterable[Number | None]) -> list[Array]:
     """Return those of the columns that are not None, at the nodes of pieces, each (nodes, pieces)."""
-    return [np.broadcast_to(one, pieces.degrees.shape) for one in values if one is not None]
+    return [pieces.filled(one) for one in values if one is not None]
 
 
 def reversals(drive: Drive, pieces: Pieces, values: Array) -> tuple[Any, ...]:

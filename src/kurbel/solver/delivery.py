@@ -185,7 +185,7 @@ class Delivery(Results):
         self._pipes = [(pipe, draws) for pipe, draws in both_pipes if pipe]
         self._result = partial(result, count=count)
         self.omega: Any = None if machine.speed is None else 2 * math.pi * machine.speed
-        self.breaks = np.append(pieces.low, pieces.cycle)
+        self.breaks = pieces.ends
         if count is None:
             _ = self.answers  # refuses a vessel that would empty
 
@@ -208,7 +208,7 @@ class Delivery(Results):
                 found[f"{name}acceleration_head"] = self._rate(draws=draws, rises=True) * omega**2 * scale
             passed = of(self._mean(draws)) if pipe.vessel else self._rate(draws=draws)
             heads = of(_friction(pipe) / GRAVITY) * (passed * omega) ** 2
-            found[f"{name}friction_head"] = np.broadcast_to(heads, self.pieces.degrees.shape)
+            found[f"{name}friction_head"] = self.pieces.filled(heads)
         return found
 
     def _mean(self, draws: bool = False, cubed: bool = False) -> Number:
@@ -448,7 +448,7 @@ class MachineDelivery:
 
         def rate(**how: bool) -> Array:
             each = [pieces.of(share) * _displaced(state, one, **how) for state, one in pistons]
-            whole = np.broadcast_to(sum(each), pieces.degrees.shape)
+            whole = pieces.filled(sum(each))
             lasting = unless_cancelled(pieces.largest(whole), sum(map(pieces.largest, each)), _CANCELLED) != 0
             return np.where(pieces.of(lasting), whole, 0.0)
 

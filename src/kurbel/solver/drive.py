@@ -74,7 +74,7 @@ class Drive:
     crosshead_friction: f, 0 without one; rubs: whether it is not 0; guide_area: of the shoe, None where not given;
     yoke_friction: f of the block and of the guides of a Scotch yoke, 0 where not given; yoke_rubs: whether either is
     not 0; ring_force: n π d h p_r f in N (D, Kolbenreibung); ring_surface: n π d h k f in m² of rings that the gas
-    presses; steady_friction: ring_force and the friction given as a force.
+    presses; constant_friction: ring_force and the friction given as a force.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class Drive:
                 self.ring_surface = surface * rings.pressure.gas
             else:
                 self.ring_force = surface * rings.pressure
-        self.steady_friction: Number = self.ring_force + constant
+        self.constant_friction: Number = self.ring_force + constant
 
     def taken(self, index: Indices) -> Drive:
         """Return a copy with the numbers of these machines, one for every angle or piece (n,)."""
@@ -142,7 +142,7 @@ class Drive:
         other.gas, other.driving, other.driven, other.pumping = self.gas, self.driving, self.driven, self.pumping
         return other
 
-    @cached_property
+    @property
     def pieces(self) -> Pieces:
         """The cycle between the angles at which something bends or jumps: dead centres and the corners of cards."""
         count = self.count or 1
@@ -195,12 +195,6 @@ class Drive:
     def pumping(self) -> tuple[Truth, ...]:
         """Of the pistons that have an indicator, whether each is driven: its indicated work is negative."""
         return tuple(gas.work < -_IDLE * gas.swept_volume for gas in self.gas)
-
-    @property
-    def beyond(self) -> tuple[Truth, ...]:
-        """Of the pistons that have an indicator, whether each is a tandem one on the rod itself, without a lever."""
-        own = self.cylinder.pistons[0].indicator is not None if self.gas else False
-        return tuple(False if own and not n else gas.piston.lever_ratio == 1 for n, gas in enumerate(self.gas))
 
     @property
     def drives(self) -> Truth:

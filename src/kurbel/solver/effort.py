@@ -126,15 +126,16 @@ class TurningEffort:
 
     def sampled(self, terms: Sequence[Term]) -> Array:
         """Return the sum of the terms on the common pieces; exactly 0 in machines where the terms cancel."""
-        pieces, whole, size = self.pieces, np.zeros(self.pieces.degrees.shape), np.zeros(self.pieces.count)
+        pieces, size = self.pieces, np.zeros(self.pieces.count)
+        whole = pieces.filled(0.0)
         for factor, cylinders, torque in terms:
             own = cylinders[0].pieces
-            values = np.broadcast_to(torque(cylinders[0].samples), own.degrees.shape) * own.of(factor)
+            values = own.filled(torque(cylinders[0].samples)) * own.of(factor)
             size = size + len(cylinders) * own.largest(values)
-            for forces in cylinders:
-                whole += values if own is pieces else pieces.carried(values, own, position(forces))
+            for one in cylinders:
+                whole = whole + pieces.carried(values, own, position(one))
         lasting = unless_cancelled(pieces.largest(whole), size, _CANCELLED) != 0
-        return np.where(pieces.of(lasting), whole, 0.0)
+        return whole if lasting.all() else np.where(pieces.of(lasting), whole, 0.0)
 
     def at(self, pieces: Pieces, values: Array, degrees: Array, within: Array, machine: Indices | None = None) -> Array:
         """Return samples at crank angles (k,), on the sides of jumps that hold `within`.
@@ -205,7 +206,7 @@ class TurningEffort:
     @cached_property
     def load(self) -> Array:
         """The load in N m at the nominal speed: the mean of M, or that by points brought to the same mean."""
-        level = np.broadcast_to(self.pieces.of(self.mean), self.pieces.degrees.shape)
+        level = self.pieces.filled(self.pieces.of(self.mean))
         if self.diagram is None:
             return level
         given = torque_on(self.diagram, self.pieces)
@@ -257,7 +258,11 @@ class TurningEffort:
                 f"the machine cannot run: with the efficiency {eta:g} its driving pistons give a mean torque that is "
                 f"{show(-mean, 'torque')} less than driven pistons and friction take; it runs {runs}"
             )
-        return ExcessWork(self, self.M - self.load)
+        return self._excess_by(self.M - self.load)
+
+    def _excess_by(self, torque: Array) -> ExcessWork:
+        swing = None if self.swing is None else self.swing * self.share(None)
+        return ExcessWork(self.pieces, torque, self.pieces.largest(self.M), swing)
 
     @property
     def missing_inertia(self) -> list[Term]:
@@ -268,22 +273,23 @@ class TurningEffort:
     def true_excess(self) -> ExcessWork:
         """The excess that changes the kinetic energy: losses do not reduce its share of the moving masses."""
         missing = self.missing_inertia
-        return ExcessWork(self, self.excess.torque + self.sampled(missing)) if missing else self.excess
+        return self._excess_by(self.excess.torque + self.sampled(missing)) if missing else self.excess
 
 
 class ExcessWork:
     """The works between the crossings of effort and load.
 
-    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces).
+    torque: M − M_load in N m, E: its integral in J over φ from 0 on, (nodes, pieces); size: (machines,), of M; swing:
+    ΔE in J where it alone is known.
     """
 
-    def __init__(self, effort: TurningEffort, torque: Array) -> None:
-        pieces = self.pieces = effort.pieces
-        self._effort, self._size = effort, pieces.largest(effort.M)
-        self.torque = np.where(pieces.of(pieces.largest(torque) > _UNIFORM * self._size), torque, 0.0)
+    def __init__(self, pieces: Pieces, torque: Array, size: Array, swing: Number | None) -> None:
+        self.pieces, self._size, self._swing = pieces, size, swing
+        uneven = pieces.largest(torque) > _UNIFORM * size
+        self.torque = torque if uneven.all() else np.where(pieces.of(uneven), torque, 0.0)
         whole = pieces.running(self.torque)
         gained = np.append(whole[-1, pieces.first[1:] - 1], whole[-1, -1])  # by the rounding of the mean
-        self.E = np.asarray(whole - pieces.of(gained) * (pieces.degrees / pieces.cycle))
+        self.E = np.asarray(whole - pieces.of(gained / pieces.cycle) * pieces.degrees)
 
     @cached_property
     def crossings(self) -> Angles:
@@ -310,8 +316,8 @@ class ExcessWork:
     @cached_property
     def dE(self) -> Array:
         """ΔE in J, the largest swing of the excess work, (machines,)."""
-        if self._effort.swing is not None:
-            return np.ones(self.pieces.count) * self._effort.swing * self._effort.share(None)
+        if self._swing is not None:
+            return np.ones(self.pieces.count) * self._swing
         return np.nan_to_num(self.summits.largest[0] - self.summits.smallest[0], nan=0.0)
 
 
@@ -336,7 +342,7 @@ def torque_on(given: Known, pieces: Pieces) -> Array:
     """
     if isinstance(given, Swing):
         mean = np.zeros(pieces.count) if given.mean is None else given.mean
-        return np.array(np.broadcast_to(pieces.of(mean), pieces.degrees.shape))
+        return pieces.filled(pieces.of(mean))
     if isinstance(given, Harmonics):
         orders, cos, sin = np.array(given.terms).T
         waves = unit_vector(np.multiply.outer(pieces.degrees, orders)) @ (cos - 1j * sin)

@@ -1,8 +1,8 @@
 """Results by name: the rows of a class of results, its key values by id or printed symbol, and all columns at once.
 
 A class of results has its key values, and a class of columns its columns, as attributes with rows (`kurbel.quantity`).
-They are printed in the order of their definition, for people below the `Heading` before them; a `PartResults` brings
-the rows of another class to its place, `Searched` the extremes of the columns.
+They are printed in the order of their definition, for people below the `Heading` before them. In the place of a
+`PartResults` are the rows of another class, in that of `Searched` the extremes of the columns.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class AtAngles:
     """Columns at crank angles (n,) in degrees: attributes with rows, in SI, each (n,), None for what there is not."""
 
     commands: ClassVar[tuple[str, ...]] = ()
-    """That print its columns, where a column does not say which."""
+    """Those that print its columns, except columns with `commands` of their own."""
 
     def __init_subclass__(cls) -> None:
         # a column of several parts is an attribute for each of them
@@ -178,7 +178,7 @@ def part(kind: type[Results], unless: Condition | None = None) -> Callable[[Of[V
 
 
 class Searched:
-    """The extremes of the columns of the class in which it stands, as the flag `extremes` of a column says."""
+    """The place of the extremes of columns among the key values of a class; without it they are printed last."""
 
     ENDS: ClassVar[dict[str, Callable[[Extremes], Extreme]]] = {
         "max": lambda both: both.largest,
@@ -255,14 +255,15 @@ class Results(Shown):
     def at(self, degrees: object, within: Array | None = None) -> Any:
         """Return every column at crank angles (n,) in degrees; of the whole machine those of crank 1.
 
-        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given.
+        At a jump the value on the side that holds `within` (n,) is meant, just after it where that is not given. Raises
+        UsageError for results that have key values alone.
         """
         angles = crank_angles(degrees)
         return self._columns(angles, angles if within is None else within)
 
     def _columns(self, phi: Array, within: Array) -> AtAngles:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
-        raise NotImplementedError
+        raise UsageError("these results have key values, and no columns over the crank angle")
 
     @property
     def _of(self) -> str:
@@ -286,7 +287,7 @@ def rows_of(kind: type[Results], offers: tuple[Offer, ...] = (), key_offers: tup
     for one in reversed(kind.__mro__):  # its own and inherited ones, in the order in which each was defined first
         definitions |= vars(one)
     found, heading = list[Row](), ""
-    for item in definitions.values():
+    for item in (*definitions.values(), Searched()):  # of rows with one id the first counts
         rows: Iterable[Row] = ()
         if isinstance(item, Heading):
             heading = item.text

@@ -168,7 +168,7 @@ class MachineTurning(Results):
     @property
     def breaks(self) -> Array:
         """Crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self.effort.pieces.low, self.effort.cycle)
+        return self.effort.pieces.ends
 
     def angles_where(self, column: str, value: float) -> Where | None:
         """Return where in the cycle a column has a value in SI; None for a column that is left out."""

@@ -90,7 +90,12 @@ class PistonWork(Results):
 
     command = "forces"
     work = value("A_i", "energy", "Indicated work of the piston per cycle", lambda one: one.gas.work)
-    power = value("N_i", "power", "Indicated power of the piston", lambda one: one.rate and one.gas.work * one.rate)
+    power = value(
+        "N_i",
+        "power",
+        "Indicated power of the piston",
+        lambda one: None if one.rate is None else one.gas.work * one.rate,
+    )
     mean_pressure = value(
         "p_i", "pressure", "Mean indicated pressure of the piston", lambda one: one.gas.work / one.gas.swept_volume
     )
@@ -162,14 +167,14 @@ class CylinderForces(SampledCylinder, Results):
         "P_b,max",
         "force",
         "Largest inertia force toward the shaft",
-        lambda forces: largest(*forces.inertia) if forces.inertia else None,
+        lambda forces: largest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
     )
     P_inertia_min = value(
         "P_b,min",
         "force",
         "Largest inertia force away from the shaft, negative",
-        lambda forces: smallest(*forces.inertia) if forces.inertia else None,
+        lambda forces: smallest(*forces.inertia_extremes) if forces.inertia_extremes else None,
         after="P_start_min",
     )
     p_guide_max = value(
@@ -285,7 +290,7 @@ class CylinderForces(SampledCylinder, Results):
         "ΔA/A",
         "ratio",
         "Energy balance of the cycle, in minus out, by an independent quadrature",
-        lambda forces: forces.energy_left(),
+        lambda forces: forces.energy_balance(),
         residual=True,
     )
     residual = value(
@@ -352,8 +357,8 @@ class CylinderForces(SampledCylinder, Results):
     # extremes of the columns
 
     @property
-    def inertia(self) -> list[Extreme]:
-        """The inertia forces where the acceleration is largest and smallest; none without masses or speed."""
+    def inertia_extremes(self) -> list[Extreme]:
+        """The inertia forces in N where the acceleration is largest and smallest; none without masses or speed."""
         turns = (self.motion.b_max, self.motion.b_min) if self.drive.has_inertia else ()
         return [Extreme(-self.drive.mass * one.value, one.degrees) for one in turns if one]
 
@@ -366,7 +371,8 @@ class CylinderForces(SampledCylinder, Results):
     def _extremes(self) -> dict[str, Extremes]:
         """Extremes of the columns that are declared to have them, by id."""
         declared = column_rows(State, self.mechanism.OFFERS)
-        return self.extremes_over(id for id, row in declared.items() if "forces" in row.quantity.extremes)
+        searched = {id: row for id, row in declared.items() if "forces" in row.quantity.extremes}
+        return self.extremes_over({id: row.of(self.samples) for id, row in searched.items()})
 
     def refuse_locking(self) -> None:
         """Raise NoSolutionError where the crosshead locks itself, with an angle that does not depend on a step."""
@@ -410,8 +416,9 @@ class CylinderForces(SampledCylinder, Results):
         if drive.guide_area is not None and (side := self.extremes_of("N")):
             most = largest(*(Extreme(abs(one.value), one.degrees) for one in side))
             found["p_guide_max"] = Extreme(most.value / drive.guide_area, most.degrees)
-        if drive.guide_area is not None and drive.has_force and (wear := self.extremes_over(("wear",))):
-            found["wear_max"] = wear["wear"].largest
+        if drive.guide_area is not None and drive.has_force:
+            wear = self.extremes_over({"wear": self.samples.wear})
+            found["wear_max"] = wear["wear"].largest if wear else None
         lost, speed = self.friction_works.get("crosshead"), drive.machine.speed
         if drive.guide_area is not None and lost is not None:
             if drive.rubs and some(lost != 0):
@@ -442,7 +449,7 @@ class CylinderForces(SampledCylinder, Results):
             return found
 
         def over_cycle(values: Number) -> Number:
-            return self.result(self.pieces.integral(np.broadcast_to(values, self.pieces.degrees.shape)))
+            return self.result(self.pieces.integral(self.pieces.filled(values)))
 
         if friction.crosshead is not None and drive.has_force:
             drag = self.samples.crosshead_drag * (self.samples.slope * self.samples.direction) if drive.rubs else None
@@ -462,7 +469,7 @@ class CylinderForces(SampledCylinder, Results):
             found["guides"] = over_cycle(samples.drag_of_guides * (samples.slope * samples.direction))
         return found
 
-    def energy_left(self) -> Number | None:
+    def energy_balance(self) -> Number | None:
         """Return the energy balance (∮ T R dφ − `work_left`) over ∮ |T| R dφ: quadrature against work in closed form.
 
         With a measured trace at equal angles the quadrature follows the straight lines between the samples, the

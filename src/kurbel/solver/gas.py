@@ -27,7 +27,7 @@ from kurbel.errors import UsageError
 from kurbel.machine.batch import changed, taken, varies
 from kurbel.machine.cylinder import CYCLES
 from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after_polytrope
-from kurbel.machine.indicator import STROKES, Card, Chamber, Rectangle
+from kurbel.machine.indicator import STROKES, Card, Rectangle
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import some, total
@@ -63,7 +63,7 @@ class Process:
     lift: float = 0.0
     clearance: float = math.inf
 
-    @property
+    @cached_property
     def area(self) -> float:
         """∮ p dz in Pa in closed form; straight lines in whole numbers: cards of nearly no area lose no digits."""
         straight, curved = 0, list[float]()
@@ -183,22 +183,17 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
 class CardPressure:
     """Gauge pressure in one chamber from a process over the stroke, or in those of many machines.
 
-    steep: whether a line is so steep that the rounding of z counts; area: ∮ p dz over the stroke fraction z in Pa, per
-    cycle, closed; starts: where lines begin.
+    mirrored: the pressure at the other end, which has the same process. steep: whether a line is so steep that the
+    rounding of z counts; starts: where lines begin.
     """
 
-    def __init__(self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None) -> None:
-        self.setting, self._count = setting, count
-        which, each = np.zeros(count or 1, int), [chamber]
-        if varies(chamber):
-            which = np.arange(count or 1)
-            each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
-        numbers = np.stack(np.broadcast_arrays(which.astype(float), setting.lift, setting.base))
-        made, own = np.unique(numbers, axis=1, return_inverse=True)
-        self._processes = [process_in(each[int(one)], lift, setting.cycle, base) for one, lift, base in made.T.tolist()]
-        self._which: Indices = own.ravel()
-        self._clearance = self._of_machines([one.clearance for one in self._processes])
-        self._lift = self._of_machines([one.lift for one in self._processes])
+    def __init__(
+        self, chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None, mirrored: CardPressure | None
+    ) -> None:
+        self.setting, self._count, cycle = setting, count, setting.cycle
+        known = (mirrored._processes, mirrored._which) if mirrored else _processes(chamber, setting, count)
+        self._processes: list[Process] = known[0]
+        self._which: Indices = known[1]
 
         # lines at the same angles in all machines are kept once
         alike = self._alike = len(self._processes) == 1 and not varies(setting.mechanism)
@@ -206,23 +201,21 @@ class CardPressure:
         self._machine, rows = _over_the_angle(self._processes, own, setting, alike)
         self._begins, self._ends, z, p, next_z, self._next_p, exponent = rows
         self._p, self._rows = p, np.stack((z, p, next_z, exponent, (self._next_p - p) / (next_z - z), *rows[:2]))
-        self._keys = self._machine * (2 * setting.cycle) + self._begins
+        self._keys = self._machine * (2 * cycle) + self._begins
         self._first = np.searchsorted(self._machine, np.arange(len(own)))
-        self.straight = not exponent.any()
+        self._straight = not exponent.any()
+        self._level = self._straight and np.array_equal(p, self._next_p)
         self.steep = bool((np.abs(next_z - z) < _STEEP).any())
         machines = count if alike and count else 1
         self.starts = Angles(
             np.repeat(np.arange(machines), len(z)) if alike else self._machine, np.tile(self._begins, machines)
         )
 
-    @cached_property
+    @property
     def area(self) -> Number:
         """∮ p dz over the stroke fraction z in Pa, per cycle, closed."""
-        return self._of_machines([one.area for one in self._processes])
-
-    def _of_machines(self, values: list[float]) -> Number:
-        """Return numbers of the processes as those of the machines: one if there is one process."""
-        return values[0] if len(values) == 1 else np.array(values)[self._which]
+        areas = np.array([one.area for one in self._processes])
+        return float(areas[0]) if len(areas) == 1 else areas[self._which]
 
     @cached_property
     def highest(self) -> Extreme:
@@ -241,13 +234,21 @@ class CardPressure:
         """Return the gauge pressure in Pa where z of the stroke is passed, on the segments that hold `within` (n,).
 
         z, degrees: (n,), or (nodes, n) of pieces, each of which one segment holds; machine: of each, (n,); remaining:
-        1 − z with all its digits, of which steep lines near the outer dead centre need every one.
+        1 − z with all its digits, of which steep lines near the outer dead centre need every one. Where no pressure
+        varies along any segment, it is (n,) for pieces, too.
         """
-        setting, row = self.setting, self._holding(within, machine)
-        begin, p, next_z, exponent, rise, begins, ends = self._rows[:, row]
-        lift, base, clearance = (spread(one, machine) for one in (self._lift, setting.base, self._clearance))
-        own, rest = (z, remaining) if setting.head_end else (remaining, z)
-        distance = (1 - z if own is None else own) - begin
+        setting = self.setting
+        own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
+        turned = within_cycle(within, setting.cycle)
+        row = np.searchsorted(self._keys, own * (2 * setting.cycle) + turned, side="right") - 1
+        last = np.append(self._first[1:], len(self._keys))[own] - 1
+        begin, p, next_z, exponent, rise, begins, ends = self._rows[:, np.where(row < self._first[own], last, row)]
+        base = spread(setting.base, machine)
+        if self._level:
+            return np.asarray(p - base)
+
+        passed, rest = (z, remaining) if setting.head_end else (remaining, z)
+        distance = (1 - z if passed is None else passed) - begin
         if remaining is not None:
             distance = np.where(begin > 0.5, (1 - begin) - rest, distance)
         # angles of corners are rounded, lines may be steep: at corners the pressure is exactly the card's; of a piece
@@ -257,20 +258,27 @@ class CardPressure:
         for corner, whole in ((ends, next_z - begin), (begins, 0.0)):
             distance[at] = np.where(np.abs(turned - corner) <= _ROUNDING, whole, distance[at])
         straight: Array = (p - base) + rise * distance
-        if self.straight:
+        if self._straight:
             return straight
+        known = np.array([(one.lift, one.clearance) for one in self._processes])
+        lift, clearance = known[0] if len(known) == 1 or machine is None else known[self._which[machine]].T
         curved = exponent != 0
         clearance = np.where(curved, clearance, 1.0)  # what is straight may begin without any volume
         power = (p + lift) * np.exp(growth(begin, distance, clearance) * -exponent)
         return np.where(curved, power - lift - base, straight)
 
-    def _holding(self, within: Array, machine: Indices | None) -> Indices:
-        """Return the segments that hold angles (n,) in degrees, of these machines."""
-        turned = within_cycle(within, self.setting.cycle)
-        own = np.zeros(1, dtype=np.intp) if machine is None or self._alike else machine
-        row = np.searchsorted(self._keys, own * (2 * self.setting.cycle) + turned, side="right") - 1
-        last = np.append(self._first[1:], len(self._keys))[own] - 1
-        return np.where(row < self._first[own], last, row)
+
+def _processes(
+    chamber: Card | Rectangle | IdealCard, setting: Setting, count: int | None
+) -> tuple[list[Process], Indices]:
+    """Return the different processes in a chamber, and which of them each machine has, (machines,)."""
+    which, each = np.zeros(count or 1, int), [chamber]
+    if varies(chamber):
+        which = np.arange(count or 1)
+        each = [changed(chamber, lambda numbers, at=at: numbers[at].item()) for at in which]  # type: ignore[misc]
+    numbers = np.stack(np.broadcast_arrays(which.astype(float), setting.lift, setting.base))
+    made, own = np.unique(numbers, axis=1, return_inverse=True)
+    return [process_in(each[int(n)], lift, setting.cycle, base) for n, lift, base in made.T.tolist()], own.ravel()
 
 
 def _over_the_angle(processes: list[Process], which: Indices, setting: Setting, alike: bool) -> tuple[Indices, Array]:
@@ -338,8 +346,17 @@ class PistonGas:
         at_crank = at_head._replace(head_end=self.turned, mirrored=indicator.crank_end is indicator.head_end)
         self.piston, self.stroke, self.repeats = piston, mechanism.stroke, repeats
         self.absolute, self.base = indicator.absolute, at_head.base
-        self.head = _pressure_in(indicator.head_end, at_head, count)
-        self.crank = _pressure_in(indicator.crank_end, at_crank, count)
+        self.head: Pressure | None = None
+        self.crank: Pressure | None = None
+        if isinstance(indicator.head_end, Trace):
+            self.head = TracePressure(indicator.head_end, at_head)
+        elif indicator.head_end is not None:
+            self.head = CardPressure(indicator.head_end, at_head, count, None)
+        if isinstance(indicator.crank_end, Trace):
+            self.crank = TracePressure(indicator.crank_end, at_crank)
+        elif indicator.crank_end is not None:
+            same = self.head if at_crank.mirrored and isinstance(self.head, CardPressure) else None
+            self.crank = CardPressure(indicator.crank_end, at_crank, count, same)
 
         self.areas: tuple[Number, Number] = (piston.head_area * abs(ratio), piston.crank_area * abs(ratio))
         both = zip((self.head, self.crank), self.areas)
@@ -367,21 +384,9 @@ class PistonGas:
         """Indicated work in J of the ends that have a trace, and its change per radian of angle; None without."""
         distance = self.stroke * self.repeats
         works = [(area * end.area, area * end.area_by_angle) for end, area in self._traces]
-        return (
-            (distance * sum(work for work, _ in works), distance * sum(change for _, change in works))
-            if works
-            else None
-        )
+        return (distance * sum(one[0] for one in works), distance * sum(one[1] for one in works)) if works else None
 
     @property
     def noise(self) -> float:
         """Standard deviation in N of the noise that traces bring into the force."""
         return math.hypot(*(end.noise * area for end, area in self._traces))
-
-
-def _pressure_in(chamber: Chamber | None, setting: Setting, count: int | None) -> Pressure | None:
-    if chamber is None:
-        return None
-    if isinstance(chamber, Trace):
-        return TracePressure(chamber, setting)
-    return CardPressure(chamber, setting, count)

@@ -129,7 +129,7 @@ class MachineOrders(Results):
         this size in N m that it is the sum of, is 0: cosines, and sines.
         """
         moved = np.zeros(()) if inertia is None else inertia
-        values = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (torque - moved, moved)])
+        values = np.stack([pieces.filled(one) for one in (torque - moved, moved)])
         present = np.flatnonzero(is_whole(self.orders * round(pieces.cycle / 360.0)))
         found = np.zeros((2, len(self.orders), pieces.count), dtype=complex)
         found[:, present] = amplitudes(pieces, values, self.orders[present])

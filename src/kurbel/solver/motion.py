@@ -11,14 +11,14 @@ import numpy as np
 from kurbel import crank_formulas as formulas
 from kurbel.arrays import Array, Number
 from kurbel.crank_angle import CrankAngle
-from kurbel.machine.batch import taken
+from kurbel.machine.batch import taken, varies
 from kurbel.machine.parts import RodPoint
 from kurbel.mechanisms import Mechanism, Offer, PointMotion
 from kurbel.numerics.arithmetic import bearing, every, where
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Angles, Pieces, Samples, refined
 from kurbel.quantity import Heading, value
-from kurbel.solver.figures import AtAngles, Results, Rows, Searched, result, rows_of
+from kurbel.solver.figures import AtAngles, Results, Rows, result, rows_of
 
 
 class MotionColumns(AtAngles):
@@ -112,12 +112,12 @@ class MotionColumns(AtAngles):
         inner, outer = (0.0, 360.0) if mechanism.turns else mechanism.dead_centres()
         self.direction = np.where(np.mod(within - inner, 360.0) < outer - inner, 1.0, -1.0)
 
-    @cached_property
+    @property
     def coordinate(self) -> Number:
         """Coordinate of the output in m, of what only swings in radians."""
         return self.mechanism.coordinate(self.posed)
 
-    @cached_property
+    @property
     def displacement(self) -> Number:
         """Displacement from the inner dead centre in m, of what only swings in radians."""
         passed: Number = self.coordinate - self.mechanism.start
@@ -200,10 +200,10 @@ class Motion(Results):
         listed=True,
         on_request=("forces",),
     )
-    of_the_mechanism = Searched()
 
     def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:
-        self.mechanism, self.speed, self._count = mechanism, speed, count
+        self.mechanism, self.speed = mechanism, speed
+        self._count = count if varies(mechanism) else None
         self.omega: Any = None if speed is None else 2 * math.pi * speed
 
     @property
@@ -217,7 +217,8 @@ class Motion(Results):
         one, found = self.mechanism, dict[str, object](phi_work=self.mechanism.phi_work)
         found["phi_return"] = one.phi_return
         if one.has_dead_centres:
-            found["phi_idc"], found["phi_odc"] = map(_within_turn, one.dead_centres())
+            centres = (where(end < 0, end + 360.0, end) for end in one.dead_centres())  # from −360° to 720°
+            found["phi_idc"], found["phi_odc"] = (where(end >= 360.0, end - 360.0, end) for end in centres)
         if self.omega is not None:
             found["v"] = one.crank * self.omega
         if not one.slides:
@@ -270,7 +271,7 @@ class Motion(Results):
             angle = angle._replace(rod=mechanism.rod_angle(angle))
             offered = [one.factor(mechanism, angle) for one in self._offers]
             found = (mechanism.slope(angle), mechanism.curvature(angle), *offered)
-            return [np.broadcast_to(one, pieces.degrees.shape) for one in found if one is not None]
+            return [pieces.filled(one) for one in found if one is not None]
 
         count = self._count or 1
         centres = every_dead_centre(self.mechanism, count, 360.0)
@@ -302,8 +303,3 @@ def every_dead_centre(mechanism: Mechanism, count: int, cycle: float) -> Array:
     each = np.stack([np.broadcast_to(one, count) for one in mechanism.dead_centres()], axis=1)
     turns: Array = each[:, None, :] + np.arange(0.0, cycle, 360.0)[:, None]
     return turns.reshape(count, -1)
-
-
-def _within_turn(degrees: Number) -> Number:
-    """Return an angle between −360° and 720° as one from 0 to 360."""
-    return where(degrees < 0, degrees + 360.0, where(degrees >= 360.0, degrees - 360.0, degrees))

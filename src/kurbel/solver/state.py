@@ -82,11 +82,14 @@ class State(Chambers):
         """Return the state at the nodes of pieces, (nodes, pieces); at a jump each piece has the value on its side."""
         return cls(drive.taken(pieces.machine), CrankAngle.at_nodes(pieces), pieces.middle)
 
-    @cached_property
+    @property
     def without_pin_friction(self) -> State:
         """The same state without friction in pins and journals, whose friction is computed from these loads."""
-        if not (self.pin_friction and self.drive.pin_friction):
-            return self
+        # a state that held itself would be freed late, with all its arrays
+        return self._frictionless if self.pin_friction and self.drive.pin_friction else self
+
+    @cached_property
+    def _frictionless(self) -> State:
         state = State(self.drive, self.posed, self.within, pin_friction=False)
         state.slope, state.curvature, state.piston_forces = self.slope, self.curvature, self.piston_forces
         return state
@@ -107,7 +110,9 @@ class State(Chambers):
         Their gas force, with their inertia and weight where `masses.piston` is a list of the masses of all.
         """
         drive = self.drive
-        force = self.force_of(drive.beyond) if some(any_of(drive.beyond)) else None
+        # tandem pistons are on the rod itself, without a lever
+        tandem = [False if gas is drive.own_gas else gas.piston.lever_ratio == 1 for gas in drive.gas]
+        force = self.force_of(tandem) if some(any_of(tandem)) else None
         masses = drive.cylinder.masses.pistons if drive.cylinder.masses else ()
         pistons = drive.cylinder.pistons
         if force is None or len(masses) != len(pistons):
@@ -122,7 +127,9 @@ class State(Chambers):
         "P_b",
         "force",
         "Inertia force −m b of the reciprocating masses",
-        lambda state: -state.drive.mass * state.b if state.drive.has_inertia else None,
+        lambda state: (
+            state.curvature * (-state.drive.mass * state.omega * state.omega) if state.drive.has_inertia else None
+        ),
     )
     P_weight = value(
         "P_w",
@@ -300,7 +307,7 @@ class State(Chambers):
         """Friction force in N of the piston rings and of `friction: constant`, which are independent of N."""
         drive = self.drive
         by_gas = np.abs(self.pressure_difference) * drive.ring_surface if some(drive.ring_surface != 0) else 0.0
-        return drive.steady_friction + by_gas
+        return drive.constant_friction + by_gas
 
     @cached_property
     def after_steady_friction(self) -> Number:
@@ -324,7 +331,7 @@ class State(Chambers):
             sense = State(self.drive, CrankAngle.of(self.within), self.within, self.pin_friction).guide_sense
         return np.where(sense >= 0, 1.0, -1.0)
 
-    @cached_property
+    @property
     def guide_denominator(self) -> Array:
         """Denominator of N: cos ψ + f sin ψ sgn c sgn N; ≤ 0 where the crosshead is self-locking."""
         sin_psi, cos_psi = self.rod_angle
@@ -355,12 +362,20 @@ class State(Chambers):
         if not drive.rubs:
             sin_psi, cos_psi = self.rod_angle
             return self.after_steady_friction * (sin_psi / cos_psi) + (drive.guide_weight - self._rod_side)
-        locked = self.guide_denominator <= 0
-        if locked.any() and drive.index is None:
-            raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
-        return self.guide_sense / np.where(locked, np.nan, self.guide_denominator)
+        below = self.guide_denominator
+        locked = below <= 0
+        if locked.any():
+            if drive.index is None:
+                raise NoSolutionError(drive.locks(float(self.phi[locked][0])))
+            below = np.where(locked, np.nan, below)
+        return self.guide_sense / below
 
-    @cached_property
+    @property
+    def drag(self) -> Number:
+        """Friction along the stroke line in N, magnitude."""
+        return self.crosshead_drag + self.drag_of_guides + self.steady_friction
+
+    @property
     def crosshead_drag(self) -> Number:
         """Crosshead friction f |N| in N, magnitude."""
         return self.N * (self.guide_side * self.drive.crosshead_friction) if self.drive.rubs else 0.0
@@ -437,24 +452,16 @@ class State(Chambers):
         lambda state: (
             None
             if state.P is None or state.drive.cylinder.friction is None
-            else state.filled((state.crosshead_drag + state.drag_of_guides + state.steady_friction) * -state.direction)
+            else state.filled(state.drag * -state.direction)
         ),
     )
 
     @cached_property
     def along_rod(self) -> Number:
         """Component S cos ψ of the rod force along the stroke line in N: the piston force less all friction."""
-        return _sum(self.P, self.F_friction)
-
-    @cached_property
-    def _free_torque(self) -> Number:
-        """Torque in N m before friction in pins, journals and yoke block, by virtual work of the output force."""
-        return self._output * self.slope + self._rod_tangential * self.mechanism.crank
-
-    @property
-    def torque(self) -> Number:
-        """Torque T R in N m at the crank pin: M before the friction in crank pin and journals."""
-        return self._free_torque - self._friction_side * self.mechanism.crank * self.angle.cos
+        if self.P is None or self.drive.cylinder.friction is None:
+            return self.P
+        return self.P - self.drag * self.direction
 
     @cached_property
     def losses(self) -> dict[str, Number]:
@@ -467,12 +474,16 @@ class State(Chambers):
             lost["block"] = self._friction_side * self.angle.cos * self.mechanism.crank
         return lost
 
-    M = value(
-        "M",
-        "torque",
-        "Torque on the shaft",
-        lambda state: None if state._output is None else state._free_torque - sum(state.losses.values(), start=0.0),
-    )
+    @column("M", "torque")
+    def M(self) -> Any:
+        """Torque on the shaft.
+
+        By virtual work of the force at the output, less what is lost in pins, journals and the block of a yoke.
+        """
+        if self._output is None:
+            return None
+        push = self._output * self.slope + self._rod_tangential * self.mechanism.crank
+        return push - sum(self.losses.values(), start=0.0)
 
 
 def on_pin(state: State) -> Vector:

@@ -61,16 +61,6 @@ _BEARINGS = {part: PARTS[part] for part in ("pin", "journal_A", "journal_B")}
 # three tiny ones would be zero.
 
 
-def round_bending(moment: Number, diameter: Number) -> Number:
-    """Return σ = 32 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_b/Z)."""
-    return 32 / math.pi * moment / diameter / diameter / diameter
-
-
-def round_torsion(moment: Number, diameter: Number) -> Number:
-    """Return τ = 16 M/(π d³) in Pa at the surface of a round section; moment in N m, diameter in m (G, M_d/Z_p)."""
-    return 16 / math.pi * moment / diameter / diameter / diameter
-
-
 class Place(NamedTuple):
     """The stresses in Pa at one place of a part; None for what there cannot be there.
 
@@ -140,9 +130,13 @@ def places(body: FreeBody) -> Iterator[Place]:
 
 
 def _round(part: str, name: str, moments: Force, torque: Number | None, diameter: Number) -> Place:
-    """Stresses at the surface of a round section, whose bendings add up as vectors."""
-    in_plane, out_of_plane = (magnitude(round_bending(one, diameter)) for one in (moments.real, moments.imag))
-    torsion = None if torque is None else magnitude(round_torsion(torque, diameter))
+    """Stresses at the surface of a round section, whose bendings add up as vectors (G).
+
+    Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
+    """
+    bendings = (magnitude(32 / math.pi * one / diameter / diameter / diameter) for one in (moments.real, moments.imag))
+    in_plane, out_of_plane = bendings
+    torsion = None if torque is None else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
     return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
 
 
@@ -317,8 +311,8 @@ class CrankshaftStrength(Results):
         both = [part for one in (body.pin, body.A, bends) for part in (one.real, one.imag)]
         # the web beyond the pin is bent out of plane as much at the pin as at the shaft
         kinked = (*both, body.along_web, at_pin - at_shaft, at_pin + at_shaft, state.D)
-        kinks = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in kinked])
-        parts = np.stack([np.broadcast_to(one, pieces.degrees.shape) for one in (*pin, state.D - pin.D)])
+        kinks = np.stack([*map(pieces.filled, kinked)])
+        parts = np.stack([*map(pieces.filled, (*pin, state.D - pin.D))])
 
         def magnitudes(some: Pieces, found: Array) -> Array:
             D, T, own = found
@@ -331,15 +325,15 @@ class CrankshaftStrength(Results):
     @property
     def breaks(self) -> Array:
         """The crank angles in degrees of the only machine between which every quantity is smooth."""
-        return np.append(self._cycle[0].low, self._cycle[0].cycle)
+        return self._cycle[0].ends
 
     @cached_property
     def _largest(self) -> list[Extreme]:
         """The largest of Bach's stresses over the cycle, then of von Mises', of every place."""
 
-        def stresses(some: Pieces, pin: Array) -> Array:
+        def stresses(some: Pieces, pin: Array) -> list[Array]:
             found = [*places(self._body(pin[0] + 1j * pin[1], CrankAngle.at_nodes(some), some))]
-            return np.stack([*(one.combined for one in found), *(one.von_mises for one in found)])
+            return [*(one.combined for one in found), *(one.von_mises for one in found)]
 
         return [Extreme(*map(self.forces.result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
 
@@ -388,7 +382,7 @@ class CrankshaftStrength(Results):
         """Return what is left of the sums of forces and moments, over the sizes of their terms, at its worst."""
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state).complex, state.angle, pieces)
-        return self.forces.result(pieces.largest(body.equilibrium_residual(np.asarray(state.torque))))
+        return self.forces.result(pieces.largest(body.equilibrium_residual(state.T * state.mechanism.crank)))
 
     # the two positions of the book, and the worst of the cycle
 
