@@ -5,6 +5,7 @@ escape it; all others take escaped text. LaTeX is to be \input into a document w
 """
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from html import escape
 
@@ -26,7 +27,7 @@ _ON_PAPER = 9
 """Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""
 
 
-class Writer:
+class Writer(ABC):
     """A writer of one format: its elements are templates for escaped text.
 
     across: the most columns of numbers in a table, None for any number; parting: what is between the cells of a line.
@@ -38,9 +39,9 @@ class Writer:
     def __init__(self, look: Look) -> None:
         self.look = look
 
+    @abstractmethod
     def text(self, plain: str) -> str:
         """Return a text in which everything is escaped that would be taken for markup."""
-        raise NotImplementedError
 
     def sentence(self, plain: str) -> str:
         """Return an escaped sentence."""
@@ -58,9 +59,9 @@ class Writer:
         """Return a sentence of a report, its numbers as they are wanted, escaped."""
         return self.sentence(self.look.sentence(text))
 
+    @abstractmethod
     def table_head(self, table: TextTable, caption: str, heads: Sequence[tuple[str, str]]) -> str:
         """Return the beginning of a table; heads: symbol and unit of each column."""
-        raise NotImplementedError
 
     def row(self, table: TextTable, number: int, cells: Sequence[str]) -> str:
         """Return a row."""

@@ -173,7 +173,7 @@ def _cut(
 def _before_friction(state: State) -> list[Array]:
     """Return motion and gas forces, which are independent of friction and from which `_restored` makes a state."""
     motion = [state.angle.sin, state.angle.cos, state.slope, state.curvature, *(state.rod_angle or ())]
-    return [np.broadcast_to(one, state.phi.shape) for one in (*motion, *state.piston_forces)]
+    return [state.filled(one) for one in (*motion, *state.piston_forces)]
 
 
 def _restored(drive: Drive, pieces: Pieces, known: Samples) -> State:

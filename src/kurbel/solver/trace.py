@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from kurbel.arrays import Array, Indices
+from kurbel.crank_angle import within_cycle
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
@@ -38,10 +39,7 @@ class TracePressure:
         self.pressures = np.asarray(self.each.mean(axis=0))
         self._p, widths = self.pressures - setting.base, np.diff(self.angles)
         self._gradients = np.divide(np.diff(self._p), widths, out=np.zeros_like(widths), where=widths > 0)
-        self.starts = Angles(np.zeros(len(widths), dtype=np.intp), self._within_cycle(self.angles[:-1]))
-
-    def _within_cycle(self, degrees: Array) -> Array:
-        return np.mod(degrees, self.setting.cycle)
+        self.starts = Angles(np.zeros(len(widths), dtype=np.intp), within_cycle(self.angles[:-1], setting.cycle))
 
     @cached_property
     def noise(self) -> float:
@@ -50,7 +48,7 @@ class TracePressure:
 
     def at(self, degrees: Array, within: Array) -> Array:
         """Return the gauge pressure in Pa at crank angles in degrees, on the lines that hold `within` (n,)."""
-        along, turned = self.angles - self.angles[0], self._within_cycle(within - self.angles[0])
+        along, turned = self.angles - self.angles[0], within_cycle(within - self.angles[0], self.setting.cycle)
         line = np.minimum(np.searchsorted(along, turned, side="right") - 1, len(self._gradients) - 1)
         return self._p[line] + self._gradients[line] * (turned - along[line] + (degrees - within))
 
@@ -58,7 +56,7 @@ class TracePressure:
     def highest(self) -> Extreme:
         """The highest gauge pressure in Pa, and the first crank angle that has it: at a sample."""
         best = self._p.max()
-        return Extreme(float(best), float(self._within_cycle(self.angles[self._p == best]).min()))
+        return Extreme(float(best), float(within_cycle(self.angles[self._p == best], self.setting.cycle).min()))
 
     # the rise of pressure
 
@@ -73,10 +71,10 @@ class TracePressure:
         Of chords that begin or end at a sample: between these the rise over one degree is linear.
         """
         middles = np.concatenate((self.angles - _CHORD / 2, self.angles + _CHORD / 2))
-        along = self.angles - self.angles[0]
-        ahead, behind = (self._within_cycle(middles + way - self.angles[0]) for way in (_CHORD / 2, -_CHORD / 2))
+        along, cycle = self.angles - self.angles[0], self.setting.cycle
+        ahead, behind = (within_cycle(middles + way - self.angles[0], cycle) for way in (_CHORD / 2, -_CHORD / 2))
         found = [np.interp(ahead, along, one) - np.interp(behind, along, one) for one in cycles]
-        return np.stack(found) / _CHORD, self._within_cycle(middles)
+        return np.stack(found) / _CHORD, within_cycle(middles, cycle)
 
     @cached_property
     def steepest(self) -> Extreme:
