@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import N, Number, Truth
+from kurbel.arrays import Indices, N, Number, Truth
 
 
 def is_number(value: object) -> bool:
@@ -104,3 +104,8 @@ def unless_cancelled(whole: Any, sizes: Number, rounding: float = _ROUNDING) -> 
     if np.iscomplexobj(whole):
         return unless_cancelled(whole.real, sizes, rounding) + 1j * unless_cancelled(whole.imag, sizes, rounding)
     return np.where(np.abs(whole) > rounding * sizes, whole, 0.0)
+
+
+def spread(number: Any, machine: Indices | None) -> Any:
+    """Return the numbers (machines,) of the machines in an index; a single number is returned as it is."""
+    return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number

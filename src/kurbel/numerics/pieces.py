@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Array, Flags, Indices, Number
-from kurbel.numerics.arithmetic import lost
+from kurbel.numerics.arithmetic import lost, spread
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.lobatto import LobattoRule, rule, series_at, slope_of_series
 from kurbel.numerics.search import bracketed_roots
@@ -208,7 +208,7 @@ class Pieces:
 
     def of(self, numbers: Any) -> Any:
         """Return numbers (machines,) for each piece, (pieces,); a single number is returned as it is."""
-        return numbers[self.machine] if isinstance(numbers, np.ndarray) and numbers.ndim else numbers
+        return spread(numbers, self.machine)
 
     def filled(self, values: Any) -> Array:
         """Return a value, or one of every piece (pieces,), at every node, (nodes, pieces)."""

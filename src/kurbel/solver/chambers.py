@@ -9,11 +9,12 @@ import numpy as np
 
 from kurbel.arrays import Array, Number, Truth
 from kurbel.crank_angle import CrankAngle
+from kurbel.numerics.arithmetic import spread
 from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
-from kurbel.solver.trace import TracePressure, spread
+from kurbel.solver.trace import TracePressure
 
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
 """End of the cylinder -> index of its symbols, and its name."""

@@ -30,11 +30,11 @@ from kurbel.machine.ideal_cards import Compressor, IdealCard, Otto, Steam, after
 from kurbel.machine.indicator import STROKES, Card, Rectangle
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import Mechanism
-from kurbel.numerics.arithmetic import some, total
+from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.figures import result
-from kurbel.solver.trace import TracePressure, spread
+from kurbel.solver.trace import TracePressure
 from kurbel.traces.correct import Setting, Trace
 
 _NO_WIDTH = 1e-10

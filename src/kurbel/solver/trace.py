@@ -2,22 +2,15 @@
 
 import math
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from kurbel.arrays import Array, Indices
+from kurbel.arrays import Array
 from kurbel.crank_angle import within_cycle
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.traces.correct import Setting, Trace, by_straight_lines, by_trapezoid, corrected, noise_of, work_weights
-
-
-def spread(number: Any, machine: Indices | None) -> Any:
-    """Return the numbers (machines,) of the machines in an index; a single number is returned as it is."""
-    return number[machine] if isinstance(number, np.ndarray) and number.ndim and machine is not None else number
-
 
 _CHORD = 1.0
 """Degrees over which a rate of pressure rise is measured: between two samples noise would dominate."""
