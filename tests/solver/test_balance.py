@@ -213,14 +213,14 @@ def three_throws(of_first: str, of_machine: str = "") -> str:
 speed: 600 rpm
 {of_machine}
 cylinders:
-  - {{name: a, crank: 100 mm, rod: 400 mm, axial_position: 0 m{of_first}}}
-  - {{name: b, crank: 100 mm, rod: 400 mm, axial_position: 0.2 m, crank_position: 90 deg, masses: {{reciprocating: 1 kg}}}}
-  - {{name: c, crank: 100 mm, rod: 400 mm, axial_position: 0.4 m, crank_position: 180 deg}}
+  - {{name: c, crank: 100 mm, rod: 400 mm, axial_position: 0 m{of_first}}}
+  - {{name: b, crank: 100 mm, rod: 400 mm, axial_position: 0.2 m, crank_position: 90 deg, masses: {{piston: 1 kg}}}}
+  - {{name: a, crank: 100 mm, rod: 400 mm, axial_position: 0.4 m, crank_position: 180 deg}}
 """
 
 
 @pytest.mark.parametrize(
-    "of_first, of_machine, place",
+    ("of_first", "of_machine", "place"),
     [
         (", counterweights: [{product: 0.1 kg m, angle: 30 deg}]", "", 0.0),
         ("", "counterweights: [{product: 0.1 kg m, angle: 30 deg, axial_position: 0.3 m}]", 0.3),
