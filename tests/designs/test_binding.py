@@ -47,6 +47,27 @@ def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, st
                 )
 
 
+@pytest.mark.parametrize("key", ["pegging.angle", "pegging.pressure"])
+def test_keys_within_a_trace_vary_with_another_key(key: str) -> None:
+    """A trace is of one machine: numbers within it are read row by row, however deep they are."""
+    points = ", ".join(f"[{angle}, {60 * np.exp(-((angle - 180) ** 2) / 800):.4f}]" for angle in range(0, 361, 5))
+    pegging = "{angle: 90 deg, pressure: 0.5 bar}"
+    text = (
+        "{speed: 600 rpm, crank: 70 mm, rod: 200 mm, bore: 100 mm, masses: {piston: 2 kg, "
+        "connecting_rod: {mass: 3 kg, share: 0.4}}, "
+        f"indicator: {{head_end: {{trace: {{unit: bar, points: [{points}], pegging: {pegging}}}}}}}}}"
+    )
+    unit = "deg" if key.endswith("angle") else "bar"
+    inputs = {
+        f"indicator.head_end.trace.{key}": [f"{value} {unit}" for value in (41, 0.5, 73, 90)],
+        "masses.connecting_rod.share": ["0.2", "0.4", "0.6", "0.8"],
+    }
+    together = sweep(text, inputs, ["T_max"])
+    for row in range(4):
+        alone = sweep(text, {name: [values[row]] for name, values in inputs.items()}, ["T_max"])
+        assert together["T_max"][row] == pytest.approx(alone["T_max"][0], rel=1e-12)
+
+
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
     areas = [found[f"{name}.A_head"] for name in "abc"]

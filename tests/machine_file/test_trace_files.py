@@ -297,7 +297,7 @@ def test_what_cannot_be_a_trace_is_named_with_its_line(
         ("\n".join(GOOD[:-1]), "", []),  # the closing sample is missing, as loggers write them
         (holed(100, 120, 0.1), "", ["no samples from 100 to 120 deg; a straight line joins them"]),
         (rows(np.r_[0:60:0.1, 60:361], np.full(901, 2.0)), "", []),  # a denser stretch leaves no holes elsewhere
-        ("0,1\n120,2\n120,2\n360,1\n", "", ["1 samples given twice count once"]),
+        ("0,1\n120,2\n120,2\n360,1\n", "", ["1 sample given twice counts once"]),
         (
             "".join(f"{a},{1 + a / 100}\n" for a in [*range(180, 360, 5), *range(0, 180, 5)]),
             "",

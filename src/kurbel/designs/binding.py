@@ -82,7 +82,7 @@ class Binder:
             text = value_at(owner.mapping.get(name), inner)
             bare = inner and isinstance(text, str) and NUMBER.fullmatch(text)  # the number of a point, say
             self.kinds.append(form.kind_as_written(owner.mapping.get(name)) or ("ratio" if bare else ""))
-            self._numeric.append(not inner and form.number is not None and not isinstance(owner.made, Indivisible))
+            self._numeric.append(not inner and form.number is not None and not _is_indivisible(owner, mappings))
         self._words, self._root = self._structure(start), root
 
     def columns(self, numbers: Array) -> list[KeyColumn]:
@@ -236,6 +236,14 @@ def _mappings(value: object) -> Iterator[Given]:
 def _reads(given: Given, name: object) -> bool:
     """Return whether a key is one of the record itself, and given."""
     return name in given.values and name in given.form.keys
+
+
+def _is_indivisible(given: Given, mappings: Sequence[Given]) -> bool:
+    """Return whether a mapping, or one that it is in, becomes a record whose arrays are those of one machine."""
+    return any(
+        isinstance(mapping.made, Indivisible) and given.path[: len(mapping.path)] == mapping.path
+        for mapping in mappings
+    )
 
 
 def _owner(path: Path, mappings: Sequence[Given]) -> tuple[Given, str, Path]:

@@ -94,6 +94,7 @@ class Machine(Record):
         "Speed of rotation",
         "n",
         least=0,
+        also=("rpm", "upm", "drehzahl", "rotational_speed", "engine_speed"),
         absent="no velocities, accelerations or inertia in physical units",
     )
     cycle: str = field(tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke")

@@ -310,7 +310,8 @@ def rod_ratio_notes(case: Case) -> Iterator[str]:
         mechanism = forces.drive.mechanism
         ratio = 1 / mechanism.lam if mechanism.has_rod and mechanism.lam > 0 else math.inf
         if not least - 1e-9 <= ratio <= most + 1e-9 and ratio < math.inf and (kind := _kind_of(forces)):
-            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}."
+            locomotives = "; locomotives have 6 to 11" if kind == "steam engines" and ratio > most else ""
+            yield f"{forces.drive.name}: L/R = {ratio:.3g} is beyond the 4 to 5 usual in {kind}{locomotives}."
 
 
 def _kind_of(forces: CylinderForces) -> str:

@@ -199,8 +199,8 @@ def _lay_over_one_lap(recording: Recording) -> None:
 
     count, end = int(bounds[1]), int(bounds[-1])
     offsets = lap * np.arange(laps)[:, np.newaxis]
-    from_samples = np.arange(count)
-    shared = angles[:count]
+    from_samples: Indices = np.arange(count)
+    shared: Array = angles[:count]
     even = (np.diff(bounds) == count).all()
     if even and np.abs(angles[:end].reshape(laps, count) - shared - offsets).max() <= _SAME_ANGLE * lap / count:
         each = recording.values[:, :end].reshape(-1, count)
@@ -276,7 +276,10 @@ def _leave_out_twins(recording: Recording) -> None:
     same = twins & (np.diff(recording.values) == 0).all(axis=0)
     if same.any() and not np.count_nonzero(twins) >= _ROUNDED * len(angles) > 2:
         recording.keep(np.append(True, ~same))
-        recording.notes.append(f"{np.count_nonzero(same)} samples given twice count once")
+        count = np.count_nonzero(same)
+        recording.notes.append(
+            f"{count} samples given twice count once" if count > 1 else "1 sample given twice counts once"
+        )
 
 
 def _closed(recording: Recording) -> Samples:
