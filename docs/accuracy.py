@@ -21,7 +21,7 @@ from kurbel.render.drawing import draw_file
 from kurbel.render.formats import render
 from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
-from kurbel.report.tables import Report
+from kurbel.tables.tables import Report
 
 FOLDER = Path(__file__).parent
 PICTURE = "accuracy.svg"

@@ -15,11 +15,11 @@ from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
+from kurbel.pictures.picture import Axis, Curve, Panel, Picture, Words
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame, provenance
-from kurbel.report.picture import Axis, Curve, Panel, Picture, Words
-from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame, provenance
+from kurbel.tables.tables import Column, LeftOut, Part, PlaceTable, Report
 
 Loads = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""

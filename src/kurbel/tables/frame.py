@@ -17,10 +17,15 @@ from kurbel.declared.units import example, unit_factor
 from kurbel.errors import NoSolutionError, Nowhere, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
+from kurbel.notes.warnings import of_machine
 from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, ambiguity, called, in_sentences
-from kurbel.report.tables import (
+from kurbel.solver.case import Case
+from kurbel.solver.cycle import Where
+from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.forces import CylinderForces
+from kurbel.tables.tables import (
     Column,
     InputFile,
     KeyValue,
@@ -33,11 +38,6 @@ from kurbel.report.tables import (
     grouped,
     stepped,
 )
-from kurbel.report.warnings import of_machine
-from kurbel.solver.case import Case
-from kurbel.solver.cycle import Where
-from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.forces import CylinderForces
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""

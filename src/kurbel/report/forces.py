@@ -9,9 +9,7 @@ import numpy as np
 
 from kurbel.declared.unit_systems import show
 from kurbel.errors import UsageError
-from kurbel.quantity import PHI, Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject
-from kurbel.report.left_out import (
+from kurbel.notes.left_out import (
     balance_left_out,
     bearing_left_out,
     bearings_left_out,
@@ -20,7 +18,7 @@ from kurbel.report.left_out import (
     motion_left_out,
     strength_left_out,
 )
-from kurbel.report.warnings import (
+from kurbel.notes.warnings import (
     as_far_as_solved,
     bearing_warnings,
     by_cylinder,
@@ -30,12 +28,14 @@ from kurbel.report.warnings import (
     rod_ratio_notes,
     shells,
 )
-from kurbel.solver.balance import MachineBalance
+from kurbel.quantity import PHI, Quantity, by_id
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.balance import MachineBalance
+from kurbel.solver.chapters.stress import CrankshaftStrength
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.indicated import OF_CYCLES
-from kurbel.solver.stress import CrankshaftStrength
-from kurbel.solver.trace import TracePressure
+from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.traces.pressure import TracePressure
 
 STRESSES = by_id(
     Quantity("compression", "σ_c", "stress", "Compressive stress of a web by the force along it, negative in tension"),

@@ -10,17 +10,17 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
+from kurbel.notes.left_out import flywheel_left_out, left_out, missing
+from kurbel.notes.warnings import of_machine
 from kurbel.numerics.arithmetic import is_whole
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject, whole_machine
-from kurbel.report.left_out import flywheel_left_out, left_out, missing
-from kurbel.report.tables import LeftOut
-from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.chain import holzer_at
+from kurbel.solver.chapters.chain import holzer_at
+from kurbel.solver.chapters.harmonics import CylinderOrders, MachineOrders, Orders
+from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 from kurbel.solver.flywheel import DeadCentre
-from kurbel.solver.harmonics import CylinderOrders, MachineOrders, Orders
-from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
+from kurbel.tables.frame import Frame, Functions, Places, Row, Subject, whole_machine
+from kurbel.tables.tables import LeftOut
 
 TORQUE_ORDERS = by_id(
     Quantity("speed", "n", "speed", "Speed of rotation"),
