@@ -11,8 +11,8 @@ from command import answer, printed, run
 from kurbel import loads
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
+from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.report import accuracy
-from kurbel.report.accuracy import accuracy_picture
 from kurbel.tables.tables import Column, Part, PlaceTable, Report
 
 MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"

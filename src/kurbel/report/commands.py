@@ -93,7 +93,7 @@ def _flywheel() -> "Functions":
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
     FILE, which may depend on it.
     """
-    from kurbel.report.torsion import FLYWHEEL
+    from kurbel.report.flywheel import FLYWHEEL
 
     return FLYWHEEL
 
@@ -105,7 +105,7 @@ def _stress() -> "Functions":
     the largest stress of the place over the whole cycle; combined after Bach (sigma_res) and after von Mises
     (sigma_v). FILE needs 'crankshaft', one cylinder and a pressure.
     """
-    from kurbel.report.forces import STRESS
+    from kurbel.report.stress import STRESS
 
     return STRESS
 
@@ -117,7 +117,7 @@ def _bearings() -> "Functions":
     and mean load, pressures, p v, and the arcs of the surfaces that are never loaded. Main bearings need 'crankshaft',
     whose throw is used for every throw of a machine with several. --cylinder takes the name of a pin or bearing.
     """
-    from kurbel.report.forces import BEARINGS
+    from kurbel.report.bearings import BEARINGS
 
     return BEARINGS
 
@@ -130,7 +130,7 @@ def _balance() -> "Functions":
     it. Each order is a vector that turns with the crank and one that turns against it; an order that cancels is
     exactly 0. The best counterweights replace those of FILE.
     """
-    from kurbel.report.forces import BALANCE
+    from kurbel.report.balance import BALANCE
 
     return BALANCE
 
@@ -142,7 +142,7 @@ def _harmonics() -> "Functions":
     piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
     cranks pull together.
     """
-    from kurbel.report.torsion import HARMONICS
+    from kurbel.report.harmonics import HARMONICS
 
     return HARMONICS
 

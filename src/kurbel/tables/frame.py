@@ -17,7 +17,6 @@ from kurbel.declared.units import example, unit_factor
 from kurbel.errors import NoSolutionError, Nowhere, UnitError, UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
-from kurbel.notes.warnings import of_machine
 from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, ambiguity, called, in_sentences
@@ -211,18 +210,6 @@ class Functions(NamedTuple):
         """
         found = self.own(case, frame, **options) if self.own else (self.subjects(case), self.notes(case))
         return report_on(frame, case.machine, self.title, *found)
-
-
-def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
-    """Return the function of a command that has results of the whole machine, and of no part of it."""
-
-    def subjects(case: Case) -> list[Subject]:
-        (found,) = case.results(command)
-        return [
-            Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
-        ]
-
-    return subjects
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
