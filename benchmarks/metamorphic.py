@@ -177,6 +177,18 @@ def written_out(keys: Any) -> Any:
     return keys | {"cylinders": written}
 
 
+class Repeated(yaml.SafeDumper):
+    """Writes what is in several places in each of them: machine files have no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def text_of(keys: Any) -> str:
+    """Return the text of a machine file with these keys."""
+    return yaml.dump(keys, Dumper=Repeated, sort_keys=False)
+
+
 COMMANDS = ("motion", "forces", "flywheel", "balance", "bearings", "harmonics", "stress", "torsion", "delivery")
 
 
@@ -233,7 +245,7 @@ def written_otherwise(text: str) -> Iterator[str]:
     keys = yaml.safe_load(text)
     others = {"units": in_other_units(keys), "like": written_out(keys)}
     case = {"name": "as set", "set": {"speed": "77 rpm"}}
-    texts = {name: yaml.safe_dump(other, sort_keys=False) for name, other in others.items() if other is not None}
+    texts = {name: text_of(other) for name, other in others.items() if other is not None}
     for command in COMMANDS:
         plain = run(text, command, "-f", "json")
         yield from own_fault(plain, command)
@@ -264,11 +276,12 @@ def csv_against_json(text: str, command: str, document: str) -> Iterator[str]:
     if result.exit_code != 0:
         return
     numbers = {value for values in figures_of(document).values() for value in values if isinstance(value, int | float)}
-    for row in csv.reader(io.StringIO(result.stdout)):
-        for cell in row:
+    for row in csv.DictReader(io.StringIO(result.stdout)):
+        # names may be numbers
+        for cell in (cell for name, cell in row.items() if name not in ("cylinder", "part", "name")):
             try:
                 number = float(cell)
-            except ValueError:
+            except (TypeError, ValueError):
                 continue
             if number not in numbers:
                 yield f"csv: {command} has {cell}, json has not"

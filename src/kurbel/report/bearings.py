@@ -13,7 +13,9 @@ from kurbel.notes.warnings import (
     of_machine,
 )
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.bearings import Bearing
 from kurbel.tables.frame import Functions, Subject
+from kurbel.tables.tables import together
 
 
 def _loaded(case: Case) -> list[Subject]:
@@ -26,11 +28,18 @@ def _loaded(case: Case) -> list[Subject]:
             one.at,
             left_out=bearing_left_out(*one.size, one.omega),
             of=one.cylinders[0].drive.name if one.of_rod else "",
+            where="" if one.of_rod else _next_to(one),
         )
         for one in case.bearings.parts
     ]
     warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
     return [*parts, Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)]
+
+
+def _next_to(bearing: Bearing) -> str:
+    """Return the cylinders on the throws to either side of a main bearing, in words."""
+    names = [cylinder.drive.name for cylinder in bearing.cylinders]
+    return f"next to {together(names)}"
 
 
 def _bearing_notes(case: Case) -> Iterator[str]:

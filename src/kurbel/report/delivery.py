@@ -34,7 +34,7 @@ def _delivering(case: Case) -> list[Subject]:
         whole = Subject("whole machine", found.pump, found.pump.at)
     warnings = chain(of_machine(case), delivery_warnings(found))
     return [
-        *(Subject(one.name, one, tables=_ends_tables(one)) for one in found.stages),
+        *(Subject(one.name, one, tables=_ends_tables(one), part=one.part) for one in found.stages),
         *(Subject(one.name, one, one.at) for one in found.pistons),
         whole._replace(left_out=delivery_left_out(found), warnings=warnings, whole=True),
     ]
