@@ -8,6 +8,7 @@ import click
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
+    CommandWithKeyValues,
     angle_options,
     columns_option,
     complete_ids,
@@ -104,7 +105,9 @@ def _command(row: Row) -> click.Command:
     shared = [_SHARED[word] for word in row.options]
     own = (_OWN[row.word],) if row.word in _OWN else ()
     with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
-    return click.command(row.word, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(with_options(run))
+    return click.command(row.word, cls=CommandWithKeyValues, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(
+        with_options(run)
+    )
 
 
 for _row in REPORTS:
@@ -221,6 +224,8 @@ _what_varies = stacked(
 _what_is_printed = stacked(
     key_value_option(
         "--columns",
+        "--key-values",
+        "columns",
         type=words,
         metavar="ID,ID,...",
         help="Key values of any command, by id or symbol; those of forces if not given.",
