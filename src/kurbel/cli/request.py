@@ -66,9 +66,10 @@ def print_report(
     """Print the report of a command on the machine, called with the names of the options.
 
     units: of the figures; names: of key values, which are printed alone, '' for all, None with tables; where, over:
-    what has a value, or the stroke, over which the rows are instead of the angle; cases: a row for each load case instead of all else; cycle: number of one of a measured trace; spreads:
-    uncertainties of inputs in addition to those of the file, None for a command without any; instead: the option that
-    asks for other tables instead of that over the crank angle; own: what only the report of this command takes.
+    what has a value, or the stroke, over which the rows are instead of the angle; cases: a row for each load case
+    instead of all else; cycle: number of one of a measured trace; spreads: uncertainties of inputs in addition to
+    those of the file, None for a command without any; instead: the option that asks for other tables instead of that
+    over the crank angle; own: what only the report of this command takes.
     """
     rows = [way for way, value in (("--where", where), ("--over", over), ("--angles", angles)) if value is not None]
     not_of_cases = [*rows, *(["--case"] if case_name else [])]
