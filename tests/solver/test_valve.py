@@ -145,14 +145,14 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
     S_H, S_C = random.uniform(10, 25, 2)
     E_H, E_C = random.uniform(-3, 4, 2)
     v_H, v_C = random.uniform(0, 5, 2)
-    r, l = random.uniform(32, 60), random.uniform(62, 900)
+    r, length = random.uniform(32, 60), random.uniform(62, 900)
     inside, rocker = (bool(one) for one in random.integers(0, 2, 2))
     gear = {
         "eccentricity": f"{r} mm",
         "steam_lap": {"head_end": f"{S_H} mm", "crank_end": f"{S_C} mm"},
         "exhaust_lap": {"head_end": f"{E_H} mm", "crank_end": f"{E_C} mm"},
         "lead": {"head_end": f"{v_H} mm", "crank_end": f"{v_C} mm"},
-        "eccentric_rod": f"{l} mm",
+        "eccentric_rod": f"{length} mm",
         "admission": "inside" if inside else "outside",
         "reversing_rocker": str(rocker).lower(),
     }
@@ -164,7 +164,7 @@ def test_an_event_is_where_an_edge_of_the_valve_passes_that_of_the_port(seed: in
             assert degrees is not None
             assert results.at([degrees]).valve[0] == pytest.approx(1e-3 * edge, abs=1e-15)
     delta, shift = results["advance"].value, results["valve_shift"].value
-    eccentric = kurbel.solve(f"{{crank: {r} mm, rod: {l} mm}}").cylinders[0]
+    eccentric = kurbel.solve(f"{{crank: {r} mm, rod: {length} mm}}").cylinders[0]
     phi = np.arange(0.0, 360.0, 7.0)
     if inside == rocker:  # a quarter turn and δ ahead of the crank; the head end opens toward the shaft
         w = eccentric.at(phi + 90 + delta).x - 1e-3 * r

@@ -130,7 +130,7 @@ class Link(Record):
 
 
 class Events(NamedTuple):
-    """Of one end: angles in degrees from its own dead centre, or fractions of the stroke from there; each a `Number`."""
+    """Of one end, each a `Number`: degrees from its own dead centre, or fractions of the stroke from there."""
 
     cut_off: Any
     release: Any

@@ -29,6 +29,7 @@ from kurbel.report.warnings import (
     pin_warnings,
     rod_ratio_notes,
     shells,
+    valve_warnings,
 )
 from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
@@ -58,7 +59,13 @@ def mechanism_notes(case: Case) -> Iterable[str]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
+        Subject(
+            one.drive.name,
+            one,
+            one.at,
+            left_out=motion_left_out(case.machine, one.drive.cylinder),
+            warnings=valve_warnings(one),
+        )
         for one in case.cylinders
     ]
 

@@ -46,6 +46,7 @@ from kurbel.report.picture_source import (
 )
 from kurbel.report.section import mechanism
 from kurbel.report.tables import cylinder_meant, grouped, together
+from kurbel.report.valve_pictures import reuleaux, valve_ellipse, zeuner
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
@@ -260,6 +261,9 @@ PICTURES = (
     PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
     PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
+    PictureKind("zeuner", "Valve diagram of Zeuner", "motion", zeuner, across=2),
+    PictureKind("reuleaux", "Valve diagram of Reuleaux", "motion", reuleaux, across=2),
+    PictureKind("valve-ellipse", "Valve over the piston", "motion", valve_ellipse),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
     PictureKind("mechanism", "Mechanism", "", mechanism),

@@ -6,11 +6,14 @@ of the port: u = A c/(a b).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
 from kurbel.arrays import Number
+from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder
+from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.valve import Valve, ValveEnd
 from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Heading, value, values_for
@@ -20,7 +23,7 @@ from kurbel.solver.motion import Motion
 _ENDS = {"head": ("H", "head end"), "crank": ("C", "crank end")}
 """End of the cylinder -> index of its symbols, and its name."""
 _MOTION = ("motion",)
-_FAST = 60.0  # m/s; Die Kolbendampfmaschinen, p. 141
+_FAST = 60.0  # m/s at any moment, from which on inlets throttle: Die Kolbendampfmaschinen, p. 141
 
 
 def _of_end(id: str, symbol: str, kind: str, text: str, **words: Any) -> Any:
@@ -74,9 +77,9 @@ class ValveGear(Results):
         self.valve, self.cylinder, self.motion = valve, cylinder, motion
 
     @cached_property
-    def answers(self) -> dict[str, object]:
+    def answers(self) -> dict[str, Any]:
         """The key values of both ends."""
-        answers = dict[str, object]()
+        answers = dict[str, Any]()
         for name, end in zip(_ENDS, self.valve.ends):
             fractions = end.fractions(self.motion.mechanism)
             for event, degrees in end.events._asdict().items():
@@ -90,6 +93,22 @@ class ValveGear(Results):
                 answers[f"steam_speed_{name}"] = times * self.motion.c_m
                 answers[f"steam_speed_max_{name}"] = times * self.motion.c_max.value
         return answers
+
+    @property
+    def notes(self) -> Iterator[str]:
+        """What a reader of the results should know, each in one sentence; of a single machine."""
+        chambers = self.cylinder.pistons[0].chambers if self.cylinder.pistons else {}
+        others = [end.replace("_", " ") for end, card in chambers.items() if not isinstance(card, Steam)]
+        if others:
+            ends = " and the ".join(others)
+            yield f"the events of 'valve' do not change the pressures of the {ends}, which are given"
+        fastest = max(self.answers.get(f"steam_speed_max_{name}", 0.0) for name in _ENDS)
+        if fastest > _FAST:
+            speed = show(round(fastest, 1), "velocity")
+            yield (
+                f"the steam rushes through the port at up to {speed}: throttling is to be expected above 50 to 60 m/s, "
+                "and the ideal card is too full there"
+            )
 
     def _times_faster(self, end: ValveEnd) -> Number | None:
         """Return the speed of the steam over that of the piston; None where a length or the speed is not known."""
