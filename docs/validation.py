@@ -354,9 +354,10 @@ def _valves() -> str:
         for one in PRINTS
     )
     text = (
-        "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine (1864). Infinite rods, but for the "
-        "last two engines, whose connecting rods are given. No printed example with a finite eccentric rod is known: there "
-        "the tests hold kurbel against a bisection in 40 digits, and against the eccentric as a slider-crank."
+        "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine. Infinite rods, except for the "
+        "last engine of 1859 and that of 1891, whose connecting rods are given. No printed example with a finite "
+        "eccentric rod is known: there the tests hold kurbel against a bisection in 40 digits, and against the "
+        "eccentric as a slider-crank."
     )
     return _own_book("Valve gears in print, 1859 to 1892", rows).replace("\n\n", f"\n\n{text}\n\n", 1)
 
