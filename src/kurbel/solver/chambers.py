@@ -14,7 +14,7 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
-from kurbel.solver.trace import TracePressure
+from kurbel.traces.pressure import TracePressure
 
 _BOTH = ("motion", "forces")
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}

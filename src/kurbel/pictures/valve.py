@@ -7,8 +7,8 @@ import numpy as np
 from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.machine.valve import Valve, ValveEnd
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
-from kurbel.report.picture_source import AROUND, NO_NAME, Source, curve, level
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Words
+from kurbel.pictures.picture_source import AROUND, NO_NAME, Source, curve, level
 
 _BEYOND = 1.25
 """Radius of the crank circle of Zeuner's diagram over the eccentricity."""
