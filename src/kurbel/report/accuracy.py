@@ -1,7 +1,7 @@
 """The reports of `kurbel accuracy`: error against run time, and the verdicts on stiff and extreme cases."""
 
 import platform
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
@@ -12,13 +12,11 @@ import numpy as np
 
 from kurbel.accuracy import stiff, trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
-from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame, provenance
-from kurbel.report.picture import Axis, Curve, Panel, Picture, Words
-from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame, provenance
+from kurbel.tables.tables import Column, LeftOut, Part, PlaceTable, Report
 
 Loads = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
@@ -224,63 +222,3 @@ def answer(machine: Machine, asked: str) -> float | None:
         if (value := values.get(name)) is not None:
             return value
     return None
-
-
-# the picture
-
-_LEAST = 1e-17
-"""Errors below this, zero too, are drawn here."""
-
-
-def accuracy_picture(report: Report) -> Picture:
-    """Return a panel for each quantity of an accuracy report, and one for ω in each scene of the speed.
-
-    A curve is a method, in the former of one scene. Raises UsageError where nothing was compared.
-    """
-    methods: dict[str, int] = {}
-    curves: dict[str, list[Curve]] = {}
-    for title, method, errors, times in _dots(report):
-        look = methods.setdefault(method, len(methods))
-        curves.setdefault(title, []).append(Curve(Words(method), np.array(errors), np.array(times), "dots", look))
-    if not curves:
-        raise UsageError("--plot: nothing was compared, there is nothing to draw")
-
-    # all panels have the same axes
-    times = np.concatenate([curve.y for drawn in curves.values() for curve in drawn])
-    low, high = times.min(), times.max()
-    rounding = Curve(Words(""), np.array([trials.ROUNDING] * 2), np.array([low, high]), "faint")
-    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
-    y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)
-    panels = [Panel(x, y, (rounding, *drawn), title=title) for title, drawn in curves.items()]
-    return Picture(
-        "accuracy",
-        "time over error",
-        "Time over relative error, lines between the answers of one method for one machine; the error falls to the "
-        "right, the thin upright line is the rounding of one float. Runs that fail are not drawn; the titles count "
-        "them.",
-        tuple(panels),
-        report.title,
-        across=min(4, len(curves)),
-        legend=tuple((Words(method), look) for method, look in methods.items()),
-    )
-
-
-def _dots(report: Report) -> Iterator[tuple[str, str, list[float], list[float]]]:
-    """Yield title of the panel, method, errors and times of each curve."""
-    for part in report.parts:
-        for compared in part.place_tables:
-            if compared.id not in (NUMERICAL, SPEED):
-                continue
-            columns = {column.id: column.values for column in compared.columns}
-            is_speed = compared.id == SPEED
-            errors = columns["omega" if is_speed else "error"]
-            failed = sum(error is None for error in errors)
-            of_speed = f"ω, {part.name}" + (f"; {failed} fail" if failed else "")
-
-            dots: dict[tuple[str, str], list[tuple[float, float]]] = {}
-            for names, error, time in zip(compared.names, errors, columns["median"]):
-                title, method = (of_speed, names[0]) if is_speed else names[:2]
-                if error is not None and time is not None:
-                    dots.setdefault((title, method), []).append((max(error, _LEAST), time))
-            for (title, method), points in dots.items():
-                yield title, method, [error for error, _ in points], [time for _, time in points]
