@@ -28,8 +28,8 @@ def accuracy_picture(report: Report) -> Picture:
         raise UsageError("--plot: nothing was compared, there is nothing to draw")
 
     # all panels have the same axes
-    times = np.concatenate([curve.y for drawn in curves.values() for curve in drawn])
-    low, high = times.min(), times.max()
+    every = np.concatenate([curve.y for drawn in curves.values() for curve in drawn])
+    low, high = every.min(), every.max()
     rounding = Curve(Words(""), np.array([ROUNDING] * 2), np.array([low, high]), "faint")
     x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
     y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)
