@@ -172,19 +172,19 @@ def _roetscher() -> str:
     pump = cylinder.columns([90, 270])["P_driven"] / _KGF
     inertia = "826 kg rounded to 830 kg, v to 2.095 m/s"
     rows: list[tuple[str, str, str, float, str, str]] = [
-        ("606", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
-        ("606", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
-        ("606", "speed of the crank pin", "2.094", case["v"].value, "m/s", ""),
-        ("606", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
-        ("606", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
+        ("607", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
+        ("607", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
+        ("604", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
+        ("604", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
         (
-            "606",
+            "605",
             "b at the dead centre, relative to the infinite rod",
             "1.20",
             case["b_max"].value / _infinite(case),
             "",
             "",
         ),
+        ("608", "speed of the crank pin", "2.095", case["v"].value, "m/s", "rounded up"),
         (
             "608",
             "largest inertia force, high-pressure side",
