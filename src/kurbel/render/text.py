@@ -50,7 +50,7 @@ def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
 def angle_scale(values: Iterable[Value], digits: int | None = None) -> Scale:
     """Return the scale of angles in degrees: two decimals, fewer if no angle has them; or so many digits.
 
-    >>> angle_scale([79.10014, 90.0]), angle_scale([79.10014, 90.0], 6), angle_scale([0.0, 90.0])
+    >>> angle_scale([79.27236, 90.0]), angle_scale([79.27236, 90.0], 6), angle_scale([0.0, 90.0])
     (Scale(decimals=2, exponent=0), Scale(decimals=4, exponent=0), Scale(decimals=0, exponent=0))
     """
     angles = [value for value in values if value is not None]
@@ -64,7 +64,7 @@ def head_scale(values: Sequence[Value], digits: int | None = None) -> Scale:
 
     Angles that were written keep their decimals; computed ones have as many digits as other angles.
 
-    >>> head_scale([0.0, 22.5]), head_scale([79.100135299, 280.899864701])
+    >>> head_scale([0.0, 22.5]), head_scale([79.272357282, 280.727642718])
     (Scale(decimals=1, exponent=0), Scale(decimals=2, exponent=0))
     >>> head_scale([10.0011111111, 10.0022222222]), head_scale([79.100135299], 5)
     (Scale(decimals=3, exponent=0), Scale(decimals=3, exponent=0))

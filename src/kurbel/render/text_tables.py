@@ -126,11 +126,11 @@ def _visible(column: Column, sharing: Sequence[Value], look: Look, missing: str)
     values = [0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values]
     column = column._replace(values=values)
     smallest = min((abs(value) for value in values if value), default=largest)
-    decimals = shared.decimals
-    while not float(cell(smallest, shared._replace(decimals=decimals)) or 1):
-        decimals += 1
-    if decimals <= shared.decimals + _MORE_DECIMALS:
-        return _scaled(column, shared._replace(decimals=decimals), look, missing=missing)
+    for more in range(_MORE_DECIMALS + 1):
+        scale = shared._replace(decimals=shared.decimals + more)
+        is_visible = not smallest or float(cell(smallest, scale)) > 0
+        if is_visible:
+            return _scaled(column, scale, look, missing=missing)
     return _each_scaled(column, DIGITS, look, missing)
 
 
@@ -171,7 +171,6 @@ def _value(one: KeyValue, look: Look) -> str:
         return f"< {power.removeprefix('1·')}"
 
     values = one.value if isinstance(one.value, tuple) else (one.value,)
-
 
     text = look.angle if one.unit == "deg" else look.value
     if len(values) > _MOST_LISTED:

@@ -113,9 +113,7 @@ def _ids_of(rows: Iterable[str]) -> list[str]:
     return [*dict.fromkeys(ids)]
 
 
-def _part(
-    ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str
-) -> Part:
+def _part(ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str) -> Part:
     """Return the rows of one L/R; symbols: of the rows by their ids, in Greek letters and in ASCII.
 
     Raises UsageError if the crank cannot turn.
@@ -270,9 +268,7 @@ def _with_printed(report: Report, formula: str) -> Report:
 
 
 _SIGNS = "±: + on the outstroke, − on the return stroke, as the book prints it."
-_MISPRINTS = (
-    "* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."
-)
+_MISPRINTS = "* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."
 
 
 def _misprints(values: Sequence[Value], figures: Sequence[Value]) -> tuple[int, ...]:
