@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from kurbel.render import Look
 from kurbel.render.text import angle_scale, cell, head_scale, rounded, scale_of, single
 from kurbel.render.text_tables import place_table
-from kurbel.report.tables import Column, PlaceTable
+from kurbel.tables.tables import Column, PlaceTable
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 ROW = st.lists(FINITE, min_size=1, max_size=8)
