@@ -183,19 +183,19 @@ def _roetscher() -> str:
     pump = cylinder.columns([90, 270])["P_driven"] / _KGF
     inertia = "826 kg rounded to 830 kg, v to 2.095 m/s"
     rows: list[tuple[str, str, str, float, str, str]] = [
-        ("606", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
-        ("606", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
-        ("606", "speed of the crank pin", "2.094", case["v"].value, "m/s", ""),
-        ("606", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
-        ("606", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
+        ("607", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
+        ("607", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
+        ("604", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
+        ("604", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
         (
-            "606",
+            "605",
             "b at the dead centre, relative to the infinite rod",
             "1.20",
             case["b_max"].value / _infinite(case),
             "",
             "",
         ),
+        ("608", "speed of the crank pin", "2.095", case["v"].value, "m/s", "rounded up"),
         (
             "608",
             "largest inertia force, high-pressure side",
@@ -280,6 +280,7 @@ def _blau() -> str:
     """Return the examples 31 to 35, first-order formulas on purpose."""
     roots = {ratio: math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4)) for ratio in (5, 4)}
     sixth = math.degrees(math.acos((math.sqrt(41) - 5) / 4))
+    minus_sixth = _where_minus_a_sixth()
     rows: list[tuple[str, str, str, float, str]] = [
         ("31", "x/R at 45°, L/R = 5", "0.343", _displacement(5, 45), ""),
         ("31", "x/R at 90°", "1.1", _displacement(5, 90), ""),
@@ -288,9 +289,12 @@ def _blau() -> str:
         ("32", "x/R at 90°", "1.125", _displacement(4, 90), ""),
         ("32", "x/R at 135°", "1.77", _displacement(4, 135), ""),
         ("33", "b = 0, L/R = 5 (79°20′)", "79.333", roots[5], "°"),
+        ("33", "x/R there", "0.911", _displacement(5, roots[5]), ""),
         ("33", "b = 0, L/R = 4", "77", roots[4], "°"),
+        ("33", "x/R there", "0.895", _displacement(4, roots[4]), ""),
         ("34", "b is a sixth of b at 0° (69°30′)", "69.5", sixth, "°"),
         ("34", "x/R there", "0.737", _displacement(5, sixth), ""),
+        ("35", "b is minus a sixth of b at 0°", "90", minus_sixth, "°"),
     ]
     shown = (
         (
@@ -304,8 +308,15 @@ def _blau() -> str:
         )
         for n, of, printed, value, unit in rows
     )
-    text = "The first-order formulas of the book, which `--compare` prints beside the exact columns."
+    text = "The first-order formulas of the book, which `--compare` prints next to the exact columns."
     return _own_book("E. Blau (1905)", shown).replace("\n\n", f"\n\n{text}\n\n", 1)
+
+
+def _where_minus_a_sixth() -> float:
+    """Return the first angle at which the b of first order is minus a sixth of the largest; L/R = 5."""
+    case = kurbel.solve("{crank: 1 m, rod_ratio: 5, speed: 1 rad/s}")
+    found = case.cylinders[0].angles_where("b_book", -case["b_max"].value / 6)
+    return float(found.angles[0])
 
 
 def _displacement(ratio: float, degrees: float) -> float:
