@@ -14,7 +14,7 @@ import pytest
 from kurbel.errors import KurbelError
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
-from kurbel.solver.torsion import ShaftVibration
+from kurbel.solver.chapters.torsion import ShaftVibration
 
 
 def solved(text: str) -> ShaftVibration:
