@@ -41,9 +41,40 @@ Random = np.random.Generator
 HOME = Path(__file__).parent.parent
 NUMBER = re.compile(r"(-?[0-9.]+(?:e[+-]?[0-9]+)?)(?: (.*))?")
 COLUMNS = (
-    *("b_max", "c_max", "T_max", "S_max", "N_max", "P_max", "p_max", "work", "power", "mean_pressure", "friction_work"),
-    *("dE", "delta", "J", "M_max", "M_mean", "omega_max", "F_free_max", "M_free_max", "M_roll_max", "F_free_best"),
-    *("load_max", "load_mean", "unloaded_arc", "sigma_pin_max", "sigma_web_A_max", "flow_mean", "flow_max"),
+    *(
+        "b_max",
+        "c_max",
+        "T_max",
+        "S_max",
+        "N_max",
+        "P_max",
+        "p_max",
+        "work",
+        "power",
+        "mean_pressure",
+        "friction_work",
+    ),
+    *(
+        "dE",
+        "delta",
+        "J",
+        "M_max",
+        "M_mean",
+        "omega_max",
+        "F_free_max",
+        "M_free_max",
+        "M_roll_max",
+        "F_free_best",
+    ),
+    *(
+        "load_max",
+        "load_mean",
+        "unloaded_arc",
+        "sigma_pin_max",
+        "sigma_web_A_max",
+        "flow_mean",
+        "flow_max",
+    ),
     *("volume_fluctuation", "capacity", "rod_compression_max", "reversal_angle", "frequency"),
 )
 """Key values of every command, of which a machine has some."""
@@ -101,7 +132,9 @@ def batch_against_alone(text: str, random: Random) -> Iterator[str]:
         except KurbelError:
             continue
         for row in range(4):
-            alone = kurbel.sweep(text, {key: [texts[row]] for key, texts in inputs.items()}, columns)
+            alone = kurbel.sweep(
+                text, {key: [texts[row]] for key, texts in inputs.items()}, columns
+            )
             for name in together.keys() & alone.keys():
                 if "residual" in name:
                     continue
@@ -109,7 +142,9 @@ def batch_against_alone(text: str, random: Random) -> Iterator[str]:
                     if together[name][row] != alone[name][0]:
                         yield f"{inputs} row {row}: {name} {together[name][row]!r}, alone {alone[name][0]!r}"
                 elif (apart := distance(together[name][row], alone[name][0], 0.0)) > ROUNDING:
-                    yield (f"{inputs} row {row}: {name} {together[name][row]!r}, alone {alone[name][0]!r}: {apart:.1e}")
+                    yield (
+                        f"{inputs} row {row}: {name} {together[name][row]!r}, alone {alone[name][0]!r}: {apart:.1e}"
+                    )
             if together.keys() != alone.keys():
                 only = sorted(together.keys() ^ alone.keys())
                 yield f"{inputs} row {row}: columns {only} are in one of both only"
@@ -119,7 +154,9 @@ def varied(value: float, unit: str, random: Random) -> list[str]:
     """Return four values of a key near its own as texts; of a count, of an angle, and of 0 now and then far off."""
     if value.is_integer() and abs(value) < 20 and not unit:
         return [f"{value + step:g}" for step in (0, 1, 2, -1)]
-    factors = random.uniform(0.95, 1.05, 4) if random.random() < 0.8 else 10 ** random.uniform(-2, 1, 4)
+    factors = (
+        random.uniform(0.95, 1.05, 4) if random.random() < 0.8 else 10 ** random.uniform(-2, 1, 4)
+    )
     if value == 0:
         factors, value = random.uniform(-1, 1, 4), 1.0
     return [f"{value * factor:.9g} {unit}".strip() for factor in factors.tolist()]
@@ -137,8 +174,19 @@ def has(case: Case, name: str) -> bool:
 # one machine, written in two ways
 
 UNITS = {
-    **{"m": ("mm", 1e3), "mm": ("m", 1e-3), "rpm": ("Hz", 1 / 60), "kg": ("g", 1e3), "bar": ("kPa", 1e2)},
-    **{"N": ("kN", 1e-3), "N m": ("kN m", 1e-3), "deg": ("rad", math.pi / 180), "kg m2": ("t m2", 1e-3)},
+    **{
+        "m": ("mm", 1e3),
+        "mm": ("m", 1e-3),
+        "rpm": ("Hz", 1 / 60),
+        "kg": ("g", 1e3),
+        "bar": ("kPa", 1e2),
+    },
+    **{
+        "N": ("kN", 1e-3),
+        "N m": ("kN m", 1e-3),
+        "deg": ("rad", math.pi / 180),
+        "kg m2": ("t m2", 1e-3),
+    },
     **{"N m/rad": ("kN m/rad", 1e-3), "kW": ("W", 1e3), "N/mm2": ("MPa", 1.0)},
 }
 """Unit -> another one, and how many of it there are in one."""
@@ -148,7 +196,8 @@ def in_other_units(value: Any) -> Any:
     """Return the keys of a file with numbers in other units; a unit beside points stays."""
     if isinstance(value, dict):
         return {
-            key: in_other_units(inner) if key not in ("limits", "expect") else inner for key, inner in value.items()
+            key: in_other_units(inner) if key not in ("limits", "expect") else inner
+            for key, inner in value.items()
         }
     if isinstance(value, list):
         return [in_other_units(inner) for inner in value]
@@ -189,7 +238,17 @@ def text_of(keys: Any) -> str:
     return yaml.dump(keys, Dumper=Repeated, sort_keys=False)
 
 
-COMMANDS = ("motion", "forces", "flywheel", "balance", "bearings", "harmonics", "stress", "torsion", "delivery")
+COMMANDS = (
+    "motion",
+    "forces",
+    "flywheel",
+    "balance",
+    "bearings",
+    "harmonics",
+    "stress",
+    "torsion",
+    "delivery",
+)
 
 
 def run(text: str, *arguments: str) -> Any:
@@ -255,17 +314,28 @@ def written_otherwise(text: str) -> Iterator[str]:
             if (plain.exit_code == 0) != (other.exit_code == 0):
                 yield f"{name}: {command} ends with {plain.exit_code} and {other.exit_code}: {other.stderr[-200:]}"
             elif plain.exit_code == 0:
-                yield from (f"{name}: {command} {line}" for line in differences(plain.stdout, other.stdout, 1e-9))
+                yield from (
+                    f"{name}: {command} {line}"
+                    for line in differences(plain.stdout, other.stdout, 1e-9)
+                )
         if "cases" in keys or plain.exit_code != 0:
             continue
         in_case = run(
-            yaml.safe_dump(keys | {"cases": [case]}, sort_keys=False), command, "-f", "json", "--case", "as set"
+            yaml.safe_dump(keys | {"cases": [case]}, sort_keys=False),
+            command,
+            "-f",
+            "json",
+            "--case",
+            "as set",
         )
         as_set = run(text, command, "-f", "json", "--set", "speed=77 rpm")
         if in_case.exit_code != as_set.exit_code:
             yield f"case: {command} ends with {in_case.exit_code} and {as_set.exit_code}"
         elif as_set.exit_code == 0:
-            yield from (f"case: {command} {line}" for line in differences(in_case.stdout, as_set.stdout, 0.0))
+            yield from (
+                f"case: {command} {line}"
+                for line in differences(in_case.stdout, as_set.stdout, 0.0)
+            )
         yield from csv_against_json(text, command, plain.stdout)
 
 
@@ -275,10 +345,17 @@ def csv_against_json(text: str, command: str, document: str) -> Iterator[str]:
     yield from own_fault(result, f"{command} -f csv")
     if result.exit_code != 0:
         return
-    numbers = {value for values in figures_of(document).values() for value in values if isinstance(value, int | float)}
+    numbers = {
+        value
+        for values in figures_of(document).values()
+        for value in values
+        if isinstance(value, int | float)
+    }
     for row in csv.DictReader(io.StringIO(result.stdout)):
         # names may be numbers
-        for cell in (cell for name, cell in row.items() if name not in ("cylinder", "part", "name")):
+        for cell in (
+            cell for name, cell in row.items() if name not in ("cylinder", "part", "name")
+        ):
             try:
                 number = float(cell)
             except (TypeError, ValueError):
@@ -298,13 +375,18 @@ def main() -> None:
     """Print every difference with the machine, and how many there were."""
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else date.today().toordinal()
-    texts = {f"random {number}": machine_file(np.random.default_rng([seed, number])) for number in range(count)}
+    texts = {
+        f"random {number}": machine_file(np.random.default_rng([seed, number]))
+        for number in range(count)
+    }
     shipped = [
         *HOME.glob("configs/*.yaml"),
         *HOME.glob("tests/examples/*.yaml"),
         *HOME.glob("tests/machine_file/good/*"),
     ]
-    texts |= {path.stem: path.read_text("utf-8") for path in sorted(shipped) if path.stem != "answers"}
+    texts |= {
+        path.stem: path.read_text("utf-8") for path in sorted(shipped) if path.stem != "answers"
+    }
     found: Counter[str] = Counter()
     for number, (name, text) in enumerate(texts.items()):
         random = np.random.default_rng([seed, number])

@@ -24,15 +24,29 @@ cylinders:
 @pytest.mark.parametrize(
     ("text", "inputs", "columns"),
     [
-        (BANKS, {"cylinders.bank_angles.1": "60 deg,120 deg,-60 deg,359 deg,0 deg,90 deg"}, ["M_max", "dE"]),
+        (
+            BANKS,
+            {"cylinders.bank_angles.1": "60 deg,120 deg,-60 deg,359 deg,0 deg,90 deg"},
+            ["M_max", "dE"],
+        ),
         (BANKS, {"cylinders.each.stroke": "80 mm,90 mm"}, ["M_max", "dE"]),
-        (PINS, {"cylinders.crank_positions.2": "90 deg,240 deg,450 deg,360 deg,-30 deg"}, ["M_max", "dE"]),
+        (
+            PINS,
+            {"cylinders.crank_positions.2": "90 deg,240 deg,450 deg,360 deg,-30 deg"},
+            ["M_max", "dE"],
+        ),
         (LISTED, {"cylinders.1.crank_position": "0 deg,90 deg,450 deg"}, ["M_max", "dE"]),
-        (LIKE, {"cylinders.0.bore": "2 m,3 m,4 m", "cylinders.1.masses.piston": "5 kg,6 kg,-6 kg"}, ["P_max"]),
+        (
+            LIKE,
+            {"cylinders.0.bore": "2 m,3 m,4 m", "cylinders.1.masses.piston": "5 kg,6 kg,-6 kg"},
+            ["P_max"],
+        ),
     ],
     ids=["bank angles", "stroke", "crank positions", "a crank position", "like another"],
 )
-def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, str], columns: Sequence[str]) -> None:
+def test_each_row_is_the_machine_with_its_values(
+    text: str, inputs: dict[str, str], columns: Sequence[str]
+) -> None:
     """What a bank angle leaves open, the turn in which a cylinder fires, each row decides for itself."""
     rows = {key: values.split(",") for key, values in inputs.items()}
     together = sweep(text, rows, columns)
@@ -42,15 +56,17 @@ def test_each_row_is_the_machine_with_its_values(text: str, inputs: dict[str, st
             if name == "failure":
                 assert values[row] == alone[name][0]
             else:
-                assert np.asarray(values[row]) == pytest.approx(np.asarray(alone[name][0]), rel=1e-12, nan_ok=True), (
-                    name
-                )
+                assert np.asarray(values[row]) == pytest.approx(
+                    np.asarray(alone[name][0]), rel=1e-12, nan_ok=True
+                ), name
 
 
 @pytest.mark.parametrize("key", ["pegging.angle", "pegging.pressure"])
 def test_keys_within_a_trace_vary_with_another_key(key: str) -> None:
     """A trace is of one machine: numbers within it are read row by row, however deep they are."""
-    points = ", ".join(f"[{angle}, {60 * np.exp(-((angle - 180) ** 2) / 800):.4f}]" for angle in range(0, 361, 5))
+    points = ", ".join(
+        f"[{angle}, {60 * np.exp(-((angle - 180) ** 2) / 800):.4f}]" for angle in range(0, 361, 5)
+    )
     pegging = "{angle: 90 deg, pressure: 0.5 bar}"
     text = (
         "{speed: 600 rpm, crank: 70 mm, rod: 200 mm, bore: 100 mm, masses: {piston: 2 kg, "
@@ -71,7 +87,9 @@ def test_keys_within_a_trace_vary_with_another_key(key: str) -> None:
 def test_a_cylinder_that_is_like_another_varies_with_it() -> None:
     found = sweep(LIKE, {"cylinders.0.bore": ["2 m", "3 m"]}, ["A_head"])
     areas = [found[f"{name}.A_head"] for name in "abc"]
-    assert areas == [pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])]
+    assert areas == [
+        pytest.approx(np.pi / 4 * np.array(bores) ** 2) for bores in ([2, 3], [2, 3], [2, 2])
+    ]
 
 
 # parts of a row are those that the columns name
@@ -82,9 +100,13 @@ def two_stages() -> str:
     card = "{{compressor: {{suction: {} bar, delivery: {} bar, clearance: 8 %, exponent: 1.35}}}}"
     texts = ["speed: 600 rpm", "cylinders:"]
     for name, bore, suction, delivery in (("LP", 320, 1, 2.8), ("HP", 195, 2.8, 8)):
-        ends = ", ".join(f"{end}: {card.format(suction, delivery)}" for end in ("head_end", "crank_end"))
+        ends = ", ".join(
+            f"{end}: {card.format(suction, delivery)}" for end in ("head_end", "crank_end")
+        )
         indicator = f"indicator: {{pressures: absolute, {ends}}}"
-        texts.append(f"  - {{name: {name}, crank: 90 mm, rod: 450 mm, bore: {bore} mm, {indicator}}}")
+        texts.append(
+            f"  - {{name: {name}, crank: 90 mm, rod: 450 mm, bore: {bore} mm, {indicator}}}"
+        )
     return "\n".join(texts)
 
 
@@ -92,11 +114,17 @@ def two_stages() -> str:
 def test_columns_of_stages_are_named_by_their_pistons(count: int) -> None:
     """Other suction at one end makes it a stage of its own: no column may then have the volume of another part."""
     suctions = [f"{1 + row / 100} bar" for row in range(count)]
-    found = sweep(two_stages(), {"cylinders.0.indicator.head_end.compressor.suction": suctions}, ["stroke_volume"])
+    found = sweep(
+        two_stages(),
+        {"cylinders.0.indicator.head_end.compressor.suction": suctions},
+        ["stroke_volume"],
+    )
     areas = np.pi / 4 * np.array([0.32, 0.195]) ** 2
     assert found["LP.stroke_volume"][0] == pytest.approx(2 * areas[0] * 0.18, rel=1e-12)
     assert np.isnan(found["LP.stroke_volume"][1:]).all()
-    assert found["HP.stroke_volume"] == pytest.approx(np.full(count, 2 * areas[1] * 0.18), rel=1e-12)
+    assert found["HP.stroke_volume"] == pytest.approx(
+        np.full(count, 2 * areas[1] * 0.18), rel=1e-12
+    )
     others = "it has other parts: no 'LP', but 'LP, head end', 'LP, crank end'"
     assert not found["failure"][0]
     assert all(set(text.split("'")) == set(others.split("'")) for text in found["failure"][1:])
