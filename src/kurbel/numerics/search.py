@@ -76,7 +76,7 @@ def roots(function: Function, size: float = 0.0) -> Roots:
 
     # where it changes sign between two samples
     passed = np.flatnonzero((y[:-1] * y[1:] < 0) & ~inside[:-1] & ~inside[1:])
-    found = np.empty(0)
+    found: Array = np.empty(0)
     if len(passed):
         found = _closed(
             lambda places: np.nan_to_num(function(places[:, None])), x[passed], x[passed + 1], y[passed], y[passed + 1]
