@@ -153,7 +153,7 @@ def _machine(ctx: click.Context) -> "Machine":
 
 
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
-    from kurbel.report.pictures import PICTURES
+    from kurbel.pictures.pictures import PICTURES
 
     return (*(one.id for one in PICTURES), "all")
 
