@@ -4,8 +4,8 @@
 
     J₁ ω̇₁ = M − T        J₂ ω̇₂ = T − M_load(ω₂)        d/dt = ω_n d/dφ
 
-It is the shortest chain of `kurbel.solver.chapters.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n. A stiff one does
-not vibrate with the torque: both masses turn alike, and
+It is the shortest chain of `kurbel.solver.chapters.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n. A stiff
+one does not vibrate with the torque: both masses turn alike, and
 
     T = J₂ ω̇ + M_load(ω)
 """
