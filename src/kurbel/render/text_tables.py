@@ -90,10 +90,10 @@ def place_table(table: PlaceTable, look: Look) -> TextTable:
     Those with decimals or digits of their own do not.
     """
     blank = "_" if table.headed else " "
-    columns = [
-        TextColumn(head, "", [look.number(look.text(name.replace("_", blank))) for name in column], "name")
-        for head, column in zip(table.heads, zip(*table.names))
-    ]
+    columns = list[TextColumn]()
+    for head, column in zip(table.heads, zip(*table.names)):
+        words = [table.words.get(name) or name.replace("_", blank) for name in column]
+        columns.append(TextColumn(head, "", [look.number(look.text(text)) for text in words], "name"))
     sharing: dict[str, list[Value]] = {}
     for one in table.columns:
         if one.decimals is None and not one.alone:
