@@ -156,7 +156,7 @@ def unbettered(costs: Array) -> Flags:
     if aims <= 2:
         others = points[:, -1]
         least_before = np.minimum.accumulate(others)[:-1]
-        stays = np.ones(len(points), dtype=bool)
+        stays: Flags = np.ones(len(points), dtype=bool)
         stays[1:] = others[1:] < least_before if aims == 2 else False
     else:
         stays = _unbettered_by_blocks(points[:, 1:])
