@@ -335,6 +335,18 @@ def test_the_whole_counterweight_in_each_wheel() -> None:
     assert_allclose(sorted(np.degrees(np.angle(weights)) % 360), [90 + aside, 180 - aside])
 
 
+@pytest.mark.parametrize("place", [300, -300])
+def test_the_larger_counterweight_of_both_wheels_is_the_one_shown(place: int) -> None:
+    """By the lever: of 10 kg m at 300 mm from the middle the nearer of two wheels 1.5 m apart carries 7 kg m."""
+    found = balance_of(
+        "{speed: 300 rpm, cylinders: [{name: B, crank: 300 mm, rod: infinite, axial_position: -350 mm, masses: "
+        "{reciprocating: 180 kg}}, {like: B, axial_position: 350 mm, crank_position: 90 deg}]}",
+        f"counterweights=[{{product: 10 kg m, angle: 180 deg, axial_position: {place} mm}}]",
+        "locomotive={wheel_distance: 1.5 m}",
+    )
+    assert found.counterweight_wheel == pytest.approx(7.0, rel=1e-12)
+
+
 def test_the_book_beside_the_exact() -> None:
     found = balance_of(FOUR)
     assert longest(found.book.force)[0] == pytest.approx(4 * 0.1 * 0.25, rel=1e-14)
