@@ -260,7 +260,7 @@ def test_the_stress_of_a_stepped_piece_is_that_of_its_thinnest_section() -> None
     least = math.pi * (0.06**4 - 0.055**4) / (16 * 0.06)
     assert least < math.pi * 0.045**3 / 16
     for turned in (sections, sections[::-1], [sections[0], sections[2], sections[1]]):
-        piece = shaft(effort, 10.0, ShaftPart(inertia=2.0), *turned, ShaftPart(inertia=0.4)).pieces[0]
+        piece = shaft(effort, 10.0, ShaftPart(inertia=2.0), *turned, ShaftPart(inertia=0.4)).segments[0]
         assert piece.tau_vibratory == pytest.approx(piece.M_vibratory / least, rel=1e-14)
 
 
