@@ -253,9 +253,9 @@ def test_the_stress_of_a_stepped_piece_is_that_of_its_thinnest_section() -> None
     """A hollow section may be wider and yet weaker: π (d⁴ − d_i⁴)/(16 d) is least, wherever it stands."""
     effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
     sections = [
-        ShaftPart(diameter=0.05, length=0.3, loss_factor=0.01),
-        ShaftPart(diameter=0.045, length=0.2),
-        ShaftPart(diameter=0.06, bore=0.055, length=0.1),
+        ShaftPart(diameter=0.05, length=0.3, density=0.0, loss_factor=0.01),
+        ShaftPart(diameter=0.045, length=0.2, density=0.0),
+        ShaftPart(diameter=0.06, bore=0.055, length=0.1, density=0.0),
     ]
     least = math.pi * (0.06**4 - 0.055**4) / (16 * 0.06)
     assert least < math.pi * 0.045**3 / 16
