@@ -182,3 +182,22 @@ def test_two_masses_under_a_load_over_the_speed(order: float, load: Load | None)
     assert found.omega == pytest.approx(speed[inside], abs=1e-9 * np.ptp(speed))
     assert machine.multiplier == pytest.approx(np.abs(np.linalg.eigvals(after)).max(), rel=1e-9)
     assert (machine.multiplier > 1) == (load.power == -3.0)
+
+
+@pytest.mark.parametrize("slip", [0.05, 0.02])
+def test_amplification_of_a_harmonic_under_a_load_over_the_speed(slip: float) -> None:
+    """Both equations as a linear system: −Ω² J₁ θ₁ = M − T, (−Ω² J₂ + iΩ c) θ₂ = −(−T), T = (k + iΩ d)(θ₁ − θ₂)."""
+    machine = coupled(2.05, damping=60.0, load=Load(slip=slip))
+    (near,) = [one for one in machine.elastic.resonances if one.order == 2.0]
+    coupling, turning = machine.machine.coupling, 2.0 * OMEGA
+    spring = coupling.stiffness + 1j * turning * coupling.damping
+    slope = machine.M_mean / (slip * OMEGA)
+    system = np.array(
+        [
+            [spring - turning**2 * 60.0, -spring],
+            [-spring, spring - turning**2 * 40.0 + 1j * turning * slope],
+        ]
+    )
+    first, second = np.linalg.solve(system, [1.0, 0.0])
+    passed = abs(spring * (first - second))
+    assert near.amplification == pytest.approx(passed / (40.0 / 100.0), rel=1e-9)
