@@ -12,7 +12,10 @@ from kurbel.solver.chapters.delivery import Delivery
 from representative import CONFIGS
 
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2
-SINGLE, DOUBLE = "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}", ", crank_end: mirrored"
+SINGLE, DOUBLE = (
+    "head_end: {constant: {expansion: 0 bar, compression: 3 bar}}",
+    ", crank_end: mirrored",
+)
 PUMPS = {
     "one single-acting": ((0,), ""),
     "one double-acting": ((0,), DOUBLE),
@@ -49,7 +52,9 @@ def pump_of(text: str) -> Delivery:
 def test_fluctuating_volumes_of_the_table(kind: str) -> None:
     for ratio, printed in zip(("infinite", 5, 4), BOOK[kind]):
         pump = pump_of(machine(kind, ratio))
-        assert pump["volume_fluctuation"].value / (AREA * STROKE) == pytest.approx(printed, abs=1e-6)
+        assert pump["volume_fluctuation"].value / (AREA * STROKE) == pytest.approx(
+            printed, abs=1e-6
+        )
     for ratio, printed in zip(("infinite", 5), BOOK[kind][3:]):
         pump = pump_of(machine(kind, ratio))
         assert pump["flow_max"].value / pump["flow_mean"].value == pytest.approx(printed, abs=1e-6)
@@ -98,7 +103,10 @@ def test_own_quadrature_of_offset_and_unequal_machines() -> None:
 
 
 def test_a_vessel_saves_what_the_books_say() -> None:
-    for kind, saved in (("one single-acting", 1 - 3 / (2 * math.pi**2)), ("one double-acting", 1 - 6 / math.pi**2)):
+    for kind, saved in (
+        ("one single-acting", 1 - 3 / (2 * math.pi**2)),
+        ("one double-acting", 1 - 6 / math.pi**2),
+    ):
         pump = pump_of(machine(kind, "infinite"))
         assert pump["vessel_saving"].value == pytest.approx(saved, rel=1e-12)
 
@@ -123,7 +131,14 @@ def flows_of_unlike(ratio: float, samples: int = 200_000) -> tuple[np.ndarray, n
 
     def outward(angle: np.ndarray) -> np.ndarray:
         aside = np.sin(angle) / ratio
-        return -STROKE / 2 * np.sin(angle) * (1 + np.cos(angle) / ratio / np.sqrt(1 - aside**2)) * 2 * np.pi
+        return (
+            -STROKE
+            / 2
+            * np.sin(angle)
+            * (1 + np.cos(angle) / ratio / np.sqrt(1 - aside**2))
+            * 2
+            * np.pi
+        )
 
     double, single = AREA * outward(phi), AREA * outward(phi - np.pi / 2)
     return np.abs(double) + np.maximum(single, 0), np.abs(double) + np.maximum(-single, 0)
@@ -166,8 +181,12 @@ def test_each_pipe_has_the_head_of_its_own_flow() -> None:
         u = flow / (math.pi / 4 * diameter**2)
         return factor * length * u**2 / (2 * 9.80665 * diameter)
 
-    assert columns["friction_head"] == pytest.approx([head(lone + second, 6, 0.08, 0.03)], rel=1e-12)
-    assert columns["delivery_friction_head"] == pytest.approx([head(lone, 9, 0.05, 0.02)], rel=1e-12)
+    assert columns["friction_head"] == pytest.approx(
+        [head(lone + second, 6, 0.08, 0.03)], rel=1e-12
+    )
+    assert columns["delivery_friction_head"] == pytest.approx(
+        [head(lone, 9, 0.05, 0.02)], rel=1e-12
+    )
 
 
 def test_a_long_suction_pipe_lifts_less_by_its_acceleration_head() -> None:
@@ -175,7 +194,9 @@ def test_a_long_suction_pipe_lifts_less_by_its_acceleration_head() -> None:
     pipe = "pump: {suction_pipe: {length: 8 m, diameter: 80 mm}}"
     pump = pump_of(machine("one single-acting", "infinite", pipe))
     needed = 8 / (9.80665 * math.pi / 4 * 0.08**2) * AREA * STROKE / 2 * (2 * math.pi) ** 2
-    assert pump["suction_lift_max"].value == pytest.approx((101325 - 2339) / 9806.65 - needed, rel=1e-12)
+    assert pump["suction_lift_max"].value == pytest.approx(
+        (101325 - 2339) / 9806.65 - needed, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.3])
@@ -208,14 +229,18 @@ def test_heads_in_a_suction_pipe() -> None:
     assert columns["friction_head"] == pytest.approx([friction, 0.0], rel=1e-12)
     phi = np.linspace(0, np.pi, 100_001)
     most = np.max(acceleration * np.cos(phi) + friction * np.sin(phi) ** 2)
-    assert pump["suction_lift_max"].value == pytest.approx((101325 - 2339) / 9806.65 - most, rel=1e-9)
+    assert pump["suction_lift_max"].value == pytest.approx(
+        (101325 - 2339) / 9806.65 - most, rel=1e-9
+    )
     assert pump["flow_mean"].value == pytest.approx(0.9 * AREA * STROKE, rel=1e-12)
 
 
 def test_each_piston_and_chamber() -> None:
     delivery = api.solve(api.loads(MIXED)).delivery
     assert delivery.pump
-    assert sum(one["flow_mean"].value for one in delivery.pistons) == pytest.approx(delivery.pump["flow_mean"].value)
+    assert sum(piston["flow_mean"].value for piston in delivery.pistons) == pytest.approx(
+        delivery.pump["flow_mean"].value
+    )
     first = delivery.pistons[0].columns([40.0, 100.0, 200.0, 300.0])
     assert first["flow_head"] + first["flow_crank"] == pytest.approx(first["flow"])
     assert (first["flow_head"][:2] == 0).all()  # the outstroke shrinks the crank end
@@ -234,16 +259,24 @@ def test_a_pump_that_a_lever_drives(ratio: float, second: str) -> None:
     delivery = api.solve(api.loads(file)).delivery
     head, crank = math.pi / 4 * 0.12**2, math.pi / 4 * (0.12**2 - 0.05**2) * bool(second)
 
-    ends = (head, crank) if ratio > 0 else (crank, head)  # against the crosshead the other end delivers
-    swing = by_quadrature([(0.15, 0.7, 0.04, *(0.9 * abs(ratio) * one for one in ends), 0.0)])
+    ends = (
+        (head, crank) if ratio > 0 else (crank, head)
+    )  # against the crosshead the other end delivers
+    swing = by_quadrature([(0.15, 0.7, 0.04, *(0.9 * abs(ratio) * end for end in ends), 0.0)])
     assert delivery.pump
     stroke = math.sqrt(0.85**2 - 0.04**2) - math.sqrt(0.55**2 - 0.04**2)
-    assert delivery.pump["flow_mean"].value == pytest.approx(0.9 * abs(ratio) * sum(ends) * stroke, rel=1e-12)
+    assert delivery.pump["flow_mean"].value == pytest.approx(
+        0.9 * abs(ratio) * sum(ends) * stroke, rel=1e-12
+    )
     assert delivery.pump["volume_fluctuation"].value == pytest.approx(swing, rel=1e-9)
     phi = np.radians([50.0, 130.0, 240.0, 330.0])
     aside = 0.15 * np.sin(phi) - 0.04
-    outward = -0.15 * np.sin(phi) - aside * 0.15 * np.cos(phi) / np.sqrt(0.7**2 - aside**2)  # dx/dφ from the shaft
-    rate = 0.9 * abs(ratio) * np.where(outward > 0, ends[0], ends[1]) * np.abs(outward) * 2 * math.pi
+    outward = -0.15 * np.sin(phi) - aside * 0.15 * np.cos(phi) / np.sqrt(
+        0.7**2 - aside**2
+    )  # dx/dφ from the shaft
+    rate = (
+        0.9 * abs(ratio) * np.where(outward > 0, ends[0], ends[1]) * np.abs(outward) * 2 * math.pi
+    )
     assert delivery.pump.columns(np.degrees(phi), "flow")["flow"] == pytest.approx(rate, rel=1e-12)
 
 
@@ -273,18 +306,26 @@ def test_figures_of_the_ideal_card() -> None:
     assert stage["capacity"].value == pytest.approx(capacity, rel=1e-12)
     mass = 1e5 * capacity * 28.96e-3 / (8.31446261815324 * 308.15)
     assert stage["mass_flow"].value == pytest.approx(mass, rel=1e-12)
-    assert stage["capacity_normal"].value == pytest.approx(capacity / 1.01325 * 273.15 / 308.15, rel=1e-12)
+    assert stage["capacity_normal"].value == pytest.approx(
+        capacity / 1.01325 * 273.15 / 308.15, rel=1e-12
+    )
     ideal = 3.5 * 1e5 * capacity * (4 ** (0.4 / 1.4) - 1)
-    taken = 1.3 / 0.3 * 1e5 * capacity * (4 ** (0.3 / 1.3) - 1)  # of a polytropic card with equal exponents
+    taken = (
+        1.3 / 0.3 * 1e5 * capacity * (4 ** (0.3 / 1.3) - 1)
+    )  # of a polytropic card with equal exponents
     assert stage["isentropic_efficiency"].value == pytest.approx(ideal / taken, rel=1e-12)
 
 
 def test_an_exponent_of_its_own_for_the_expansion() -> None:
     text = ENDS.replace("exponent: 1.3", "exponent: 1.3, expansion_exponent: 1.2")
     (stage,) = api.solve(api.loads(text)).delivery.stages
-    assert stage["volumetric_efficiency"].value == pytest.approx(1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12)
+    assert stage["volumetric_efficiency"].value == pytest.approx(
+        1 - 0.1 * (4 ** (1 / 1.2) - 1), rel=1e-12
+    )
     # what is delivered was compressed; only what stays in the clearance expands
-    assert stage["discharge_temperature"].value == pytest.approx(308.15 * 4 ** (0.3 / 1.3), rel=1e-12)
+    assert stage["discharge_temperature"].value == pytest.approx(
+        308.15 * 4 ** (0.3 / 1.3), rel=1e-12
+    )
 
 
 def test_the_gas_of_a_cylinder_precedes_that_of_the_machine() -> None:
@@ -297,7 +338,9 @@ def test_the_gas_of_a_cylinder_precedes_that_of_the_machine() -> None:
     (stage,) = api.solve(api.loads(whole)).delivery.stages
     (alone,) = api.solve(api.loads(ENDS.replace(general, own.strip()))).delivery.stages
     capacity = alone["capacity"].value
-    assert stage["discharge_temperature"].value == pytest.approx(333.15 * 4 ** (0.3 / 1.3), rel=1e-12)
+    assert stage["discharge_temperature"].value == pytest.approx(
+        333.15 * 4 ** (0.3 / 1.3), rel=1e-12
+    )
     assert stage["mass_flow"].value == pytest.approx(1e5 * capacity / (200 * 333.15), rel=1e-12)
     power = 1.25 / 0.25 * 1e5 * capacity * (4 ** (0.25 / 1.25) - 1)
     assert stage["isentropic_power"].value == pytest.approx(power, rel=1e-12)
@@ -305,7 +348,9 @@ def test_the_gas_of_a_cylinder_precedes_that_of_the_machine() -> None:
     partly = whole.replace(own.strip(), "gas: {inlet_temperature: 60 °C}")
     (mixed,) = api.solve(api.loads(partly)).delivery.stages
     constant = 8.31446261815324 / 28.96e-3
-    assert mixed["mass_flow"].value == pytest.approx(1e5 * capacity / (constant * 333.15), rel=1e-12)
+    assert mixed["mass_flow"].value == pytest.approx(
+        1e5 * capacity / (constant * 333.15), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("excess", [1e-14, 1e-10, 1e-6, 1e-2])
@@ -315,8 +360,12 @@ def test_isentropic_power_near_the_isothermal_one(excess: float) -> None:
     text = ENDS.replace("isentropic_exponent: 1.4", f"isentropic_exponent: {kappa!r}")
     (stage,) = api.solve(api.loads(text)).delivery.stages
     share = (kappa - 1) / kappa
-    series = math.log(4) * sum((share * math.log(4)) ** k / math.factorial(k + 1) for k in range(12))
-    assert stage["isentropic_power"].value == pytest.approx(1e5 * stage["capacity"].value * series, rel=4e-15)
+    series = math.log(4) * sum(
+        (share * math.log(4)) ** k / math.factorial(k + 1) for k in range(12)
+    )
+    assert stage["isentropic_power"].value == pytest.approx(
+        1e5 * stage["capacity"].value * series, rel=4e-15
+    )
 
 
 def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
@@ -326,7 +375,9 @@ def test_an_unloaded_end_is_not_copied_and_does_no_work() -> None:
     assert crank == pytest.approx(whole.cylinders[0].drive.gas[0].works[1], rel=1e-15)
     (stage,) = case.delivery.stages
     share = (0.32**2 - 0.05**2) / (2 * 0.32**2 - 0.05**2)
-    assert stage["capacity"].value == pytest.approx(share * whole.delivery.stages[0]["capacity"].value, rel=1e-12)
+    assert stage["capacity"].value == pytest.approx(
+        share * whole.delivery.stages[0]["capacity"].value, rel=1e-12
+    )
     assert case.cylinders[0].at([10.0, 200.0]).p_head == pytest.approx([1e5, 1e5])
 
 
