@@ -15,10 +15,15 @@ mpf = mpmath.mpf
 
 def area(drawing: Drawing) -> mpmath.mpf:
     """Work over the stroke volume: the integral of p by z, forward and back."""
-    return sum(mp.quad(lambda z, line=line: drawing.at(line, z), [line.begin, line.end]) for line in drawing.lines)
+    return sum(
+        mp.quad(lambda z, line=line: drawing.at(line, z), [line.begin, line.end])
+        for line in drawing.lines
+    )
 
 
-def polytrope(pressure: float, volume: mpmath.mpf, next_volume: mpmath.mpf, n: mpmath.mpf) -> mpmath.mpf:
+def polytrope(
+    pressure: float, volume: mpmath.mpf, next_volume: mpmath.mpf, n: mpmath.mpf
+) -> mpmath.mpf:
     """Work of p V^n from one volume to another."""
     return mpf(pressure) * volume * (1 - (volume / next_volume) ** (n - 1)) / (n - 1)
 
@@ -32,7 +37,13 @@ def test_otto() -> None:
 
 def test_diesel_of_four_strokes_and_diagram_factor() -> None:
     """The strokes that change the gas take the difference of their pressures."""
-    words = {"intake": 1e5, "exhaust": 1.1e5, "clearance": 0.07, "exponent": 1.4, "expansion_exponent": 1.3}
+    words = {
+        "intake": 1e5,
+        "exhaust": 1.1e5,
+        "clearance": 0.07,
+        "exponent": 1.4,
+        "expansion_exponent": 1.3,
+    }
     card = Diesel(**words, peak=50e5, cut_off=0.05)
     small, cut_off, large = mpf(0.07), mpf(0.05) + mpf(0.07), 1 + mpf(0.07)
     burning = mpf(50e5) * mpf(0.05) + polytrope(50e5, cut_off, large, mpf(1.3))

@@ -41,7 +41,9 @@ class Line(NamedTuple):
         if self.exponent is None:
             share = (z - self.begin) / (self.end - self.begin)
             return self.pressure + (self.end_pressure - self.pressure) * share
-        return self.pressure * ((self.begin + self.clearance) / (z + self.clearance)) ** self.exponent
+        return (
+            self.pressure * ((self.begin + self.clearance) / (z + self.clearance)) ** self.exponent
+        )
 
 
 class Drawing(NamedTuple):
@@ -123,7 +125,11 @@ def _ideal(card: IdealCard, lift: Number, is_four_stroke: bool) -> Iterator[Line
 
 def _compressor(card: Compressor, lift: Number) -> Iterator[Line]:
     """Yield what the valves make of expansion and compression: they open where p V^n meets the pressure outside."""
-    clearance, suction, delivery = mpf(card.clearance), mpf(card.suction) + lift, mpf(card.delivery) + lift
+    clearance, suction, delivery = (
+        mpf(card.clearance),
+        mpf(card.suction) + lift,
+        mpf(card.delivery) + lift,
+    )
     if card.unloaded:
         yield Line(0, mpf(0), suction, mpf(1), suction, None, clearance)
         yield Line(1, mpf(1), suction, mpf(0), suction, None, clearance)
