@@ -8,15 +8,14 @@ from typing import NamedTuple
 from kurbel.checks.limits import Entry, compared
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
-from kurbel.machine import Machine, firings
+from kurbel.machine import Machine
+from kurbel.machine.firing import firings
 from kurbel.machine.several import intervals
-from kurbel.machine.turning import Harmonics
 from kurbel.notes.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
 from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
-from kurbel.report.delivery import delivery_left_out, delivery_warnings
-from kurbel.report.torsion import torsion_left_out, torsion_warnings
 from kurbel.solver.case import Case
-from kurbel.solver.shaft import shaft_obstacle
+from kurbel.solver.drive import any_of
+from kurbel.solver.forces import CylinderForces
 from kurbel.tables.tables import LeftOut, grouped, together
 
 _EVEN = 0.5
@@ -144,10 +143,8 @@ def _turning_entries(machine: Machine) -> Iterator[Entry]:
     yield from _stages(turning_stages(machine))
     if load is None:
         text = "constant"
-    elif isinstance(load.diagram, Harmonics):
-        text = f"{len(load.diagram.terms)} harmonics"
     elif load.diagram:
-        text = f"a diagram of {len(load.diagram.angles)} points"
+        text = load.diagram.size
     else:
         text = f"slip {load.slip:g}" if load.slip is not None else f"torque as the speed to the power {load.power:g}"
     yield Entry("load", text)
@@ -159,6 +156,8 @@ def _crankshaft_entries(case: Case) -> Iterator[Entry]:
         return
     for text in as_far_as_solved(bearing_warnings(case), "bearings"):
         yield Entry("bearings", text, "warning", path)
+    from kurbel.solver.shaft import shaft_obstacle
+
     if not shaft_obstacle(machine):
         yield Entry("computed", "loads on pins and main bearings")
     if machine.strength_obstacle:
@@ -186,6 +185,8 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
     shaft, path = case.machine.shaft, ("shaft",)
     if shaft is None and case.machine.coupling is None:
         return
+    from kurbel.report.torsion import torsion_left_out, torsion_warnings
+
     for text in as_far_as_solved(torsion_warnings(case), "torsion"):
         yield Entry("torsion", text, "warning")
     if shaft is None:
@@ -200,9 +201,18 @@ def _shaft_entries(case: Case) -> Iterator[Entry]:
         yield from _computed(f"natural frequencies, critical speeds{forced}", torsion_left_out(found), path)
 
 
+def _with_compressor(forces: CylinderForces) -> bool:
+    chambers = (chamber for gas in forces.drive.gas for chamber in gas.piston.chambers.values())
+    return any(chamber.compresses for chamber in chambers)
+
+
 def _delivery_entries(case: Case) -> Iterator[Entry]:
     """Yield what `kurbel delivery` computes of a machine with pumps or compressors, or why it cannot."""
+    if not any(any_of(forces.drive.pumping) or _with_compressor(forces) for forces in case.cylinders):
+        return
     with suppress(KurbelError):  # nothing is delivered
+        from kurbel.report.delivery import delivery_left_out, delivery_warnings
+
         found = case.delivery
         try:
             yield from [Entry("delivery", text, "warning") for text in delivery_warnings(found)]

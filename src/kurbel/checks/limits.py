@@ -14,8 +14,8 @@ from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.quantities import every_quantity
-from kurbel.quantity import NOISE_POWER, Quantity, by_id, called
+from kurbel.quantities import KEY_VALUES, every_quantity
+from kurbel.quantity import NOISE_POWER, Quantity, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, Places, Row, Subject, report_on, too_large
@@ -60,7 +60,7 @@ def judged(case: Case) -> Iterator[Entry]:
 
     Values that are equal to nine digits are compared once.
     """
-    machine, declared = case.machine, by_id(*every_quantity().all_key_values)
+    machine, declared = case.machine, KEY_VALUES
     figures = [("limits", *one) for one in machine.limits] + [("expect", *one) for one in machine.expect]
     for key, name, figure in figures:
         bound = figure if isinstance(figure, (Bound, Expected)) else Bound(figure)
@@ -175,9 +175,10 @@ def holders(case: Case, name: str) -> list[Holder]:
 
     scope, id = scoped(name)
     cylinders = [one.name for one in case.machine.cylinders]
-    first, *others = every_quantity().commands_of(id)
+    commands = KEY_VALUES.commands_of(id)
+    first = next(commands)
     # what the only cylinder does not have, the machine does not have
-    whole = [one for one in others if one == "flywheel"] if scope or len(cylinders) != 1 else []
+    whole = [one for one in commands if one == "flywheel"] if scope or len(cylinders) != 1 else []
     of_machine: list[Holder] = []
     for command in (first, *whole):
         own = []

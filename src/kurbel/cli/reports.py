@@ -1,11 +1,10 @@
-"""The commands that report on a machine, made from the rows of `COMMANDS`."""
+"""The commands that report on a machine, each made from its row of `COMMANDS`."""
 
 from collections.abc import Callable
 from typing import Any
 
 import click
 
-from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
     angle_options,
@@ -24,7 +23,6 @@ from kurbel.cli.options import (
 )
 from kurbel.declared.unit_systems import messages_in
 from kurbel.render.formats import Output
-from kurbel.report.commands import REPORTS
 from kurbel.report.commands import Command as Row
 
 _OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
@@ -73,7 +71,7 @@ _OWN = {
 """Options beyond those of every command; the report gets them by name, but for those that `print_report` has."""
 
 
-def _command(row: Row) -> click.Command:
+def command_of(row: Row) -> click.Command:
     """Return the command of a row, with FILE and the options that its report needs."""
 
     def run(units: str | None, output: Output, **options: Any) -> None:
@@ -89,7 +87,3 @@ def _command(row: Row) -> click.Command:
     own = (_OWN[row.word],) if row.word in _OWN else ()
     with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
     return click.command(row.word, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(with_options(run))
-
-
-for _row in REPORTS:
-    kurbel.add_command(_command(_row))

@@ -29,7 +29,6 @@ from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Subject, too_large
-from kurbel.traces.correct import Trace
 
 _WHOLE = "whole machine"
 """The whole machine, as a report names it."""
@@ -172,8 +171,7 @@ def is_slow(machine: Machine, requested: Sequence[Answer]) -> bool:
     if any(one.command == "torsion" for one in requested):
         return True
     return any(one.mechanism.name not in _IN_BATCHES for one in machine.cylinders) or any(
-        isinstance(one, Trace)
-        or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
+        one.traced or (isinstance(one, Card) and sum(len(line.fractions) for line in one.lines) > _MOST_POINTS)
         for one in machine.chambers
     )
 

@@ -8,11 +8,10 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
-from kurbel.declared.forms.values import COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
+from kurbel.declared.forms.values import CLEARANCE, COLUMN_RANGE, FILE_PATH, Choice, NumberForm, Points, unit_name
 from kurbel.declared.record import Record, Rule, Values, alternative, field
 from kurbel.declared.units import Factor, Point
 from kurbel.errors import Fault, RuleError, refused
-from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout

@@ -7,10 +7,10 @@ of the cranks.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from kurbel.declared.forms.structures import Listing, OneOf, RecordForm
-from kurbel.declared.forms.values import TEXT, Choice
+from kurbel.declared.forms.structures import Listing, OneOf
+from kurbel.declared.forms.values import TEXT
 from kurbel.declared.reading import REFUSED, Reported
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
@@ -114,15 +114,6 @@ class ShaftPart(Record):
         return GROUND if self.word == GROUND else (*given, "mass")[0]
 
 
-SHAFT = Listing(
-    OneOf(
-        Choice((GROUND, FLYWHEEL), means={GROUND: ShaftPart(word=GROUND), FLYWHEEL: ShaftPart(word=FLYWHEEL)}),
-        RecordForm(ShaftPart),
-    )
-)
-"""The form of a shaft line."""
-
-
 class ShaftSection(NamedTuple):
     """A section of shaft: diameter and bore in m."""
 
@@ -178,8 +169,14 @@ class ShaftLine:
     load: int = -1
 
 
-def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
+def _of_words(parts: Sequence[Any]) -> list[Any]:
+    """Return the items with a part in place of each word, `ground` or `flywheel`."""
+    return [ShaftPart(word=one) if isinstance(one, str) else one for one in parts]
+
+
+def shaft_faults(given: Sequence[ShaftPart | str | Reported], cylinders: Sequence[str]) -> list[Fault]:
     """Return what is wrong with a list; if parts could not be read, only the faults of single other parts."""
+    parts = _of_words(given)
     faults, seen = [], set[str]()
     named = [(index, part.cylinder or ()) for index, part in enumerate(parts) if part is not REFUSED]
     for place, name in [((index, "cylinder"), name) for index, names in named for name in names]:
@@ -231,12 +228,13 @@ def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
     yield around, (*gears[:1], "gear"), "there are cranks before and after the gear; all must turn at one speed"
 
 
-def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftLine:
+def line_of(given: Sequence[ShaftPart | str], cylinders: Sequence[str] = ()) -> ShaftLine:
     """Return the shaft line that a list describes; cylinders: the names of those of the machine; raises RuleError.
 
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
-    refuse(*shaft_faults(parts, cylinders))
+    refuse(*shaft_faults(given, cylinders))
+    parts = _of_words(given)
     kinds = [part.kind for part in parts]
     gear = kinds.index("gear") if "gear" in kinds else len(parts)
     ratio = next((part.gear for part in parts if part.gear), 1.0)

@@ -1,22 +1,15 @@
-"""The reports of `kurbel motion` and `kurbel forces`: every cylinder by itself."""
+"""The reports of `kurbel motion` and `kurbel forces`: every cylinder by itself.
+
+What is only said to people, warnings and what is left out, is imported when it is read: a CSV table has none of it.
+"""
 
 from collections.abc import Iterable, Iterator
 
 from kurbel.errors import UsageError
-from kurbel.notes.left_out import (
-    forces_left_out,
-    motion_left_out,
-)
-from kurbel.notes.warnings import (
-    by_cylinder,
-    guide_notes,
-    rod_ratio_notes,
-)
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.indicated import OF_CYCLES
 from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
-from kurbel.traces.pressure import TracePressure
+from kurbel.tables.tables import LeftOut
 
 
 def mechanism_notes(case: Case) -> Iterable[str]:
@@ -24,10 +17,22 @@ def mechanism_notes(case: Case) -> Iterable[str]:
     return dict.fromkeys(note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes)
 
 
+def _motion_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
+    from kurbel.notes.left_out import motion_left_out
+
+    yield from motion_left_out(case.machine, forces.drive.cylinder)
+
+
+def _forces_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
+    from kurbel.notes.left_out import forces_left_out
+
+    yield from forces_left_out(case.machine, forces)
+
+
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
-        for one in case.cylinders
+        Subject(forces.drive.name, forces, forces.at, left_out=_motion_left_out(case, forces))
+        for forces in case.cylinders
     ]
 
 
@@ -37,14 +42,14 @@ MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, l
 def _with_forces(case: Case) -> list[Subject]:
     return [
         Subject(
-            one.drive.name,
-            one,
-            one.at,
-            left_out=forces_left_out(case.machine, one),
-            tables=_piston_table(one),
-            pistons=[Subject(piston.name, piston) for piston in one.pistons],
+            forces.drive.name,
+            forces,
+            forces.at,
+            left_out=_forces_left_out(case, forces),
+            tables=_piston_table(forces),
+            pistons=[Subject(piston.name, piston) for piston in forces.pistons],
         )
-        for one in case.cylinders
+        for forces in case.cylinders
     ]
 
 
@@ -53,8 +58,12 @@ def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str
 
     Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
     """
-    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose and case.cylinders else {}
-    cylinders = [one._replace(warnings=warnings.get(one.name, ())) for one in cylinders]
+    cylinders = _with_forces(case)
+    if frame.prose and cylinders:
+        from kurbel.notes.warnings import by_cylinder
+
+        warnings = by_cylinder(case)
+        cylinders = [subject._replace(warnings=warnings.get(subject.name, ())) for subject in cylinders]
     if frame.table:
         for forces in case.cylinders:
             forces.refuse_locking()
@@ -79,6 +88,8 @@ def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
     cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
     if not cycles:
         return
+    from kurbel.solver.indicated import OF_CYCLES
+
     declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
     columns = zip(*(one.tolist() for one in cycles))
     rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
@@ -86,6 +97,8 @@ def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
 
 
 def _forces_notes(case: Case) -> Iterator[str]:
+    from kurbel.notes.warnings import guide_notes, rod_ratio_notes
+
     yield from mechanism_notes(case)
     yield from guide_notes(case)
     yield from rod_ratio_notes(case)
@@ -107,7 +120,7 @@ def _forces_notes(case: Case) -> Iterator[str]:
             " that share out."
         )
     ends = [end for forces in case.cylinders for gas in forces.drive.gas for end in (gas.head, gas.crank)]
-    if any(isinstance(end, TracePressure) and end.trace.even for end in ends):
+    if any(end and end.traced and end.trace.even for end in ends):
         yield (
             "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "
             "the quadrature by straight lines between them; the difference shows the effect of the sample spacing."

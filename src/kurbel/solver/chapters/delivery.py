@@ -406,7 +406,7 @@ class MachineDelivery:
             for end, works in (("head_end", one.head), ("crank_end", one.crank))
             if not one.pumps and (works or isinstance(one.gas.piston.chambers.get(end), Compressor))
         ]
-        self.stages = _staged(ends)
+        self.stages: tuple[CompressorStage, ...] = _staged(ends)
         if not (self._pumps or self.stages):
             raise UsageError(
                 f"{self.machine.name} delivers nothing: no piston is driven by the shaft; a pump has a 'constant' "
