@@ -1,14 +1,14 @@
 """Every quantity that kurbel prints, from the classes that compute them: for limits, sweeps, JSON and the reference.
 
-`every_quantity` opens every chapter and mechanism. A name that a file or an option gives is looked up in `KEY_VALUES`,
-which goes from chapter to chapter and opens no more of them than the name needs.
+`every_quantity` opens every chapter and mechanism. A name that a file or an option gives is looked up in `KEY_VALUES`
+or `COLUMNS`, which go from chapter to chapter and open no more of them than the name needs.
 """
 
-from collections.abc import Iterator, Mapping
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache, cached_property
 
 from kurbel.mechanisms.kinds import KINDS
-from kurbel.quantity import Lists, Quantity, by_id
+from kurbel.quantity import Lists, Quantity, by_id, called, joined
 from kurbel.solver.case import CHAPTERS, Chapter
 from kurbel.solver.figures import doors_of, rows_of
 from kurbel.solver.forces import CylinderForces
@@ -29,44 +29,50 @@ def every_quantity() -> Lists:
     return Lists(tuple(columns), tuple(key_values))
 
 
-@cache
-def _behind_no_door(chapter: Chapter) -> Mapping[str, Quantity]:
-    """Return the key values of a chapter, by id, without those of its parts behind doors, and of mechanisms."""
-    return by_id(*rows_of(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values)
+class ByChapter(Mapping[str, Quantity]):
+    """Quantities by id; one that an early chapter has is found without opening the later ones.
 
+    of: takes lists of quantities and returns those that are meant, columns or key values.
+    """
 
-@cache
-def _every_key_value() -> Mapping[str, Quantity]:
-    return by_id(*every_quantity().all_key_values)
-
-
-def _chapter_by_chapter() -> Iterator[Mapping[str, Quantity]]:
-    """Yield the key values of one chapter after the other, as far as they are behind no other door; then all."""
-    for chapter in CHAPTERS:
-        yield _behind_no_door(chapter)
-    yield _every_key_value()
-
-
-class KeyValues(Mapping[str, Quantity]):
-    """All key values by id; one that an early chapter has is found without opening the later ones."""
+    def __init__(self, of: Callable[[Lists], tuple[Quantity, ...]]) -> None:
+        self._of = of
+        self._lists: dict[Chapter, Mapping[str, Quantity]] = {}
 
     def __getitem__(self, id: str) -> Quantity:
         if id.isidentifier():
-            for quantities in _chapter_by_chapter():
+            for quantities in self._chapter_by_chapter():
                 if id in quantities:
                     return quantities[id]
         raise KeyError(id)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_every_key_value())
+        return iter(self._all)
 
     def __len__(self) -> int:
-        return len(_every_key_value())
+        return len(self._all)
+
+    @cached_property
+    def _all(self) -> Mapping[str, Quantity]:
+        return by_id(*self._of(every_quantity()))
+
+    def _chapter_by_chapter(self) -> Iterator[Mapping[str, Quantity]]:
+        """Yield the quantities of each chapter, without those of mechanisms and of parts behind doors; then all."""
+        for chapter in CHAPTERS:
+            if chapter not in self._lists:
+                rows = rows_of(chapter.kind, closed=doors_of(chapter.kind))
+                self._lists[chapter] = by_id(*self._of(rows.lists))
+            yield self._lists[chapter]
+        yield self._all
+
+    def ids_of(self, name: str) -> tuple[str, ...]:
+        """Return the ids of the quantities that a name may mean, see `called`; for an id nothing else is opened."""
+        return (name,) if name in self else called(name, self.values())
 
     def commands_of(self, id: str) -> Iterator[str]:
-        """Yield the commands that have a key value, each once; the one whose own it is first."""
+        """Yield the commands that have a quantity, each once; the one whose own it is first."""
         yielded = set[str]()
-        for quantities in _chapter_by_chapter():
+        for quantities in self._chapter_by_chapter():
             if id not in quantities:
                 continue
             for command in quantities[id].commands:
@@ -74,5 +80,26 @@ class KeyValues(Mapping[str, Quantity]):
                     yielded.add(command)
                     yield command
 
+    def names_of(self, words: Iterable[str]) -> list[str]:
+        """Return names that were split at their commas as they were before, see `joined`; with or without a prefix."""
+        names = list(words)
+        are_ids = all(name.rpartition(".")[2] in self for name in names)
+        return names if are_ids else list(joined(names, self.values()))
 
-KEY_VALUES = KeyValues()
+
+KEY_VALUES = ByChapter(lambda lists: lists.all_key_values)
+"""All key values."""
+COLUMNS = ByChapter(lambda lists: tuple(column for column in lists.all_columns if column.commands))
+"""All columns that a command prints."""
+
+
+def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
+    """Return the key values of a command by id: those of its own chapters if these have all the names, else all."""
+    own: list[Quantity] = []
+    for chapter in CHAPTERS:
+        if chapter.command == command:
+            own += rows_of(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values
+    quantities = Lists((), tuple(own)).key_values(command)
+    if all(name in quantities for name in names):
+        return quantities
+    return every_quantity().key_values(command)

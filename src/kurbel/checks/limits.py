@@ -14,7 +14,7 @@ from kurbel.errors import KurbelError, Path, UsageError, path_text
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of
-from kurbel.quantities import KEY_VALUES, every_quantity
+from kurbel.quantities import KEY_VALUES, key_values_of
 from kurbel.quantity import NOISE_POWER, Quantity, called
 from kurbel.report.commands import COMMANDS, subjects_of
 from kurbel.solver.case import Case
@@ -214,8 +214,9 @@ def cases_report(
     base: the machine as it is without them; names: ids or symbols of the key values. Raises UsageError for a name that
     is none, and if no case has any.
     """
-    declared = every_quantity().key_values(command)
-    known = {name: called(name, declared.values()) for name in names or COMMANDS[command].in_cases.split()}
+    wanted = names or COMMANDS[command].in_cases.split()
+    declared = key_values_of(command, wanted)
+    known = {name: called(name, declared.values()) for name in wanted}
     for name in (name for name, ids in known.items() if not ids):
         near = did_you_mean(name, tuple(declared))
         raise UsageError(f"--columns: '{shown(name)}' is no key value of kurbel {command}{near}")

@@ -10,7 +10,7 @@ import click
 from kurbel.declared.numerals import parse_ratio
 from kurbel.declared.units import parse_quantity, written_unit
 from kurbel.errors import KurbelError, UnitError
-from kurbel.quantity import Lists, ambiguity, called, joined
+from kurbel.quantity import Lists, ambiguity
 from kurbel.render import FORMATS, LAYOUTS, Look
 from kurbel.render.formats import Output
 
@@ -89,11 +89,11 @@ def words(text: str) -> tuple[str, ...]:
 
 def columns(text: str) -> tuple[str, ...]:
     """Return the ids of columns by id or printed symbol, separated by commas, in the order given."""
-    named = words(text)
-    known = [column for column in _quantities().all_columns if column.commands]
+    from kurbel.quantities import COLUMNS
+
     ids = []
-    for name in joined(named, known):
-        found = called(name, known)
+    for name in COLUMNS.names_of(words(text)):
+        found = COLUMNS.ids_of(name)
         if wrong := ambiguity(name, found):
             raise click.BadParameter(wrong)
         ids.append(found[0] if found else name)  # the report checks whether this machine has it
