@@ -233,7 +233,7 @@ def test_of_a_plain_machine_the_core(loaded: Any, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [*(row.word for row in REPORTS), "check"])
-@pytest.mark.parametrize("machine", shipped("waterworks", "diesel-trace", "generator-coupling", "compressor"))
+@pytest.mark.parametrize("machine", shipped("waterworks", "diesel-trace"))
 def test_a_run_loads_what_its_file_and_its_command_need(loaded: Any, machine: Path, command: str) -> None:
     form = () if command == "check" else ("-f", "csv")
     assert beyond(loaded(command, str(machine), *form), needed_by(machine.stem, command)) == []
