@@ -1,6 +1,6 @@
 """Which modules of kurbel a run of the command line loads: each line of standard input is one, as JSON.
 
-What does not belong to kurbel is imported once; every run is a fork of this process, so that each starts without kurbel.
+What does not belong to kurbel is imported once; every run is a fork, so that each starts without kurbel.
 """
 
 import json

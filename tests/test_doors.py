@@ -263,4 +263,6 @@ def test_at_their_heads_core_modules_import_no_chapter() -> None:
 
 
 def test_the_word_of_a_chapter_is_that_of_its_class() -> None:
-    assert [(chapter.command, chapter.kind.command) for chapter in CHAPTERS if chapter.command != chapter.kind.command] == []
+    assert [
+        (chapter.command, chapter.kind.command) for chapter in CHAPTERS if chapter.command != chapter.kind.command
+    ] == []

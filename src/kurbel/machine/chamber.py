@@ -1,6 +1,10 @@
 """What every card of a chamber answers, drawn or ideal; a measured `Trace` answers the same."""
 
+from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
+
+from kurbel.arrays import Truth
+from kurbel.declared.keys import Rule
 
 
 class ChamberCard:
@@ -16,6 +20,13 @@ class ChamberCard:
     compresses: ClassVar[bool] = False
     traced: ClassVar[Literal[False]] = False
     exponents: ClassVar[Any] = ()
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield what is wrong with the events of a card that a valve sets.
+
+        valve_compresses: whether the valve of the piston shuts the exhaust before the dead centre; None without one.
+        """
+        return iter(())
 
     def loaded(self) -> Any:
         """Return the card with its valves at work."""

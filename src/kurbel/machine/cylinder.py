@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from kurbel.mechanisms.kinds import MECHANISMS
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
+    from kurbel.machine.valve import Valve
 
 MOST_TURNS = 100
 """Turns of the shaft after which everything repeats, at most."""
@@ -41,6 +43,12 @@ _OTHER_NAMES = {
     "parallelogram": "parallel-crank",
 }
 """Common name of a mechanism -> the word of the machine file."""
+
+
+def _valve() -> type[Valve]:
+    from kurbel.machine.valve import Valve
+
+    return Valve
 
 
 def _shared_counterweights() -> type[SharedCounterweights]:
@@ -140,6 +148,11 @@ class Cylinder(Record):
         "A point of the connecting rod or coupler, whose position, velocity and acceleration are printed",
         absent="none",
     )
+    valve: Valve | None = field(
+        _valve,
+        "Slide or piston valve driven by an eccentric, which sets the events of `steam` cards",
+        absent="none",
+    )
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
@@ -156,8 +169,19 @@ class Cylinder(Record):
         pistons = () if piston is None else (piston, *tandem)
         return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
 
+    @cached_property
+    def timed_pistons(self) -> tuple[Piston, ...]:
+        """Its pistons, with the events of the valve in the steam cards of its own one."""
+        if self.valve is None or not self.pistons:
+            return self.pistons
+        timed = self.valve.timed(self.pistons[0], self.mechanism)
+        return timed, *self.pistons[1:]
+
     def rules(self) -> Iterator[Rule]:
-        """Yield which parts do not fit the mechanism."""
+        """Yield which parts do not fit the mechanism, and steam cards whose events are missing, or set twice."""
+        if self.valve:
+            yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
+        yield from _of_events(self)
         at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
         yield from at_point
         if not any(rule.broken for rule in at_point):
@@ -240,6 +264,19 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
         locks = apart is not None and 2 * friction.guides * mechanism.crank >= apart
         message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
         yield Rule("guides", locks, message)
+
+
+def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
+    """A steam card has its events from the valve, or its own; the valve is that of the cylinder's own piston."""
+    for number, piston in enumerate(cylinder.pistons):
+        place = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        chambers = piston.chambers
+        if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
+            chambers.pop("crank_end", None)
+        for end, card in chambers.items():
+            valve = None if number else cylinder.valve
+            shuts_early = None if valve is None else valve.compresses
+            yield from (rule.below(*place, end) for rule in card.rules_of_events(shuts_early))
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:

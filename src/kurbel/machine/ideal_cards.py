@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.arrays import Number
+from kurbel.arrays import Number, Truth
 from kurbel.declared.forms.values import CLEARANCE, CLEARANCE_OR_NONE
 from kurbel.declared.record import Entry, Record, Rule, alternative, field
 from kurbel.machine.chamber import ChamberCard
@@ -77,11 +77,16 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
 
 
 class Steam(ChamberCard, Record):
-    """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
+    """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
+
+    cut_off: None where a valve sets this and the other events (`kurbel.machine.valve`).
+    """
 
     admission: float = _pressure("Pressure while steam is admitted")
     exhaust: float = _pressure("Pressure while steam leaves")
-    cut_off: float = field("ratio", "Fraction of the stroke at which admission ends", above=0, most=1)
+    cut_off: float | None = field(
+        "ratio", "Fraction of the stroke at which admission ends", above=0, most=1, absent="the `valve` sets all events"
+    )
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
     release: float = field("ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1)
     compression: float = field(
@@ -106,6 +111,25 @@ class Steam(ChamberCard, Record):
         return (self.exponent,)
 
     @property
+    def events(self) -> list[str]:
+        """The keys of the events that are given."""
+        given = self._given()
+        return [key for key in ("cut_off", "release", "compression", "lead") if key in given]
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield events that are missing without a valve, or given beside one; of the clearance the rule of the card."""
+        if valve_compresses is None:
+            missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+            yield Rule("steam", self.cut_off is None, missing)
+            return
+        twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
+        for key in self.events:
+            yield Rule(("steam", key), True, twice, at_key=True)
+        message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
+        no_volume = (self.clearance == 0) & valve_compresses
+        yield Rule(("steam", "clearance"), no_volume, f"{message}; give 'clearance'")
+
+    @property
     def back_pressure(self) -> float:
         """Pressure in Pa about which a diagram factor lowers the card."""
         return self.exhaust
@@ -120,7 +144,7 @@ class Steam(ChamberCard, Record):
         yield Rule("lead", (self.lead > 0) & (self.lead >= self.compression), early)
         yield _order("admission", self.admission, "exhaust", self.exhaust)
         late = "the exhaust opens at {release}, before the cut-off at {cut_off}"
-        yield Rule("release", self.release < self.cut_off, late)
+        yield Rule("release", self.cut_off is not None and self.release < self.cut_off, late)
         message = "compression needs a final volume; give 'clearance', or leave 'compression' out"
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 

@@ -23,6 +23,12 @@ def _motion_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
     yield from motion_left_out(case.machine, forces.drive.cylinder)
 
 
+def _valve_warnings(forces: CylinderForces) -> Iterator[str]:
+    from kurbel.notes.warnings import valve_warnings
+
+    yield from valve_warnings(forces)
+
+
 def _forces_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
     from kurbel.notes.left_out import forces_left_out
 
@@ -31,7 +37,13 @@ def _forces_left_out(case: Case, forces: CylinderForces) -> Iterator[LeftOut]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(forces.drive.name, forces, forces.at, left_out=_motion_left_out(case, forces))
+        Subject(
+            forces.drive.name,
+            forces,
+            forces.at,
+            left_out=_motion_left_out(case, forces),
+            warnings=_valve_warnings(forces),
+        )
         for forces in case.cylinders
     ]
 

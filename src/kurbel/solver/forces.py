@@ -27,12 +27,19 @@ from kurbel.solver.state import State
 
 if TYPE_CHECKING:
     from kurbel.solver.indicated import Indicated
+    from kurbel.solver.valve import ValveGear
 
 
 def _indicated() -> type[Indicated]:
     from kurbel.solver.indicated import Indicated
 
     return Indicated
+
+
+def _valve_gear() -> type[ValveGear]:
+    from kurbel.solver.valve import ValveGear
+
+    return ValveGear
 
 
 SLIDING = {
@@ -164,6 +171,12 @@ class CylinderForces(SampledCylinder, Results):
     def motion(self) -> Motion:
         """What the mechanism does."""
         return self.twin.motion if self.twin else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+
+    @part(_valve_gear, there=lambda forces: forces.drive.cylinder.valve is not None)
+    def valve_gear(self) -> ValveGear | None:
+        """What the valve does."""
+        cylinder = self.drive.cylinder
+        return _valve_gear()(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")

@@ -13,7 +13,7 @@ from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
-from kurbel.arrays import Array, Indivisible, Number
+from kurbel.arrays import Array, Indivisible, Number, Truth
 from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import refused
@@ -77,6 +77,10 @@ class Trace(Indivisible):
     compresses: ClassVar[bool] = False
     traced: ClassVar[Literal[True]] = True
     exponents: ClassVar[tuple[Number, ...]] = ()
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield nothing: a trace has its events as they were measured."""
+        return iter(())
 
     def loaded(self) -> "Trace":
         """Return the trace: as measured, its valves are at work."""
