@@ -1,4 +1,4 @@
-"""Doors: a run imports what its machine file and its command need, and nothing that another key or command would need."""
+"""Doors: a run imports what its machine file and its command need, and nothing that others would need."""
 
 import ast
 import json
@@ -28,8 +28,8 @@ CORE = {
     "crank_formulas kurbel arrays crank_angle errors near_words quantities quantity shipped __main__",
     "machine machine.batch machine.chamber machine.cylinder machine.indicator machine.origin machine.parts",
     "mechanisms mechanisms.kinds mechanisms.setting mechanisms.slider_crank",
-    "solver solver.case solver.chambers solver.cycle solver.drive solver.figures solver.forces solver.gas solver.motion",
-    "solver.newton solver.rod_load solver.state solver.vector",
+    "solver solver.case solver.chambers solver.cycle solver.drive solver.figures solver.forces solver.gas",
+    "solver.motion solver.newton solver.rod_load solver.state solver.vector",
     "report report.commands report.forces tables tables.frame tables.tables",
     "render render.csv_text render.formats render.output render.text",
 }
@@ -69,7 +69,7 @@ def in_functions(module: str) -> dict[str, frozenset[str]]:
 
 
 def _tree(module: str) -> ast.Module:
-    path = PACKAGE.joinpath(*module.split("."))
+    path = PACKAGE if module == "kurbel" else PACKAGE.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     return ast.parse(path.read_text(encoding="utf-8"))
 

@@ -7,6 +7,7 @@ import click
 
 from kurbel.cli.options import (
     Command,
+    CommandWithKeyValues,
     angle_options,
     columns_option,
     frequency,
@@ -86,4 +87,5 @@ def command_of(row: Row) -> click.Command:
     shared = [_SHARED[word] for word in row.options]
     own = (_OWN[row.word],) if row.word in _OWN else ()
     with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
-    return click.command(row.word, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(with_options(run))
+    text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
+    return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
