@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
 
 from kurbel.mechanisms.kinds import KINDS
-from kurbel.quantity import Lists, Quantity, by_id, called, joined
+from kurbel.quantity import Lists, Quantity, by_id, called, rejoined_names
 from kurbel.solver.case import CHAPTERS, Chapter
-from kurbel.solver.figures import doors_of, rows_of
+from kurbel.solver.figures import doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
 
 
@@ -19,11 +19,17 @@ def every_quantity() -> Lists:
     """Return all quantities that any machine may have; one that several classes declare is listed for each."""
     mechanisms = [door() for door in KINDS.values()]
     offers = tuple(dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.OFFERS))
-    key_offers = tuple(dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.KEY_OFFERS))
+    key_offers = tuple(
+        dict.fromkeys(offer for mechanism in mechanisms for offer in mechanism.KEY_OFFERS)
+    )
     columns: list[Quantity] = []
     key_values: list[Quantity] = []
     for chapter in CHAPTERS:
-        rows = rows_of(chapter.kind, offers, key_offers) if chapter.kind is CylinderForces else rows_of(chapter.kind)
+        rows = (
+            result_rows(chapter.kind, offers, key_offers)
+            if chapter.kind is CylinderForces
+            else result_rows(chapter.kind)
+        )
         columns += rows.lists.all_columns
         key_values += rows.lists.all_key_values
     return Lists(tuple(columns), tuple(key_values))
@@ -60,7 +66,7 @@ class ByChapter(Mapping[str, Quantity]):
         """Yield the quantities of each chapter, without those of mechanisms and of parts behind doors; then all."""
         for chapter in CHAPTERS:
             if chapter not in self._lists:
-                rows = rows_of(chapter.kind, closed=doors_of(chapter.kind))
+                rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
                 self._lists[chapter] = by_id(*self._of(rows.lists))
             yield self._lists[chapter]
         yield self._all
@@ -81,10 +87,10 @@ class ByChapter(Mapping[str, Quantity]):
                     yield command
 
     def names_of(self, words: Iterable[str]) -> list[str]:
-        """Return names that were split at their commas as they were before, see `joined`; with or without a prefix."""
+        """Return names that were split at their commas as they were before, see `rejoined_names`; with or without a prefix."""
         names = list(words)
         are_ids = all(name.rpartition(".")[2] in self for name in names)
-        return names if are_ids else list(joined(names, self.values()))
+        return names if are_ids else list(rejoined_names(names, self.values()))
 
 
 KEY_VALUES = ByChapter(lambda lists: lists.all_key_values)
@@ -98,7 +104,7 @@ def key_values_of(command: str, names: Iterable[str]) -> dict[str, Quantity]:
     own: list[Quantity] = []
     for chapter in CHAPTERS:
         if chapter.command == command:
-            own += rows_of(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values
+            own += result_rows(chapter.kind, closed=doors_of(chapter.kind)).lists.all_key_values
     quantities = Lists((), tuple(own)).key_values(command)
     if all(name in quantities for name in names):
         return quantities

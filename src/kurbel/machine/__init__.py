@@ -27,8 +27,8 @@ from kurbel.declared.forms.figures import (
 )
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm
 from kurbel.declared.forms.values import FIRING_ORDER, Choice
-from kurbel.declared.reading import REFUSED, shown
-from kurbel.declared.record import Record, Rule, Values, alternative, field
+from kurbel.declared.reading import REFUSED, text_in_one_line
+from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.errors import Fault, RuleError, refuse
 from kurbel.machine.cylinder import MOST_TURNS, Cylinder, counterweights, crowded
 from kurbel.machine.indicator import Chamber
@@ -36,12 +36,18 @@ from kurbel.machine.origin import Origin
 from kurbel.near_words import did_you_mean
 
 if TYPE_CHECKING:
-    from kurbel.machine.crankshaft import BalanceShaft, Counterweight, Crankshaft, Locomotive, SharedCounterweights
+    from kurbel.machine.crankshaft import (
+        BalanceShaft,
+        Counterweight,
+        Crankshaft,
+        Locomotive,
+        SharedCounterweights,
+    )
     from kurbel.machine.known_effort import KnownEffort
     from kurbel.machine.pumped import Gas, Pump
     from kurbel.machine.several import EqualCylinders
     from kurbel.machine.shaft_line import ShaftLine, ShaftPart
-    from kurbel.machine.turning import Coupling, Flywheel, Known, Load
+    from kurbel.machine.turning import Coupling, Flywheel, KnownDiagram, Load
 
 __all__ = ["CYCLES", "Cylinder", "Machine"]
 
@@ -152,7 +158,9 @@ class Machine(Record):
         least=0,
         absent="no velocities, accelerations or inertia in physical units",
     )
-    cycle: str = field(tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke")
+    cycle: str = field(
+        tuple(CYCLES), "Working cycle: 360° or 720°", default="two-stroke", absent="two-stroke"
+    )
     efficiency: float = field(
         "ratio",
         "Mechanical efficiency: multiplies the torque of driving cylinders, or only the gas force of the driving "
@@ -187,7 +195,10 @@ class Machine(Record):
     )
     _cylinder = alternative(Inline(Cylinder, unless="cylinders"), "The keys of the only cylinder")
     _cylinders = alternative(
-        OneOf(Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"), RecordForm(_equal_cylinders)),
+        OneOf(
+            Listing(RecordForm(Cylinder, inline_too=True), called="cylinder"),
+            RecordForm(_equal_cylinders),
+        ),
         "Several cylinders as a list, or equal ones as one mapping; their keys are then not allowed at the top level",
         absent="one cylinder, flat",
         gives=lambda given: {"cylinders": given["cylinders"]},
@@ -204,13 +215,17 @@ class Machine(Record):
         absent="constant",
         gives=lambda given: {"load": None if given["load"] == "constant" else given["load"]},
     )
-    effort: Known | None = field(
+    effort: KnownDiagram | None = field(
         RecordForm(_known_effort),
         "A given turning-moment diagram, instead of cylinders",
         absent="from the cylinders",
     )
-    coupling: Coupling | None = field(_coupling, "Elastic coupling to a driven moment of inertia", absent="rigid")
-    crankshaft: Crankshaft | None = field(_crankshaft, "One throw between bearings A and B", absent="no strength check")
+    coupling: Coupling | None = field(
+        _coupling, "Elastic coupling to a driven moment of inertia", absent="rigid"
+    )
+    crankshaft: Crankshaft | None = field(
+        _crankshaft, "One throw between bearings A and B", absent="no strength check"
+    )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
         [RecordForm(_balance_shaft)],
@@ -298,7 +313,11 @@ class Machine(Record):
             faults = shaft_faults(shaft, _names(given))
         try:
             if cylinder and not firing_order:
-                given = (replace(cylinder, crank_position=0.0) if cylinder.crank_position is None else cylinder,)
+                given = (
+                    replace(cylinder, crank_position=0.0)
+                    if cylinder.crank_position is None
+                    else cylinder,
+                )
             else:
                 from kurbel.machine.several import in_order
 
@@ -313,9 +332,12 @@ class Machine(Record):
         return machine
 
     @classmethod
-    def faults_of_some(cls, given: Values) -> list[Fault]:
+    def faults_of_some(cls, given: ValuesByKey) -> list[Fault]:
         """Return what is wrong with the keys; also with the shaft line if other keys could not be read."""
-        shaft, cylinders = given.get("shaft"), given.get("cylinders", (given.get("cylinder", REFUSED),))
+        shaft, cylinders = (
+            given.get("shaft"),
+            given.get("cylinders", (given.get("cylinder", REFUSED),)),
+        )
         unknown = cylinders is REFUSED or (isinstance(cylinders, tuple) and REFUSED in cylinders)
         known: list[Fault] = []
         if isinstance(shaft, tuple) and not unknown:
@@ -338,22 +360,38 @@ class Machine(Record):
                 rules = piston.indicator_rules(self.cycle_of_piston(cylinder, number), self.ambient)
                 yield from (rule.below("cylinders", index, *inside) for rule in rules)
             if cylinder.friction:
-                rubbing = cylinder.friction.rules_beside(self.crankshaft, cylinder.mechanism.rubbing_pin)
+                rubbing = cylinder.friction.rules_beside(
+                    self.crankshaft, cylinder.mechanism.rubbing_pin
+                )
                 yield from (rule.below("cylinders", index, "friction") for rule in rubbing)
         yield from crowded(self.cylinders)
-        for key, diagram in (("effort", self.effort), ("load", self.load.diagram if self.load else None)):
+        for key, diagram in (
+            ("effort", self.effort),
+            ("load", self.load.diagram if self.load else None),
+        ):
             if diagram:
-                yield from (rule.below(key) for rule in diagram.rules_of_cycle(self._common_cycle, self.revolutions))
+                yield from (
+                    rule.below(key)
+                    for rule in diagram.rules_of_cycle(self._common_cycle, self.revolutions)
+                )
         if self.effort and self.effort.alone:
-            message = "needs the effort over the angle; of this one the swing of energy alone is given"
+            message = (
+                "needs the effort over the angle; of this one the swing of energy alone is given"
+            )
             yield Rule("load", self.load is not None and self.load.varies, message)
             yield Rule("coupling", self.coupling is not None, message)
         if self.shaft is not None:
             message = "'coupling' is a shaft line of two masses, and 'shaft' another one; leave one of them out"
             yield Rule("coupling", self.coupling is not None, message)
             inertia = self.flywheel.inertia if self.flywheel else None
-            without = any(mass.flywheel for mass in self.shaft.masses) and not (inertia is not None and np.all(inertia))
-            yield Rule("shaft", without, "the shaft line has a 'flywheel'; give the machine one with its 'inertia'")
+            without = any(mass.flywheel for mass in self.shaft.masses) and not (
+                inertia is not None and np.all(inertia)
+            )
+            yield Rule(
+                "shaft",
+                without,
+                "the shaft line has a 'flywheel'; give the machine one with its 'inertia'",
+            )
 
     def _name_rules(self) -> Iterator[Rule]:
         """Yield the rules of the names of cylinders, and of those in limits and expectations."""
@@ -361,11 +399,15 @@ class Machine(Record):
         for index, name in enumerate(names):
             place = ("cylinders", index, "name")
             yield Rule(place, name in names[:index], f"two cylinders are called '{name}'")
-            whole = f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
+            whole = (
+                f"'{MACHINE}' means the whole machine in 'limits' and 'expect'; give another name"
+            )
             yield Rule(place, name == MACHINE, whole)
         cases = [case.name for case in self.cases]
         for index, name in enumerate(cases):
-            yield Rule(("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'")
+            yield Rule(
+                ("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'"
+            )
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
         scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
@@ -373,7 +415,7 @@ class Machine(Record):
                 if (scope := scoped(id)[0]) and scope not in scopes:
                     hint = did_you_mean(scope, scopes) or f"; there are {', '.join(scopes)}"
                     written = (figure.name if isinstance(figure, (Bound, Expected)) else "") or id
-                    message = f"no cylinder is called '{shown(scope)}'{hint}"
+                    message = f"no cylinder is called '{text_in_one_line(scope)}'{hint}"
                     yield Rule((key, written), True, message, at_key=True)
 
     def cycle_of(self, cylinder: Cylinder) -> str:
@@ -391,7 +433,10 @@ class Machine(Record):
         With several cylinders the name of the cylinder comes first, `cylinder 1.pump`; equal names are numbered.
         """
         names = [piston.name for piston in cylinder.pistons if piston.indicator]
-        own = [f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one for n, one in enumerate(names)]
+        own = [
+            f"{one} {names[: n + 1].count(one)}" if one in names[:n] else one
+            for n, one in enumerate(names)
+        ]
         scope = f"{cylinder.name}." if len(self.cylinders) > 1 else ""
         return tuple(f"{scope}{one}" for one in own) if len(own) > 1 else ()
 
@@ -408,17 +453,26 @@ class Machine(Record):
     @property
     def chambers(self) -> list[Chamber]:
         """What the indicators of all pistons show."""
-        return [chamber for one in self.cylinders for piston in one.pistons for chamber in piston.chambers.values()]
+        return [
+            chamber
+            for cylinder in self.cylinders
+            for piston in cylinder.pistons
+            for chamber in piston.chambers.values()
+        ]
 
     @property
     def trace_files(self) -> tuple[str, ...]:
         """The files that the traces of the machine, or its effort, were read from."""
-        return tuple(dict.fromkeys(chain(*(one.files for one in (*self.chambers, self.effort) if one))))
+        return tuple(
+            dict.fromkeys(chain(*(one.files for one in (*self.chambers, self.effort) if one)))
+        )
 
     def inclination_of(self, cylinder: Cylinder) -> float | None:
         """Return the inclination in degrees as the throw sees it: a machine that turns under is mirrored, 180° − i."""
         inclination = cylinder.inclination
-        return inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
+        return (
+            inclination if inclination is None or self.rotation != "under" else 180.0 - inclination
+        )
 
     @property
     def strength_obstacle(self) -> str:
@@ -427,7 +481,9 @@ class Machine(Record):
             lengths = "its strength needs the lengths of the throw: 'crankshaft: {a: …, b: …, …}'"
             return f"no 'crankshaft' is given; {lengths}"
         if not self.cylinders:
-            return "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+            return (
+                "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
+            )
         if len(self.cylinders) > 1:
             return f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
         cylinder = self.cylinders[0]

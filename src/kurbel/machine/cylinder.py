@@ -12,7 +12,15 @@ import numpy as np
 from kurbel.arrays import Truth
 from kurbel.crank_angle import CYCLES, CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
-from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
+from kurbel.declared.record import (
+    FieldValue,
+    Record,
+    Rule,
+    ValuesByKey,
+    alternative,
+    field,
+    first_of,
+)
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
@@ -37,7 +45,9 @@ _SLIDING = ("inclination", "masses", "friction", "ram_force")
 """Keys, apart from those of pistons, of a cylinder whose output slides."""
 
 _OTHER_NAMES = {
-    **dict.fromkeys(("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"),
+    **dict.fromkeys(
+        ("whitworth", "shaper", "quick-return", "crank-shaper", "slotted-link"), "slotted-lever"
+    ),
     **dict.fromkeys(("crank-rocker", "four-bar-linkage", "4-bar"), "four-bar"),
     **dict.fromkeys(("crank-slider", "crosshead", "trunk-piston"), "slider-crank"),
     "parallelogram": "parallel-crank",
@@ -63,7 +73,7 @@ def _counterweight() -> type[Counterweight]:
     return Counterweight
 
 
-def counterweights() -> Entry:
+def counterweights() -> FieldValue:
     """Return the field of the counterweights of a cylinder, next to its throw, or of the whole machine."""
     return field(
         OneOf(RecordForm(_shared_counterweights), Listing(RecordForm(_counterweight))),
@@ -88,7 +98,9 @@ class Cylinder(Record):
         "Kind of crank mechanism",
         absent="slider-crank",
     )
-    name: str = field(str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …")
+    name: str = field(
+        str, "Name of the cylinder", default="cylinder 1", absent="cylinder 1, cylinder 2, …"
+    )
     _like = alternative(
         str,
         "Name of an earlier cylinder that this one copies, except for the keys given here",
@@ -105,7 +117,9 @@ class Cylinder(Record):
     pistons: tuple[Piston, ...] = ()
     masses: Masses | None = field(Masses, "Masses of the moving parts", absent="no inertia")
     friction: Friction | None = field(
-        Friction, "Friction of crosshead, piston rings, pins and journals, or a force", absent="no friction"
+        Friction,
+        "Friction of crosshead, piston rings, pins and journals, or a force",
+        absent="no friction",
     )
     inclination: float | None = field(
         "angle",
@@ -155,7 +169,7 @@ class Cylinder(Record):
     )
 
     @classmethod
-    def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
+    def rules_of_keys(cls, given: ValuesByKey) -> Iterator[Rule]:
         like = "'like' is for a list of 'cylinders', after another cylinder"
         yield Rule("like", "like" in given, like)
         alone = "a tandem piston is in addition to the cylinder's own one; give its 'bore'"
@@ -163,7 +177,11 @@ class Cylinder(Record):
 
     @classmethod
     def of_keys(
-        cls, piston: Piston | None = None, tandem: tuple[Piston, ...] = (), like: str = "", **keys: Any
+        cls,
+        piston: Piston | None = None,
+        tandem: tuple[Piston, ...] = (),
+        like: str = "",
+        **keys: Any,
     ) -> Cylinder:
         """Return the cylinder that these keys of a machine file describe; the machine names it where they do not."""
         pistons = () if piston is None else (piston, *tandem)
@@ -182,7 +200,11 @@ class Cylinder(Record):
         if self.valve:
             yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
         yield from _of_events(self)
-        at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
+        at_point = (
+            [rule.below("point") for rule in self.point.rules_on(self.mechanism)]
+            if self.point
+            else []
+        )
         yield from at_point
         if not any(rule.broken for rule in at_point):
             yield from _of_output(self)
@@ -190,7 +212,9 @@ class Cylinder(Record):
             if self.friction and self.mechanism.slides:
                 yield from (rule.below("friction") for rule in _of_friction(self.friction, self))
             if rod and self.mechanism.slides:
-                yield from (rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism))
+                yield from (
+                    rule.below("masses", "connecting_rod") for rule in _of_rod(rod, self.mechanism)
+                )
 
 
 def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
@@ -204,7 +228,9 @@ def crowded(cylinders: Sequence[Cylinder]) -> Iterator[Rule]:
                 same = same & np.equal(np.round(one.bank_angle - other.bank_angle, 6) % 360.0, 0)
                 numbers = {"other": other.name, "place": one.axial_position}
                 place = ("cylinders", index, "axial_position")
-                rules.append(Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers))
+                rules.append(
+                    Rule(place, same, f"{message} 'axial_position' or 'bank_angle'", numbers)
+                )
         yield from first_of(iter(rules))
 
 
@@ -214,7 +240,11 @@ def may_lock(cylinder: Cylinder) -> Truth:
     locking: Truth = False
     if coefficient is None:
         return locking
-    widest = [rod for centre in (90.0, 270.0) if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))]
+    widest = [
+        rod
+        for centre in (90.0, 270.0)
+        if (rod := cylinder.mechanism.rod_angle(CrankAngle.of(centre)))
+    ]
     for sin, cos in widest:
         locking = locking | (coefficient * np.abs(sin) >= cos)
     return locking & (coefficient > 0)
@@ -228,7 +258,11 @@ def _of_output(cylinder: Cylinder) -> Iterator[Rule]:
         return
     given = {"bore": cylinder.pistons or None, **{key: vars(cylinder)[key] for key in _SLIDING}}
     for key, value in given.items():
-        yield Rule(key, value is not None, f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}")
+        yield Rule(
+            key,
+            value is not None,
+            f"nothing slides in a {kind}; leave '{key}' out{_INSTEAD.get(key, '')}",
+        )
     returns = bool(cylinder.mechanism.turns and moment and np.any(moment.back))
     message = f"the output of a {kind} turns on and has no return stroke; give 'work' alone"
     yield Rule(("moment", "return"), returns, message)
@@ -245,7 +279,11 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
     """A crosshead needs a side force and a guide, rings a bore, pins a rod; a yoke must not lock."""
     mechanism, pistons, rings = cylinder.mechanism, cylinder.pistons, friction.rings
     kind, has_rod = mechanism.name, mechanism.has_rod
-    yield Rule("rings", rings is not None and not pistons, "rings rub on the bore; give the cylinder a 'bore'")
+    yield Rule(
+        "rings",
+        rings is not None and not pistons,
+        "rings rub on the bore; give the cylinder a 'bore'",
+    )
     by_gas = rings is not None and isinstance(rings.pressure, GasOnRings)
     without = by_gas and bool(pistons) and pistons[0].indicator is None
     yield Rule(("rings", "pressure"), without, "the gas presses on no ring without an 'indicator'")
@@ -262,7 +300,9 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
         apart = mechanism.guide_distance
         yield Rule("guides", apart is None, "'guides' needs their distance; give 'guide_length'")
         locks = apart is not None and 2 * friction.guides * mechanism.crank >= apart
-        message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
+        message = (
+            "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
+        )
         yield Rule("guides", locks, message)
 
 
@@ -285,7 +325,9 @@ def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:
     yield Rule((), not mechanism.has_rod, message)
     if mechanism.has_rod and rod.center_of_gravity is not None:
         length = mechanism.rod_length
-        endless = "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        endless = (
+            "an infinite rod has no centre of gravity; give its 'share', or the length of the rod"
+        )
         yield Rule("center_of_gravity", np.isinf(length), endless)
         # a rod that reaches beyond a pin may have it there in theory; a slip of the unit is far more likely
         beyond = "{at:length} from the crosshead pin is beyond the crank pin: the rod is {length:length} long"

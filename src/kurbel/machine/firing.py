@@ -3,7 +3,7 @@
 from kurbel.crank_angle import CYCLES
 from kurbel.machine import Machine
 from kurbel.machine.indicator import Rectangle
-from kurbel.machine.several import within_cycle
+from kurbel.machine.several import rounded_within_cycle
 
 
 def firings(machine: Machine) -> list[tuple[float, int]]:
@@ -11,7 +11,10 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
     cycle = 360 * machine.revolutions
     found = []
     for number, cylinder in enumerate(machine.cylinders, 1):
-        mechanism, each = cylinder.mechanism, list[tuple[int, bool]]()  # of every end that fires its turns, and which
+        mechanism, each = (
+            cylinder.mechanism,
+            list[tuple[int, bool]](),
+        )  # of every end that fires its turns, and which
         four = machine.cycle_of(cylinder) == "four-stroke"
         if four and mechanism.slides and not any(one.chambers for one in cylinder.pistons):
             each.append((2, False))
@@ -24,5 +27,8 @@ def firings(machine: Machine) -> list[tuple[float, int]]:
                     each.append((turns, end == "crank_end"))
         for turns, outer in each:
             first = mechanism.dead_centres()[outer] + cylinder.crank_position
-            found += [(within_cycle(turn + first, float(cycle)), number) for turn in range(0, cycle, 360 * turns)]
+            found += [
+                (rounded_within_cycle(turn + first, float(cycle)), number)
+                for turn in range(0, cycle, 360 * turns)
+            ]
     return sorted(found)

@@ -25,7 +25,9 @@ def of_cycle(machine: Machine, number: int) -> Machine:
             for end, chamber in piston.chambers.items():
                 if chamber.traced and (count := len(chamber.over(period).samples)) > 1:
                     counts.append(count)
-                    ends[end] = alone.setdefault(id(chamber), chamber.of_cycle(min(number, count), period))
+                    ends[end] = alone.setdefault(
+                        id(chamber), chamber.of_cycle(min(number, count), period)
+                    )
             shown = replace(piston.indicator, **ends) if piston.indicator else None
             pistons.append(replace(piston, indicator=shown))
         cylinders.append(replace(cylinder, pistons=tuple(pistons)))

@@ -41,5 +41,7 @@ class Setting(NamedTuple):
     def stroke_fraction(self, after: Array) -> Array:
         """Return the fraction of the stroke from the chamber's smallest volume, so many degrees after it."""
         angle = CrankAngle.of(after + self.own_dead_centre)
-        displaced = (self.mechanism.coordinate(angle) - self.mechanism.start) / self.mechanism.stroke
+        displaced = (
+            self.mechanism.coordinate(angle) - self.mechanism.start
+        ) / self.mechanism.stroke
         return displaced if self.head_end else 1 - displaced

@@ -10,12 +10,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.arrays import Array
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import called
-from kurbel.solver.figures import Figure, Results, Shown, doors_of, rows_of
+from kurbel.solver.figures import Figure, NotebookView, Results, doors_of, result_rows
 from kurbel.solver.forces import CylinderForces
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kurbel.solver.flywheel import DeadCentre, MachineTurning
 
 
-class Case(Shown):
+class Case(NotebookView):
     """A machine with its results; count: of how many machines its numbers are arrays (machines,), None for one.
 
     >>> from kurbel.machine import Cylinder, Machine
@@ -53,8 +53,10 @@ class Case(Shown):
             if len(results) == 1:
                 return results[0][name]
             why = chapter.each.format(name) if results else why or f"this machine has no {name}"
-        every = tuple(id for chapter in CHAPTERS for id in rows_of(chapter.kind).key_values)
-        raise UsageError(why or f"no key value '{shown(name)}'{did_you_mean(name, every)}")
+        every = tuple(id for chapter in CHAPTERS for id in result_rows(chapter.kind).key_values)
+        raise UsageError(
+            why or f"no key value '{text_in_one_line(name)}'{did_you_mean(name, every)}"
+        )
 
     def _chapters_with(self, name: str) -> Iterator[Chapter]:
         """Yield the chapters that have a key value; one is opened only if those before it do not have it."""
@@ -64,19 +66,21 @@ class Case(Shown):
             if chapter.kind is CylinderForces and self.cylinders:
                 rows = self.cylinders[0].rows
             else:
-                rows = rows_of(chapter.kind, closed=doors_of(chapter.kind))
+                rows = result_rows(chapter.kind, closed=doors_of(chapter.kind))
             if called(name, rows.lists.all_key_values):
                 having = True
                 yield chapter
         if having:
             return
         for chapter in CHAPTERS:
-            if called(name, rows_of(chapter.kind).lists.all_key_values):
+            if called(name, result_rows(chapter.kind).lists.all_key_values):
                 yield chapter
 
     def results(self, command: str) -> list[Results]:
         """Return all results of a command; raises what these raise, UsageError where the machine has none."""
-        return [one for chapter in CHAPTERS if chapter.command == command for one in chapter.of(self)]
+        return [
+            one for chapter in CHAPTERS if chapter.command == command for one in chapter.of(self)
+        ]
 
     def __repr__(self) -> str:
         return f"<kurbel case '{self.machine.name}': .cylinders ({len(self.machine.cylinders)}), .flywheel, .stress>"
@@ -226,7 +230,11 @@ CHAPTERS = (
         "each cylinder has its own {}: ask one of case.cylinders",
     ),
     Chapter("flywheel", _turning, lambda case: [case.flywheel]),
-    Chapter("flywheel", _dead_centre, lambda case: [_dead_centre()(one, case.effort.cycle) for one in case.cylinders]),
+    Chapter(
+        "flywheel",
+        _dead_centre,
+        lambda case: [_dead_centre()(cylinder, case.effort.cycle) for cylinder in case.cylinders],
+    ),
     Chapter("stress", _stress, lambda case: [case.stress]),
     Chapter(
         "bearings",

@@ -8,11 +8,11 @@ import numpy as np
 
 from kurbel.arrays import Array
 from kurbel.crank_angle import unit_vector
-from kurbel.machine.turning import Harmonics, Known, Swing
+from kurbel.machine.turning import Harmonics, KnownDiagram, Swing
 from kurbel.numerics.pieces import Pieces
 
 
-def corners(given: Known, cycle: float) -> Array:
+def corners(given: KnownDiagram, cycle: float) -> Array:
     """Return the angles in degrees between which a torque is smooth; of waves so many that pieces resolve them."""
     if isinstance(given, Swing):
         return np.zeros(0)
@@ -22,7 +22,7 @@ def corners(given: Known, cycle: float) -> Array:
     return np.add.outer(np.arange(0.0, cycle, given.angles[-1]), given.angles).ravel()
 
 
-def torque_on(given: Known, pieces: Pieces) -> Array:
+def torque_on(given: KnownDiagram, pieces: Pieces) -> Array:
     """Return a torque in N m on pieces: M = mean + Σ c cos νφ + s sin νφ, or points with straight lines between them.
 
     Points repeat from their last angle on; at a jump the side counts that holds the middle of a piece. Of a swing the

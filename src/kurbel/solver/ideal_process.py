@@ -11,7 +11,9 @@ Line = tuple[int, float, float, float, float, float]
 def ideal_lines(card: IdealCard, lift: float, four_stroke: bool) -> tuple[float, list[Line]]:
     """Return what makes its pressures absolute, in Pa, and the lines of an ideal card; see `_lines`."""
     lines = _lines(card, lift, four_stroke)
-    if not isinstance(card, Compressor) and card.diagram_factor != 1:  # p V^n = const about another vacuum
+    if (
+        not isinstance(card, Compressor) and card.diagram_factor != 1
+    ):  # p V^n = const about another vacuum
         factor, back = card.diagram_factor, card.back_pressure
         lift = factor * lift - (1 - factor) * back
         lines = [
@@ -47,8 +49,13 @@ def _lines(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
     elif isinstance(card, Compressor) and card.unloaded:
         run(0, 0.0, card.suction, 1.0)
         run(1, 1.0, card.suction, 0.0)
-    elif isinstance(card, Compressor):  # expansion of the clearance gas, suction; compression, delivery
-        ratio, expansion = math.log((card.delivery + lift) / (card.suction + lift)), card.of_expansion
+    elif isinstance(
+        card, Compressor
+    ):  # expansion of the clearance gas, suction; compression, delivery
+        ratio, expansion = (
+            math.log((card.delivery + lift) / (card.suction + lift)),
+            card.of_expansion,
+        )
         fills = clearance * math.expm1(ratio / expansion)
         empties = 1.0 + (1.0 + clearance) * math.expm1(-ratio / card.exponent)
         lines.append((0, 0.0, card.delivery, fills, card.suction, expansion))
