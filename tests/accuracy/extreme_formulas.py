@@ -159,7 +159,7 @@ def of_rods() -> Formulas:
 def of_balance() -> Formulas:
     # a long rod is shaken most at the inner dead centre, m R ω² (1 + λ); one hardly longer than the crank near 90°
     crank, omega = mpf(0.4), 2 * mp.pi
-    length = crank * mpf(1.0001)
+    length = mpf(0.4 * 1.0001)  # rounded; 1 u of it is 2500 u of the force
 
     def slowing(phi: mpmath.mpf) -> mpmath.mpf:
         """Return −d²x/dφ² of x = R (1 − cos φ) + L − √(L² − R² sin² φ)."""

@@ -228,6 +228,56 @@ def test_the_best_share_of_one_cylinder() -> None:
     )
 
 
+def three_throws(of_first: str, of_machine: str = "") -> str:
+    """Three throws; the masses are on the second, and the weights of the first cylinder and of the machine as given."""
+    return f"""
+speed: 600 rpm
+{of_machine}
+cylinders:
+  - {{name: c, crank: 100 mm, rod: 400 mm, axial_position: 0 m{of_first}}}
+  - {{name: b, crank: 100 mm, rod: 400 mm, axial_position: 0.2 m, crank_position: 90 deg, masses: {{piston: 1 kg}}}}
+  - {{name: a, crank: 100 mm, rod: 400 mm, axial_position: 0.4 m, crank_position: 180 deg}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("of_first", "of_machine", "place"),
+    [
+        (", counterweights: [{product: 0.1 kg m, angle: 30 deg}]", "", 0.0),
+        ("", "counterweights: [{product: 0.1 kg m, angle: 30 deg, axial_position: 0.3 m}]", 0.3),
+    ],
+)
+def test_weights_belong_to_throws_whether_or_not_these_have_masses(
+    of_first: str, of_machine: str, place: float
+) -> None:
+    with_weight, bare = (
+        balance_of(three_throws(*texts)) for texts in ((of_first, of_machine), ("", ""))
+    )
+    added = 0.1 * OMEGA**2 * np.exp(1j * np.radians(ANGLES + 30))  # u ω² from throw 1
+    columns, without = with_weight.at(ANGLES), bare.at(ANGLES)
+    assert_allclose(columns.F_x - without.F_x, added.real, atol=1e-12 * OMEGA**2)
+    assert_allclose(columns.F_y - without.F_y, added.imag, atol=1e-12 * OMEGA**2)
+    assert_allclose(columns.M_x - without.M_x, added.real * (place - 0.2), atol=1e-12 * OMEGA**2)
+    # the direction of the best weight counts from throw 1, 90° ahead of the only mass
+    assert bare.counterweight_best_angle == pytest.approx(90, abs=1e-12)
+
+
+def test_weights_alone_turn_as_well() -> None:
+    lonely = balance_of(
+        "{speed: 600 rpm, crank: 50 mm, rod: 200 mm, counterweights: [{product: 0.1 kg m}]}"
+    )
+    assert lonely.F_free_max.value == pytest.approx(0.1 * OMEGA**2, rel=1e-14)
+    assert lonely.counterweight_best == 0
+
+
+def test_planes_of_a_share_need_no_place_of_a_throw_without_masses() -> None:
+    text = three_throws("", "counterweights: {share: 0.5, planes: [0 m, 0.4 m]}").replace(
+        "axial_position: 0.4 m, ", ""
+    )
+    weights = balance_of(text).counterweights
+    assert [weight.place for weight in weights] == [0.0, 0.4]
+
+
 def test_no_counterweight_has_no_direction() -> None:
     """The largest forces, at 90 and 270 deg, are opposite in the frame of the crank: no weight lessens both."""
     opposite = V90.replace("bank_angle: 90", "bank_angle: -45").replace(

@@ -9,6 +9,7 @@ from kurbel.arrays import Array
 from kurbel.declared.record import Rule, ValuesByKey, alternative
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import refused
+from kurbel.machine.cylinder import MOST_TURNS
 from kurbel.machine.measured import Columns
 from kurbel.machine.turning import (
     HARMONICS,
@@ -106,8 +107,13 @@ class KnownEffort(Columns):
         if file is None:
             return points_of(unit, points or [])
         up, down = unit
+        layout_of_file = cls.layout(layout)
         samples = samples_of_file(
-            file, cls.layout(layout), "torque", lambda torques: torques * up / down
+            file,
+            layout_of_file,
+            "torque",
+            lambda torques: torques * up / down,
+            most_turns=MOST_TURNS,
         )
         if len(samples.values) > 1:
             lap = samples.angles[-1] - samples.angles[0]

@@ -63,7 +63,8 @@ class Subject(NamedTuple):
     results: the object that has its key values, if any; at: a function of crank angles (n,) in degrees that returns the
     state with the columns, None without columns; of: the cylinder that a pin belongs to; pistons: those of a cylinder
     whose rod has several; whole: it is the whole machine. The rest is computed only for a report, and
-    once: left_out, warnings, tables.
+    once: left_out, warnings, tables. part: its name in columns where `name` is a number that may mean another part of
+    another machine; where: what it is next to, which tells parts of one number from one another.
     """
 
     name: str
@@ -75,6 +76,13 @@ class Subject(NamedTuple):
     of: str = ""
     pistons: "Sequence[Subject]" = ()
     whole: bool = False
+    part: str = ""
+    where: str = ""
+
+    @property
+    def identity(self) -> str:
+        """What it is in any machine: a part with the same identity in another design is the same part."""
+        return f"{self.part or self.name} {self.where}".rstrip()
 
     @property
     def lists(self) -> Lists:

@@ -445,7 +445,8 @@ class CompressorStage(Results):
     )
 
     def __init__(self, ends: Sequence[CompressorEnd]) -> None:
-        self.name, self.ends = ends[0].owner, tuple(ends)
+        self.name = self.part = ends[0].owner
+        self.ends = tuple(ends)
         self.suction, self.delivery = ends[0].suction, ends[0].delivery
 
     @cached_property
@@ -554,15 +555,46 @@ class MachineDelivery:
 
 
 def _staged(ends: Sequence[CompressorEnd]) -> tuple[CompressorStage, ...]:
-    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last."""
-    groups: dict[object, list[CompressorEnd]] = {}
+    """Return the stages that ends of equal pressures make, the lowest suction first; those without any last.
+
+    Raises UsageError for many machines whose stages are not alike: they are computed one by one.
+    """
+    groups: list[list[CompressorEnd]] = []
     for end in ends:
-        pressures = () if end.suction is None else (end.suction, end.delivery)
-        groups.setdefault(
-            tuple(f"{np.mean(pressure):.9g}" for pressure in pressures) or end.owner, []
-        ).append(end)
-    stages = [CompressorStage(group) for group in groups.values()]
+        group = next((group for group in groups if _are_of_one_stage(group[0], end)), None)
+        if group is None:
+            groups.append([end])
+        else:
+            group.append(end)
+    stages = [CompressorStage(group) for group in groups]
     stages.sort(key=lambda one: math.inf if one.suction is None else float(np.mean(one.suction)))
     for number, stage in enumerate((one for one in stages if one.suction is not None), 1):
         stage.name = f"stage {number}"
+    for stage in stages:
+        stage.part = _part_of(stage.ends, ends)
     return tuple(stages)
+
+
+_SAME_PRESSURE = 1e-9
+"""Relative difference of pressures that are equal but for rounding."""
+
+
+def _are_of_one_stage(end: CompressorEnd, other: CompressorEnd) -> bool:
+    """Return whether two ends have suction and delivery pressure in common, or are of one piston without them."""
+    if end.suction is None or other.suction is None:
+        return end.suction is other.suction and end.owner == other.owner
+    same_suction = np.abs(end.suction - other.suction) <= _SAME_PRESSURE * np.abs(end.suction)
+    same_delivery = np.abs(end.delivery - other.delivery) <= _SAME_PRESSURE * np.abs(end.delivery)
+    same = np.ravel(same_suction & same_delivery)
+    if same.any() != same.all():
+        raise UsageError("the stages of these machines are not alike")
+    return bool(same.all())
+
+
+def _part_of(of_stage: Sequence[CompressorEnd], ends: Sequence[CompressorEnd]) -> str:
+    """Return the name of a stage by its pistons; by its ends, where a piston has others in another stage."""
+    names: list[str] = []
+    for end in of_stage:
+        has_others = any(other.owner == end.owner and other not in of_stage for other in ends)
+        names.append(f"{end.owner}, {end.end}" if has_others else end.owner)
+    return " + ".join(dict.fromkeys(names))
