@@ -1,6 +1,6 @@
 """Write docs/accuracy.md and docs/accuracy.svg: a real run of `kurbel accuracy`, explained.
 
-python docs/accuracy.py
+python tools/accuracy.py
 
 The numbers in the explanation are read from the run; times belong to the machine that the page names.
 """
@@ -25,7 +25,7 @@ from kurbel.render.output import write_out
 from kurbel.report.accuracy import accuracy_report, extremes_report
 from kurbel.tables.tables import Report
 
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parent.parent / "docs"
 PICTURE = "accuracy.svg"
 EQUIDISTANT = ("trapezium rule", "largest ordinate")
 
@@ -116,7 +116,7 @@ any. The best methods use kurbel's idea: cut the cycle at the corners of the car
 root searches or a fit of Chebyshev polynomials. The number of points that they need is not known beforehand; kurbel
 determines it for each machine. References are textbook formulas in 40 digits of mpmath, with Gauss rules whose pieces
 are halved until 25 digits agree. `benchmarks/speed_lines.py` and `benchmarks/flywheel.py` do the same for the speed of
-the shaft, `benchmarks/model_and_data.py` the errors of data and model. `python docs/accuracy.py` writes this page."""
+the shaft, `benchmarks/model_and_data.py` the errors of data and model. `python tools/accuracy.py` writes this page."""
 
 
 def main() -> None:
