@@ -34,10 +34,10 @@ from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
 
 if TYPE_CHECKING:
-    from kurbel.solver.chapters.coupling import ElasticCoupling
+    from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
 
 RIGID_ABOVE = 100.0
-"""Natural order above which a coupling counts as rigid: its torque differs from that of a rigid one by 1 in 10⁴."""
+"""Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
 _MISSED = 1e-3
 """Relative deviation from the required δ above which there is a warning."""
 _LARGEST_EXPONENT = 709.7
@@ -48,7 +48,13 @@ _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
 
 
-def _coupling() -> type[ElasticCoupling]:
+def _coupling_torque() -> type[CouplingTorque]:
+    from kurbel.solver.chapters.coupling import CouplingTorque
+
+    return CouplingTorque
+
+
+def _elastic_coupling() -> type[ElasticCoupling]:
     from kurbel.solver.chapters.coupling import ElasticCoupling
 
     return ElasticCoupling
@@ -171,7 +177,7 @@ class MachineTurning(Results):
             case "alpha":
                 return None if self.speed is None else self.speed.alpha
             case "M_coupling":
-                return None if self.elastic is None else self.elastic.torque
+                return None if self.coupled is None else self.coupled.torque
         return self._from_others(column)
 
     def _at_crank(self, torque: Array) -> tuple[Pieces, Array] | None:
@@ -538,7 +544,20 @@ class MachineTurning(Results):
         """Whether the coupling counts as rigid, n_e > 100; of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
 
-    @part(_coupling, there=lambda one: one.machine.coupling is not None)
+    @part(_coupling_torque, there=lambda turning: turning.machine.coupling is not None)
+    def coupled(self) -> CouplingTorque | None:
+        """The torque in the coupling; None without one, and without a speed line.
+
+        Raises NoSolutionError where no periodic motion is found.
+        """
+        coupling, line = self.machine.coupling, self.speed
+        if coupling and self.rigid and isinstance(line, RigidLine):
+            from kurbel.solver.chapters.coupling import StiffCoupling
+
+            return StiffCoupling(line, coupling.inertia)
+        return self.elastic
+
+    @part(_elastic_coupling, there=lambda turning: turning.machine.coupling is not None)
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None for a rigid one, and without a speed line.
 
@@ -546,7 +565,7 @@ class MachineTurning(Results):
         """
         if self.machine.coupling is None or self.rigid:
             return None
-        return self.speed if isinstance(self.speed, _coupling()) else None
+        return self.speed if isinstance(self.speed, _elastic_coupling()) else None
 
     # the required δ, compared with the speed line
 
