@@ -44,9 +44,9 @@ _TORQUES = f"{_FORCES} * {_LENGTHS}"
 
 KINDS = {
     "length": Kind(1e-9, 1e9, _LENGTHS, "m", ("mm", "m"), "mm", "in", "450 mm"),
-    "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2"),
+    "area": Kind(1e-18, 1e18, _AREAS, "m^2", "cm^2", "cm^2", "in^2", "1500 cm2"),
     "mass": Kind(1e-12, 1e18, f"{_MASSES}; tonne, long ton, short ton", "kg", ("kg", "t"), None, "lb", "120 kg"),
-    "force": Kind(0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf"),
+    "force": Kind(0, 1e18, f"{_FORCES}; long tonf, short tonf", "N", ("N", "kN", "MN"), "kgf", "lbf", "5 kN"),
     "pressure": Kind(
         0, 1e15, f"{_PRESSURES}; {_STRESSES}; lb/in2, lb/ft2", "Pa", ("mbar", "bar"), "at", "psi", "5.4 bar"
     ),
@@ -78,11 +78,14 @@ KINDS = {
         ("N m", "kN m"),
         "kgf m",
         "lbf ft",
+        "1200 N m",
     ),
-    "energy": Kind(0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft"),
-    "power": Kind(0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp"),
-    "inertia": Kind(1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2"),
-    "unbalance": Kind(1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in"),
+    "energy": Kind(0, 1e18, f"J, kJ, MJ; {_TORQUES}; Nm", "J", ("J", "kJ", "MJ"), "kgf m", "lbf ft", "20 kJ"),
+    "power": Kind(0, 1e18, "W, kW, MW, PS, hp, kgf m/s", "W", ("W", "kW", "MW"), "PS", "hp", "25 kW"),
+    "inertia": Kind(
+        1e-18, 1e18, f"{_MASSES} * {_AREAS}; lbf in s2, lbf ft s2", "kg m^2", imperial="lb ft^2", written="800 kg m2"
+    ),
+    "unbalance": Kind(1e-15, 1e18, f"{_MASSES}, mg * {_LENGTHS}", "kg m", imperial="lb in", written="40 kg m"),
     "gd2": Kind(
         1e-18,
         1e18,
@@ -91,10 +94,15 @@ KINDS = {
         None,
         "kgf m^2",
         "lb ft^2",
-        "10 kgf m2",
+        "3200 kgf m2",
     ),
     "stiffness": Kind(
-        1e-12, 1e18, f"{_FORCES} * m/rad, mm/rad, ft/rad; Nm/rad, kNm/rad", "N m/rad", imperial="lbf ft/rad"
+        1e-12,
+        1e18,
+        f"{_FORCES} * m/rad, mm/rad, ft/rad; Nm/rad, kNm/rad",
+        "N m/rad",
+        imperial="lbf ft/rad",
+        written="2000 kN m/rad",
     ),
     "damping": Kind(
         1e-15,
@@ -102,8 +110,9 @@ KINDS = {
         f"{_FORCES} * m s/rad; Nm s/rad, kNm s/rad, N m s, Nm s, kN m s, lbf ft s/rad",
         "N m s/rad",
         imperial="lbf ft s/rad",
+        written="500 N m s/rad",
     ),
-    "volume": Kind(1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "10 cm3"),
+    "volume": Kind(1e-27, 1e27, "m3, dm3, l, cm3, mm3, in3", "m^3", ("cm^3", "m^3"), "dm^3", "in^3", "60 dm3"),
     "volume_rise": Kind(0, 1e27, "m3, cm3, in3 / deg, rad", "m^3/deg", "cm^3/deg", "cm^3/deg", "in^3/deg"),
     "pressure_rise": Kind(
         0,
@@ -118,12 +127,12 @@ KINDS = {
     "pressure_velocity": Kind(
         0, 1e18, "W/m2, N/mm2 m/s, kgf m/s/cm2, psi ft/s", "W/m^2", "N/mm^2 m/s", "kgf m/s/cm^2", "psi ft/s"
     ),
-    "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3"),
+    "density": Kind(1e-9, 1e9, "kg/m3, kg/dm3, g/cm3, t/m3, lb/ft3, lb/in3", "kg/m^3", written="1000 kg/m3"),
     "temperature": Kind(1e-3, 1e6, "K, °C, °F", "K", written="20 °C"),
     "flow": Kind(0, 1e18, "m3, dm3, l, cm3, ft3, in3 / s, min, h", "m^3/s", ("l/min", "m^3/h"), "m^3/h", "ft^3/min"),
     "mass_flow": Kind(0, 1e18, f"{_MASSES} / s, min, h", "kg/s", "kg/h", "kg/h", "lb/h"),
     "molar_mass": Kind(1e-9, 1e6, "kg/mol, g/mol, kg/kmol", "kg/mol", "g/mol", written="28.96 g/mol"),
-    "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K"),
+    "gas_constant": Kind(1e-3, 1e9, "J/kg K, kJ/kg K, kgf m/kg K", "J/kg K", written="287 J/kg K"),
     "spring": Kind(
         1e-15,
         1e3,
@@ -132,7 +141,7 @@ KINDS = {
         "mm/bar",
         "mm/at",
         "in/psi",
-        "10 mm/at",
+        "6 mm/at",
     ),
     "ratio": Kind(1e-15, 1e15, "", ""),
 }

@@ -104,7 +104,9 @@ class Measured(Columns):
     angle_sense = alternative(
         ("with", "against"), "Direction in which angles count: with the rotation or against it", absent="with"
     )
-    scale = alternative("ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1")
+    scale = alternative(
+        "ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1", example="20"
+    )
     offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
         OneOf(Choice(("ambient",)), RecordForm(KnownLevel)),
@@ -114,7 +116,7 @@ class Measured(Columns):
     )
     drift = alternative(("linear",), "Drift correction of every cycle, so that it closes", absent="none")
     clearance = alternative(
-        CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known"
+        CLEARANCE, "Clearance over stroke volume, for exponents and volumes", "ε₀", absent="not known", example="0.06"
     )
     compression_ratio = alternative(
         "ratio",

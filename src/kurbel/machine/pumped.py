@@ -70,7 +70,14 @@ class Vessel(Record):
         example="5 %",
     )
     exponent: float = field(
-        "ratio", "Exponent of p V^n of its air", "n", default=1.0, least=0.5, most=2, absent="1, isothermal"
+        "ratio",
+        "Exponent of p V^n of its air",
+        "n",
+        default=1.0,
+        least=0.5,
+        most=2,
+        absent="1, isothermal",
+        example="1.2",
     )
 
     def rules(self) -> Iterator[Rule]:
@@ -85,7 +92,14 @@ class Pipe(Record):
     diameter: float = field("length", "Bore of the pipe", "d", above=0, example="100 mm")
     lift: float | None = field("length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared")
     friction_factor: float = field(
-        "ratio", "Friction factor of the pipe (Darcy)", "f", default=0.0, least=0, most=1, absent="0, no friction"
+        "ratio",
+        "Friction factor of the pipe (Darcy)",
+        "f",
+        default=0.0,
+        least=0,
+        most=1,
+        absent="0, no friction",
+        example="0.03",
     )
     vessel: Vessel | None = field(Vessel, "Air vessel between pipe and pump", absent="none")
 
@@ -93,7 +107,14 @@ class Pipe(Record):
 class Pump(Record):
     """What a pump's flow depends on besides its pistons."""
 
-    slip: float = field("ratio", "Share of the displaced volume that is not delivered", default=0.0, least=0, below=1)
+    slip: float = field(
+        "ratio",
+        "Share of the displaced volume that is not delivered",
+        default=0.0,
+        least=0,
+        below=1,
+        example="0.03",
+    )
     liquid: Liquid = field(Liquid, "What is pumped", default=Liquid(), absent="water")
     suction_pipe: Pipe | None = field(Pipe, "Pipe to the pump", absent="suction lift left out")
     delivery_pipe: Pipe | None = field(Pipe, "Pipe from the pump", absent="left out")

@@ -72,6 +72,7 @@ class ShaftPart(Record):
         least=0,
         most=2,
         absent="0",
+        example="0.01",
     )
     damping: float | None = field(
         "damping",
@@ -82,7 +83,11 @@ class ShaftPart(Record):
         absent="0",
     )
     gear: float | None = field(
-        "ratio", "Speed ratio: speed after the gear over speed before it, in the order of the list", "u", above=0
+        "ratio",
+        "Speed ratio: speed after the gear over speed before it, in the order of the list",
+        "u",
+        above=0,
+        example="0.25",
     )
 
     word: str = ""

@@ -71,6 +71,7 @@ class Rim(Record):
         above=0,
         absent="7250 kg/m³, cast iron",
         also=("material",),
+        example="7250 kg/m3",
     )
     allowable_tension: float | None = field(
         "stress", "Allowable hoop stress of the rim; a warning is given if it is exceeded", "k_z", above=0
@@ -300,9 +301,11 @@ class Load(Record):
     mean · (1 + (ω/ω_n − 1)/s); diagram: a resistance that varies over the turn, by points or harmonics.
     """
 
-    power: float | None = field("ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law")
+    power: float | None = field(
+        "ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law", example="2"
+    )
     slip: float | None = field(
-        "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
+        "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0, example="0.03"
     )
     _unit = UNIT
     _points = POINTS._replace(gives=lambda given: {"diagram": points_of(given["unit"], given["points"])})
@@ -356,6 +359,7 @@ class KnownEffort(Columns):
         least=0,
         instead="swing",
         needs="mean",
+        example="0.2",
     )
 
     @classmethod

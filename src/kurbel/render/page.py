@@ -9,6 +9,7 @@ from kurbel.render import Look
 from kurbel.render.output import terminal_size
 from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
+from kurbel.tables.sources import legend_of
 from kurbel.tables.tables import KeyValue, Report, first_selection, shown_once
 
 _NINE = 9  # angles to a block: the book breaks after 80°
@@ -57,6 +58,8 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         if part.warnings:
             yield from (BLANK, line(f"Warnings{of}", "name"))
             yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
+    if books := legend_of(report):
+        yield from sentence("", books, look)
 
 
 def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line]:
