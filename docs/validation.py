@@ -14,6 +14,7 @@ from typing import Any
 import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.crank_formulas import first_order_acceleration, first_order_displacement
+from valve_prints import PRINTS, Print
 from worked_examples import FOLDER, SI, TABLE, told
 
 _ROOT = Path(__file__).parent.parent
@@ -52,7 +53,17 @@ _COMPANIONS = ("Theory of Machines", "Gupta, Fund", "Tayal", "Bhandari", "Keswan
 
 def page() -> str:
     """Return the page."""
-    blocks = [_HEAD, _roetscher(), _zusammenstellung(), _blau(), _tredgold(), _redtenbacher(), _counts(), *_books()]
+    blocks = [
+        _HEAD,
+        _roetscher(),
+        _zusammenstellung(),
+        _blau(),
+        _tredgold(),
+        _redtenbacher(),
+        _valves(),
+        _counts(),
+        *_books(),
+    ]
     return "\n\n".join(block.strip() for block in blocks) + "\n"
 
 
@@ -346,6 +357,30 @@ def _redtenbacher() -> str:
         for place, of, printed, value, why in rows
     )
     return _own_book("F. Redtenbacher, Der Maschinenbau (1862): friction loss of the crosshead", shown)
+
+
+def _valves() -> str:
+    rows = (
+        (one.source, one.of, one.printed, _shown(one.computed), one.unit, _of_print(one), _judged_print(one))
+        for one in PRINTS
+    )
+    text = (
+        "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine. Infinite rods, except for the "
+        "last engine of 1859 and that of 1891, whose connecting rods are given. No printed example with a finite "
+        "eccentric rod is known: there the tests hold kurbel against a bisection in 40 digits, and against the "
+        "eccentric as a slider-crank."
+    )
+    return _own_book("Valve gears in print, 1859 to 1892", rows).replace("\n\n", f"\n\n{text}\n\n", 1)
+
+
+def _of_print(one: Print) -> str:
+    return _relative(float(one.printed), one.computed)
+
+
+def _judged_print(one: Print) -> str:
+    if one.agrees and not one.why:
+        return "both"
+    return f"kurbel; {one.why}"
 
 
 def _table(*heads: str, rows: Iterable[Sequence[str]]) -> str:
