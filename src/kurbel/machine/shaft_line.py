@@ -73,6 +73,7 @@ class ShaftPart(Record):
         "ρ",
         least=0,
         absent="7850 kg/m3, steel",
+        example="7850 kg/m3",
         needs="length",
     )
     loss_factor: float | None = field(

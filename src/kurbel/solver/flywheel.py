@@ -225,16 +225,18 @@ class MachineTurning(Results):
         lambda one: one.M_mean * one.omega if one.turns and one.knows_mean else None,
     )
     work_indicated = value(
-        "A_i",
+        "A_Σ",
         "energy",
         "Indicated work of all driving pistons per cycle; of all driven ones if none drives",
         lambda one: one.indicated_work,
+        plain="A_sum",
     )
     power_indicated = value(
-        "N_i",
+        "N_Σ",
         "power",
         "Indicated power of the whole machine: of all driving pistons; of all driven ones if none drives",
         lambda one: one.indicated_power,
+        plain="N_sum",
     )
     mechanical_efficiency = value(
         "η_g",
