@@ -99,7 +99,7 @@ def table(
       x/s  share of the stroke
 
     v is the crank-pin speed, R the crank radius, L the rod length. Below b and c: where b is zero and c largest,
-    exactly, by first order, and by the rule that the rod is square to the crank (Rötscher, p. 604).
+    exactly, by first order, and by the rule that the rod is square to the crank (R p. 604).
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 

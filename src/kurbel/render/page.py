@@ -19,8 +19,8 @@ _GAP, _ROW_GAP = 2, 3
 _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
 
-def page(report: Report, look: Look) -> Iterator[Line]:
-    """Yield the lines of the whole page."""
+def page(report: Report, look: Look, has_legend: bool = True) -> Iterator[Line]:
+    """Yield the lines of the whole page; has_legend: with the books of its references."""
     report = shown_once(report)
     yield from paragraph(look.text(report.title), look.width, "title")
     for text in report.head:
@@ -58,7 +58,8 @@ def page(report: Report, look: Look) -> Iterator[Line]:
         if part.warnings:
             yield from (BLANK, line(f"Warnings{of}", "name"))
             yield from (one for warning in part.warnings for one in sentence("  ", warning, look))
-    if books := legend_of(report):
+    books = legend_of(report)
+    if books and has_legend:
         yield from sentence("", books, look)
 
 
@@ -69,7 +70,7 @@ def fitting(report: Report, look: Look, first: Collection[str]) -> Iterator[Line
     if len(begin) < most:
         return chain(begin, lines)
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return page(first_selection(report, first, across, rows=most // 6), look)
+    return page(first_selection(report, first, across, rows=most // 6), look, has_legend=False)
 
 
 # a line for each row
