@@ -5,7 +5,13 @@ import pytest
 import kurbel
 from representative import CONFIGS
 
-BALANCED = ["waterworks", "waterworks-two-cranks", "compressor-two-stage", "locomotive", "diesel-four-stroke"]
+BALANCED = [
+    "waterworks",
+    "waterworks-two-cranks",
+    "compressor-two-stage",
+    "locomotive",
+    "diesel-four-stroke",
+]
 
 
 @pytest.mark.parametrize("name", BALANCED)
@@ -19,13 +25,17 @@ def test_work_put_in_is_work_given_off_and_friction(name: str) -> None:
     assert case.flywheel.work_indicated == pytest.approx(sum(works) or -driven, rel=1e-12)
     assert case.flywheel.mechanical_efficiency == pytest.approx((put_in - lost) / put_in, rel=1e-9)
     cycles_per_second = case.machine.speed / case.machine.revolutions
-    assert case.flywheel.power_indicated == pytest.approx(case.flywheel.work_indicated * cycles_per_second, rel=1e-12)
+    assert case.flywheel.power_indicated == pytest.approx(
+        case.flywheel.work_indicated * cycles_per_second, rel=1e-12
+    )
 
 
 def test_loss_of_redtenbachers_locomotive() -> None:
     """1.304 % over the stroke: the crosshead alone rubs, on the forces of the steam and of the masses."""
     case = kurbel.solve(kurbel.load(CONFIGS["locomotive"]))
-    assert 1 - case.flywheel.mechanical_efficiency == pytest.approx(case["loss_crosshead"].value, rel=1e-12)
+    assert 1 - case.flywheel.mechanical_efficiency == pytest.approx(
+        case["loss_crosshead"].value, rel=1e-12
+    )
 
 
 def test_efficiency_of_the_file_is_that_of_the_machine() -> None:

@@ -14,7 +14,11 @@ class Gas(Record):
     """The gas that a compressor draws in, as an ideal one; what is None is left out, or as in the whole machine."""
 
     inlet_temperature: float = field(
-        "temperature", "Temperature of the gas where it is drawn in", "T_1", above=0, example="20 °C"
+        "temperature",
+        "Temperature of the gas where it is drawn in",
+        "T_1",
+        above=0,
+        example="20 °C",
     )
     gas_constant: float | None = field(
         "gas_constant",
@@ -46,7 +50,9 @@ class Gas(Record):
 class Liquid(Record):
     """What a pump moves."""
 
-    density: float = field("density", "Density", "ρ", default=WATER[0], above=0, absent="1000 kg/m³, water")
+    density: float = field(
+        "density", "Density", "ρ", default=WATER[0], above=0, absent="1000 kg/m³, water"
+    )
     vapour_pressure: float = field(
         "pressure",
         "Absolute pressure at which the liquid boils",
@@ -82,7 +88,9 @@ class Vessel(Record):
 
     def rules(self) -> Iterator[Rule]:
         nothing = self.volume is None and self.pressure_swing is None
-        yield Rule((), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have")
+        yield Rule(
+            (), nothing, "give the 'volume' of the vessel, or the 'pressure_swing' that it may have"
+        )
 
 
 class Pipe(Record):
@@ -90,7 +98,9 @@ class Pipe(Record):
 
     length: float = field("length", "Length of the pipe", "l", above=0, example="12 m")
     diameter: float = field("length", "Bore of the pipe", "d", above=0, example="100 mm")
-    lift: float | None = field("length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared")
+    lift: float | None = field(
+        "length", "Height that the pipe lifts the liquid", "h", least=0, absent="not compared"
+    )
     friction_factor: float = field(
         "ratio",
         "Friction factor of the pipe (Darcy)",
