@@ -60,6 +60,7 @@ class KnownEffort(Columns):
         least=0,
         instead="swing",
         needs="mean",
+        example="0.2",
     )
 
     @classmethod
