@@ -3,13 +3,17 @@
 They are warnings, not errors: a wrong unit or a slipped decimal point is likely, but the file may be right.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kurbel.declared.unit_systems import show
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.pumped import GAS_CONSTANT, Gas
+
+if TYPE_CHECKING:
+    from kurbel.machine.pumped import Gas
 
 _STEEL = 7850.0
 """kg/m³"""
@@ -97,8 +101,8 @@ def _temperature_of(gas: Gas | None, name: str = "") -> Iterator[Figure]:
 
 
 def _molar_mass_of(gas: Gas | None, name: str = "") -> Iterator[Figure]:
-    if gas and gas.gas_constant is not None:
-        yield Figure(GAS_CONSTANT / gas.gas_constant, name)
+    if gas and gas.mass_of_mole is not None:
+        yield Figure(gas.mass_of_mole, name)
 
 
 def _temperatures(machine: Machine, cylinder: Cylinder) -> Iterator[Figure]:

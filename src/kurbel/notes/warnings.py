@@ -16,15 +16,11 @@ from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
-from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, CardLine
-from kurbel.machine.turning import Effort
 from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.tables.tables import grouped, together
-from kurbel.traces.checks import doubt
-from kurbel.traces.pressure import TracePressure
 
 
 class Note(NamedTuple):
@@ -38,8 +34,11 @@ class Note(NamedTuple):
     command: str = ""
 
 
-def machine_notes(case: Case) -> tuple[Note, ...]:
-    """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
+def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
+    """Return all warnings on a machine, each once: on what was given, on measurements, and on results.
+
+    of_forces: leave out those on the speed line and on strength, which take far longer to compute than forces.
+    """
     machine, found = case.machine, list[Note]()
 
     def add(texts: Iterable[str], cylinder: str | None = None, command: str = "") -> None:
@@ -47,7 +46,7 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
-    if isinstance(machine.effort, Effort):
+    if machine.effort:
         add(f"effort: {text}" for text in machine.effort.notes)
     add(machine_doubts(machine))
     add(_fluctuation_warnings(machine), command="flywheel")
@@ -63,8 +62,9 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
             add(_brake_warnings(case))
             for forces in case.cylinders:
                 add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
-            add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
-            add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
+            if not of_forces:
+                add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
+                add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
     return tuple(dict.fromkeys(found))
 
 
@@ -82,7 +82,7 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
     """Return the warnings on the forces of each cylinder by its name; those on all of them are with the last one."""
     found: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
     last = case.machine.cylinders[-1].name
-    for note in machine_notes(case):
+    for note in machine_notes(case, of_forces=True):
         if note.command in ("", "forces"):
             found[note.cylinder or last].append(note.text)
     return found
@@ -148,19 +148,9 @@ def _card_warnings(cylinder: Cylinder) -> Iterator[str]:
     for piston in cylinder.pistons:
         for end, chamber in piston.chambers.items():
             place = f"{piston.name}, {end.replace('_', ' ')}"
-            yield from (
-                f"{place}: {text}"
-                for text in (() if isinstance(chamber, Compressor) else chamber.notes)
-            )
-            exponents = (
-                {chamber.exponent}
-                if isinstance(chamber, (Steam, Compressor, Otto, Diesel))
-                else set()
-            )
-            if isinstance(chamber, (Compressor, Otto, Diesel)) and chamber.expansion_exponent:
-                exponents.add(chamber.expansion_exponent)
+            yield from (f"{place}: {text}" for text in chamber.notes)
             least, most = _EXPONENTS
-            for value in exponents:
+            for value in set(chamber.exponents):
                 if not least <= value <= most:
                     yield f"{place}: an exponent of {value:g} is none of gas or steam, {least} to {most}; is it right?"
         asymmetries = [
@@ -206,7 +196,9 @@ def _trace_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield the one warning on each trace of a cylinder, if any."""
     for gas in forces.drive.gas:
         for end, pressure in (("head end", gas.head), ("crank end", gas.crank)):
-            if isinstance(pressure, TracePressure):
+            if pressure and pressure.traced:
+                from kurbel.traces.checks import doubt
+
                 text = doubt(pressure.trace, pressure.setting, pressure.each)
                 if text:
                     yield f"{gas.piston.name}, {end}: {text}"
@@ -358,9 +350,7 @@ def _kind_of(forces: CylinderForces) -> str:
         for one in pistons
         for _ in one.chambers
     ]
-    if any(
-        isinstance(one, Steam) or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)
-    ):
+    if any(one.by_steam or _drawn_by_steam(one, lift) for one, lift in zip(chambers, lifts)):
         return "steam engines"
     if (forces.work or 0.0) < 0:
         return (
@@ -369,9 +359,7 @@ def _kind_of(forces: CylinderForces) -> str:
             else ""
         )
     crosshead = any(one.crank_end_rod or "crank_end" in one.chambers for one in pistons)
-    burns = any(
-        isinstance(chamber, (Otto, Diesel)) or forces.drive.cycle > 360 for chamber in chambers
-    )
+    burns = any(chamber.burns or forces.drive.cycle > 360 for chamber in chambers)
     return "gas engines with a crosshead" if crosshead and burns else ""
 
 
