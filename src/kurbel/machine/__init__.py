@@ -114,6 +114,8 @@ class Machine(Record):
         default=1.0,
         above=0,
         most=1,
+        example="0.88",
+        usual="0.85 to 0.92 for ordinary piston machines (R p. 611)",
     )
     ambient: float = field(
         "pressure",

@@ -64,7 +64,7 @@ def _above_vacuum(lift: Number, **pressures: Number | None) -> Iterator[Rule]:
 
 def _diagram_factor() -> FieldValue:
     text = "p_i of the true card over that of the theoretical one, which is drawn lower about the back pressure"
-    return field("ratio", text, "κ_d", default=1.0, above=0, most=1)
+    return field("ratio", text, "κ_d", default=1.0, above=0, most=1, example="0.85")
 
 
 def _factor_notes(factor: float) -> tuple[str, ...]:
@@ -96,10 +96,16 @@ class Steam(Record):
         above=0,
         most=1,
         absent="the `valve` sets all events",
+        example="0.35",
     )
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", example="0.05")
     release: float = field(
-        "ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1
+        "ratio",
+        "Fraction of the stroke at which the exhaust opens",
+        default=1.0,
+        above=0,
+        most=1,
+        example="0.95",
     )
     compression: float = field(
         "ratio",
@@ -107,6 +113,7 @@ class Steam(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.2",
     )
     lead: float = field(
         "ratio",
@@ -114,6 +121,7 @@ class Steam(Record):
         default=0.0,
         least=0,
         below=1,
+        example="0.01",
     )
     exponent: float = _exponent("Exponent of expansion and compression", "1, the hyperbola", 1.0)
     diagram_factor: float = _diagram_factor()
@@ -156,7 +164,7 @@ class Compressor(Record):
 
     suction: float = _pressure("Pressure while the chamber fills")
     delivery: float = _pressure("Pressure while the chamber empties", also=("discharge",))
-    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
+    clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c", example="0.05")
     exponent: float = _exponent("Exponent of compression and expansion", "1.4, air", AIR_EXPONENT)
     expansion_exponent: float | None = _exponent(
         "Exponent of the expansion", "that of the compression"
@@ -203,7 +211,10 @@ class _Engine(Record):
         "Pressure in the cylinder when compression begins, and while it fills"
     )
     peak: float | None = _pressure(
-        "Pressure of injection, reached at constant volume", absent="that at the end of compression"
+        "Pressure of injection, reached at constant volume",
+        absent="that at the end of compression",
+        example="33 at",
+        usual="30 to 35 at (R p. 610)",
     )
     _compression_ratio = alternative(
         "ratio",
@@ -274,7 +285,9 @@ class _Engine(Record):
 class Otto(_Engine):
     """An Otto engine: the pressure rises to its peak at the dead centre, at constant volume."""
 
-    peak: float = _pressure("Largest pressure, after combustion")
+    peak: float = _pressure(
+        "Largest pressure, after combustion", example="25 at", usual="about 25 at (R p. 609)"
+    )
 
 
 class Diesel(_Engine):
@@ -285,7 +298,7 @@ class Diesel(_Engine):
     """
 
     cut_off: float = field(
-        "ratio", "Fraction of the stroke at which injection ends", above=0, below=1
+        "ratio", "Fraction of the stroke at which injection ends", above=0, below=1, example="0.08"
     )
 
 

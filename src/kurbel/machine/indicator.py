@@ -153,7 +153,10 @@ class Card(Record):
         ("linear", "polytropic"), "How points are joined", default="linear", absent="linear"
     )
     clearance: float | None = field(
-        CLEARANCE_OR_NONE, "Clearance over stroke volume, for `polytropic`", absent="not known"
+        CLEARANCE_OR_NONE,
+        "Clearance over stroke volume, for `polytropic`",
+        absent="not known",
+        example="0.08",
     )
     notes: tuple[str, ...] = ()
     drawn: bool = False

@@ -141,7 +141,10 @@ class Measured(Columns):
         absent="with",
     )
     scale = alternative(
-        "ratio", "Pressure, in the unit, per 1 of the file, such as bar per volt", absent="1"
+        "ratio",
+        "Pressure, in the unit, per 1 of the file, such as bar per volt",
+        absent="1",
+        example="20",
     )
     offset = alternative("pressure", "Pressure added after scaling", absent="0 bar")
     pegging = alternative(
@@ -158,6 +161,7 @@ class Measured(Columns):
         "Clearance over stroke volume, for exponents and volumes",
         "ε₀",
         absent="not known",
+        example="0.06",
     )
     compression_ratio = alternative(
         "ratio",

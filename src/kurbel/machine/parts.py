@@ -25,7 +25,14 @@ class ConnectingRod(Record):
 
     mass: float = field("mass", "Mass of the rod", least=0)
     share: float = field(
-        "ratio", "Reciprocating share of the mass", default=0.5, least=0, most=1, absent="1/2"
+        "ratio",
+        "Reciprocating share of the mass",
+        default=0.5,
+        least=0,
+        most=1,
+        absent="1/2",
+        example="1/2",
+        usual="1/2 to 2/3 (R p. 608)",
     )
     center_of_gravity: float | None = field(
         "length",
@@ -158,7 +165,11 @@ class GasOnRings(Record):
     """Rings that the gas presses on the wall (Redtenbacher): in proportion to the pressure difference."""
 
     gas: float = field(
-        "ratio", "Pressure on the wall over the difference across the piston", "k", least=0
+        "ratio",
+        "Pressure on the wall over the difference across the piston",
+        "k",
+        least=0,
+        example="0.5",
     )
 
 
@@ -195,15 +206,27 @@ class Friction(Record):
     """Friction of the moving parts of a cylinder; what is None is left out."""
 
     crosshead: float | None = field(
-        "ratio", "Coefficient of friction of the crosshead on its guide", "f", least=0
+        "ratio",
+        "Coefficient of friction of the crosshead on its guide",
+        "f",
+        least=0,
+        usual="1/10 in Redtenbacher's example (D 7)",
     )
     rings: Rings | None = field(Rings, "Piston rings")
     constant: float | None = field(
-        "force", "Force opposing the motion, constant over the stroke", "F_0", least=0
+        "force",
+        "Force opposing the motion, constant over the stroke",
+        "F_0",
+        least=0,
+        example="500 N",
     )
     guide: Guide | None = field(Guide, "Shoe of the crosshead", needs="crosshead")
     crank_pin: float | None = field(
-        "ratio", "Coefficient of friction of the connecting rod on the crank pin", "f_Z", least=0
+        "ratio",
+        "Coefficient of friction of the connecting rod on the crank pin",
+        "f_Z",
+        least=0,
+        example="0.02",
     )
     crank_pin_diameter: float | None = field(
         "length",
@@ -219,6 +242,7 @@ class Friction(Record):
         "f_H",
         least=0,
         needs="crosshead_pin_diameter",
+        example="0.02",
     )
     crosshead_pin_diameter: float | None = field(
         "length", "Diameter of the crosshead pin", "d_H", above=0, needs="crosshead_pin"
@@ -232,7 +256,11 @@ class Friction(Record):
         needs="crosshead_pin",
     )
     journals: float | None = field(
-        "ratio", "Coefficient of friction of the journals in the main bearings", "f_j", least=0
+        "ratio",
+        "Coefficient of friction of the journals in the main bearings",
+        "f_j",
+        least=0,
+        example="0.02",
     )
     journal_diameter: float | None = field(
         "length",
@@ -447,6 +475,7 @@ class TandemPiston(Piston):
         least=-100,
         most=100,
         absent="1: on the same rod",
+        example="0.5",
     )
 
     def rules(self) -> Iterator[Rule]:

@@ -89,6 +89,7 @@ class ShaftPart(Record):
         "ρ",
         least=0,
         absent="7850 kg/m3, steel",
+        example="7850 kg/m3",
         needs="length",
     )
     loss_factor: float | None = field(
@@ -98,6 +99,7 @@ class ShaftPart(Record):
         least=0,
         most=2,
         absent="0",
+        example="0.01",
     )
     damping: float | None = field(
         "damping",
@@ -112,6 +114,7 @@ class ShaftPart(Record):
         "Speed ratio: speed after the gear over speed before it, in the order of the list",
         "u",
         above=0,
+        example="0.25",
     )
 
     word: str = ""

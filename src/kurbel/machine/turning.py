@@ -77,6 +77,7 @@ class Rim(Record):
         above=0,
         absent="7250 kg/m³, cast iron",
         also=("material",),
+        example="7250 kg/m3",
     )
     allowable_tension: float | None = field(
         "stress",
@@ -342,10 +343,18 @@ class Load(Record):
     """
 
     power: float | None = field(
-        "ratio", "Torque proportional to ω^k: 2 for a fan, 0 for a hoist", "k", key="power_law"
+        "ratio",
+        "Torque proportional to ω^k: 2 for a fan, 0 for a hoist",
+        "k",
+        key="power_law",
+        example="2",
     )
     slip: float | None = field(
-        "ratio", "Slip of a grid-tied generator at mean torque; stiff for small slip", "s", above=0
+        "ratio",
+        "Slip of a grid-tied generator at mean torque; stiff for small slip",
+        "s",
+        above=0,
+        example="0.03",
     )
     _unit = UNIT
     _points = POINTS._replace(
@@ -414,6 +423,7 @@ class KnownEffort(Columns):
         least=0,
         instead="swing",
         needs="mean",
+        example="0.2",
     )
 
     @classmethod
