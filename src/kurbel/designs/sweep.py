@@ -83,7 +83,7 @@ class Sweep:
         """The heads of the columns, with units that are chosen by the first values."""
         heads = []
         for column, kind in zip(self._columns(range(1)), self._study.binder.kinds):
-            first = float(column.numbers[column.places[0]])
+            first = float(column.numbers[column.indices[0]])
             unit = (
                 shown_unit(kind, self.spec.system, first if math.isfinite(first) else 0.0)
                 if kind
@@ -161,7 +161,7 @@ class Sweep:
         """Return the values of the inputs in these rows, counted from 0."""
         cells: list[list[Cell]] = []
         for head, column in zip(self.heads, self._columns(rows)):
-            shown = convert(column.numbers[column.places], head.kind, head.unit) + 0.0
+            shown = convert(column.numbers[column.indices], head.kind, head.unit) + 0.0
             each = enumerate(shown.tolist())
             cells.append([one if math.isfinite(one) else column.text(row) for row, one in each])
         return zip(*cells)
@@ -169,7 +169,7 @@ class Sweep:
     def _columns(self, rows: Sequence[int]) -> list[KeyColumn]:
         """Return the values of the keys in these rows, counted from 0."""
         return list(
-            map(KeyColumn, self.plan.inputs, self._numbers, self.plan.places(np.array(rows)))
+            map(KeyColumn, self.plan.inputs, self._numbers, self.plan.value_numbers(np.array(rows)))
         )
 
     def _texts(self, found: DesignResult) -> tuple[str, ...]:
