@@ -115,7 +115,9 @@ def main() -> None:
     for name in OTHERS:
         batches = designs(name, DESIGNS)
         beside_alone(
-            f"key values of forces: {name}", batches, list(requested_answers(batches[0].single(0), ()))
+            f"key values of forces: {name}",
+            batches,
+            list(requested_answers(batches[0].single(0), ())),
         )
     for name, columns in CHAPTERS:
         batches = at_speeds(name, DESIGNS)
