@@ -22,7 +22,7 @@ from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAng
 from kurbel.report.picture_source import PictureOptions
 from kurbel.report.pictures import PICTURES, PictureKind, pictures_if_any
 from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Report, grouped, shown_once, stepped, together
+from kurbel.report.tables import Report, for_people, grouped, stepped, together
 from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
@@ -67,7 +67,7 @@ def whole_report(
         items = list[Item](firing_order(machine) if command.word == "flywheel" else ())
         try:
             angles = stepped(step, command.functions.end(case), max(len(case.cylinders), 1))
-            report = shown_once(command.functions.report(case, Frame(command.word, angles, None, system)))
+            report = for_people(command.functions.report(case, Frame(command.word, angles, None, system)))
         except NoSolutionError as error:
             items.append(f"No solution: {error}")
         except UsageError as error:

@@ -151,6 +151,11 @@ def _equal_strokes(motion: Motion) -> bool:
     return every(abs(motion.time_ratio - 1) <= 1e-12)
 
 
+def _straight(motion: Motion) -> bool:
+    """Return whether the dead centres are at 0 and 180 degrees, where everybody expects them."""
+    return every(motion.phi_idc == 0) and every(motion.phi_odc == 180.0)
+
+
 class Motion(Results):
     """What the mechanism does at a speed of rotation: key values in SI.
 
@@ -163,8 +168,8 @@ class Motion(Results):
 
     _motion = Heading("Motion")
     stroke = value("s", "length", "Stroke")
-    phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre")
-    phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre")
+    phi_idc = value("φ_i", "angle", "Crank angle of the inner dead centre", repeats=_straight)
+    phi_odc = value("φ_o", "angle", "Crank angle of the outer dead centre", repeats=_straight)
     phi_work = value("φ_w", "angle", "Crank rotation during the outstroke (working stroke)", unless=_equal_strokes)
     phi_return = value("φ_r", "angle", "Crank rotation during the return stroke", unless=_equal_strokes)
     time_ratio = value(
@@ -199,6 +204,7 @@ class Motion(Results):
         lambda motion: motion.roots_of_the_book(),
         listed=True,
         on_request=("forces",),
+        of_book=True,
     )
 
     def __init__(self, mechanism: Mechanism, speed: float | None, count: int | None = None) -> None:
