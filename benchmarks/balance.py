@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 
 import kurbel
-from kurbel.solver.balance import MachineBalance
+from kurbel.solver.chapters.balance import MachineBalance
 
 V24 = """
 name: V24

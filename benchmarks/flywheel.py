@@ -157,7 +157,7 @@ def timed(solve: Callable[[float], np.ndarray], inertia: float) -> tuple[np.ndar
 def two_cylinders(slip: float) -> float:
     """Seconds for everything that kurbel flywheel answers for a two-cylinder engine with this slip."""
     from kurbel.report.commands import report_of
-    from kurbel.report.frame import Frame
+    from kurbel.tables.frame import Frame
 
     card = Piston(0.45, 0.075, 0.1, Indicator(STEAM_CARD, STEAM_CARD))
     both = tuple(

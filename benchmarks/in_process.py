@@ -16,7 +16,7 @@ import numpy as np
 
 import kurbel
 from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Subject
+from kurbel.tables.frame import Subject
 
 CONFIGS = Path(__file__).parent.parent / "configs"
 ANGLES = np.arange(361.0)

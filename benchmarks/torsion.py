@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "solver"))
 from test_torsion import at_random, eigenvalues
 
 from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
-from kurbel.solver.chain import Chain, Modes
-from kurbel.solver.torsion import Excitation, Vibration
+from kurbel.solver.chapters.chain import Chain, Modes
+from kurbel.solver.chapters.torsion import Excitation, Vibration
 
 
 def seconds(work: Callable[[], object]) -> float:

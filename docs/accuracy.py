@@ -16,12 +16,13 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "benchmarks"))
 from model_and_data import data_errors, first_machine, model_errors
 
 from kurbel.machine_file import loads
+from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.render.formats import render
 from kurbel.render.output import write_out
-from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
-from kurbel.report.tables import Report
+from kurbel.report.accuracy import accuracy_report, extremes_report
+from kurbel.tables.tables import Report
 
 FOLDER = Path(__file__).parent
 PICTURE = "accuracy.svg"

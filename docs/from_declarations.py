@@ -19,9 +19,11 @@ from kurbel.declared.units import KINDS, MOST_ITEMS, MOST_POINTS, kinds, range_o
 from kurbel.machine import Machine
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.crank import ELLIPSES, ORDERS, STRESSES, WEIGHTS
+from kurbel.report.balance import ELLIPSES, ORDERS, WEIGHTS
 from kurbel.report.delivery import ENDS
-from kurbel.report.turning import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS, TORQUE_ORDERS
+from kurbel.report.harmonics import TORQUE_ORDERS
+from kurbel.report.stress import STRESSES
+from kurbel.report.torsion import CRITICAL_SPEEDS, HOLZER, MODES, PIECES, SPEEDS
 from kurbel.report.zusammenstellung import FACTORS
 
 _WRITTEN = "<!-- Written from the declarations by `pytest --rewrite tests/test_documents.py`; do not edit by hand. -->"

@@ -8,10 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from kurbel.machine_file import load
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import PICTURES, pictures
 from kurbel.render import Look
 from kurbel.render.svg import svg_file
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import PICTURES, pictures
 from kurbel.solver.case import Case
 
 CONFIGS = Path(__file__).parent.parent / "configs"

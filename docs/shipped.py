@@ -15,7 +15,7 @@ from click.testing import CliRunner
 import gallery  # docs/gallery.py
 from kurbel.cli import kurbel
 from kurbel.render.text import Look
-from kurbel.report.tables import grouped, together
+from kurbel.tables.tables import grouped, together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {

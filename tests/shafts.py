@@ -10,8 +10,8 @@ from kurbel.machine.indicator import Indicator
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.stress import CrankshaftStrength, Place, places
 from kurbel.solver.shaft import FreeBody
-from kurbel.solver.stress import CrankshaftStrength, Place, places
 from machines import constant_pressure
 
 SHAFT: dict[str, Any] = {

@@ -8,7 +8,7 @@ import pytest
 
 import kurbel as api
 from command import run
-from kurbel.solver.delivery import Delivery
+from kurbel.solver.chapters.delivery import Delivery
 from representative import CONFIGS
 
 AREA, STROKE = math.pi / 4 * 0.1**2, 0.2

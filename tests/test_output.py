@@ -14,7 +14,7 @@ import pytest
 from command import run
 from kurbel.errors import UsageError
 from kurbel.render.output import write_out
-from kurbel.report.tables import MOST_ROWS, check_rows, stepped
+from kurbel.tables.tables import MOST_ROWS, check_rows, stepped
 from representative import few
 
 POSIX_ONLY = pytest.mark.skipif(os.name != "posix", reason="needs POSIX files and signals")

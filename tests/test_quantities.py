@@ -5,9 +5,9 @@ import pytest
 from kurbel import loads
 from kurbel.mechanisms import Mechanism
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
 from kurbel.solver.case import CHAPTERS
 from kurbel.solver.figures import rows_of
+from kurbel.tables.frame import Frame
 from representative import case_of
 
 pytestmark = pytest.mark.usefixtures("solved_once")

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from command import answer
-from kurbel.report.tables import Report
 from kurbel.report.zusammenstellung import ROWS, zusammenstellung
+from kurbel.tables.tables import Report
 
 
 def values(report: Report, ratio: float, row: str) -> dict[float, float]:

@@ -10,17 +10,17 @@ from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 from kurbel.machine_file.reader import machine_of
 from kurbel.numerics.extreme import Extreme
+from kurbel.pictures.picture import Picture
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.render import Look
 from kurbel.render.drawing import draw_file
 from kurbel.render.markup import Html, written
 from kurbel.render.svg import svg_file
 from kurbel.render.text_tables import key_value_table
-from kurbel.report.frame import shown_key_values
-from kurbel.report.picture import Picture
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
 from kurbel.solver import case as solved
 from kurbel.solver.figures import Results, Shown
+from kurbel.tables.frame import shown_key_values
 
 
 class ShownCase(solved.Case):

@@ -11,9 +11,9 @@ from command import answer, printed, run
 from kurbel import loads
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import Probe
+from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.report import accuracy
-from kurbel.report.accuracy import accuracy_picture
-from kurbel.report.tables import Column, Part, PlaceTable, Report
+from kurbel.tables.tables import Column, Part, PlaceTable, Report
 
 MOTION = "{name: plain, speed: 50 rpm, crank: 400 mm, rod_ratio: 5}"
 ENGINE = """

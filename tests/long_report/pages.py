@@ -4,9 +4,9 @@ from functools import cache
 
 from kurbel.cli.request import cases_of
 from kurbel.machine_file.overrides import given
+from kurbel.page.whole import side_by_side, whole_report
 from kurbel.render import Look
 from kurbel.render.report_page import report_page
-from kurbel.report.whole import side_by_side, whole_report
 from kurbel.solver.case import Case
 from representative import case_of
 

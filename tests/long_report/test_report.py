@@ -15,8 +15,8 @@ from pages import page_of, page_of_case
 from command import run
 from kurbel.machine_file import loads
 from kurbel.machine_file.overrides import given
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 

@@ -12,7 +12,7 @@ from indicated import Engine, absolute
 from kurbel.errors import MachineFileError
 from kurbel.machine import Machine
 from kurbel.machine_file import load
-from kurbel.report.warnings import machine_notes
+from kurbel.notes.warnings import machine_notes
 from kurbel.solver.case import Case
 from kurbel.traces.correct import Trace
 from representative import few

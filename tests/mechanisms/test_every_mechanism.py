@@ -21,8 +21,8 @@ from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank, YokeFrame
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame
 from representative import law_of_each
 
 MACHINES = {

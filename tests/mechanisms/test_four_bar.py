@@ -12,8 +12,8 @@ from kurbel.errors import RuleError
 from kurbel.machine_file import loads
 from kurbel.mechanisms.four_bar import FourBar
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame
 
 
 def test_equal_strokes_take_equal_times_where_the_diagonals_agree():

@@ -7,8 +7,8 @@ import pytest
 from kurbel.machine_file import loads
 from kurbel.mechanisms.slotted_lever import SlottedLever
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame
 
 
 @pytest.mark.parametrize(

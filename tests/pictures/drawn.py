@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 
 from kurbel.machine_file import loads
-from kurbel.report.picture import Curve, Panel, Picture
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures, pictures_of
+from kurbel.pictures.picture import Curve, Panel, Picture
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures, pictures_of
 from kurbel.solver.case import Case
 from representative import case_of
 

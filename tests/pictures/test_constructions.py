@@ -8,9 +8,9 @@ from drawn import curve_of, drawn, ids_of
 
 from kurbel.declared.unit_systems import convert
 from kurbel.machine_file import loads
-from kurbel.report.picture import Panel, Picture
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
+from kurbel.pictures.picture import Panel, Picture
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.solver.case import Case
 from representative import case_of
 

@@ -9,7 +9,7 @@ import pytest
 
 import gallery  # docs/gallery.py
 from kurbel.mechanisms.kinds import MECHANISMS
-from kurbel.report.pictures import PICTURES
+from kurbel.pictures.pictures import PICTURES
 
 ROOT = Path(__file__).parent.parent.parent
 DOCS = ROOT / "docs"

@@ -9,14 +9,14 @@ from scipy.integrate import trapezoid
 
 from kurbel.arrays import Array
 from kurbel.declared.unit_systems import convert
+from kurbel.pictures.picture import Panel, Picture
+from kurbel.pictures.picture_source import PictureOptions, sampled
+from kurbel.pictures.pictures import PICTURES, pictures
 from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.picture import PanelFrame, picture_text
 from kurbel.render.svg import PAPER_SIZES
 from kurbel.render.text import plain
-from kurbel.report.picture import Panel, Picture
-from kurbel.report.picture_source import PictureOptions, sampled
-from kurbel.report.pictures import PICTURES, pictures
 from representative import case_of
 
 LINES = {

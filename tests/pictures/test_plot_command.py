@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from command import run
-from kurbel.report.pictures import PICTURES
+from kurbel.pictures.pictures import PICTURES
 from representative import CONFIGS, few
 
 WATERWORKS = str(CONFIGS["waterworks"])

@@ -11,12 +11,12 @@ import pytest
 
 from command import run
 from kurbel.machine_file import loads
+from kurbel.pictures.picture import Body, Panel, Shape
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.render import Look
 from kurbel.render.picture import PanelFrame
 from kurbel.render.svg import PAPER_SIZES, svg_file
-from kurbel.report.picture import Body, Panel, Shape
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
 from kurbel.solver.case import Case
 from representative import CONFIGS, case_of, few
 

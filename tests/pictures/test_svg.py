@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from drawn import drawn, ids_of, named
 
+from kurbel.pictures.picture import Panel
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.render import Look
 from kurbel.render.picture import Label, PanelFrame
 from kurbel.render.style import COLOURS, picture_css
 from kurbel.render.svg import PAPER_SIZES, svg_file
-from kurbel.report.picture import Panel
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
 from representative import CONFIGS, case_of, few
 
 LARGEST = 60_000

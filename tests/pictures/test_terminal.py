@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from drawn import drawn, named
 
+from kurbel.pictures.picture import Picture
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import pictures
 from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.text import plain, width
-from kurbel.report.picture import Picture
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import pictures
 from representative import few
 
 GOLDEN = Path(__file__).parent.parent / "golden"

@@ -5,7 +5,7 @@ from unicodedata import category
 
 from hypothesis import strategies as st
 
-from kurbel.report.tables import Column, KeyValue, LeftOut, Part, Report
+from kurbel.tables.tables import Column, KeyValue, LeftOut, Part, Report
 
 
 def texts(*without: str, **sizes: Any) -> st.SearchStrategy[str]:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from kurbel.render import Look
 from kurbel.render.formats import render
-from kurbel.report.tables import Column, Part, PlaceTable, Report
+from kurbel.tables.tables import Column, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI, texts
 
 VALUES = st.lists(st.none() | st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=6)

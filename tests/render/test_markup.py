@@ -12,7 +12,7 @@ from kurbel.quantities import every_quantity
 from kurbel.render import Look
 from kurbel.render.formats import render
 from kurbel.render.markup import Latex
-from kurbel.report.tables import KeyValue, LeftOut, Part, PlaceTable, Report
+from kurbel.tables.tables import KeyValue, LeftOut, Part, PlaceTable, Report
 from render.sample_report import ONE, PHI
 from representative import CONFIGS
 

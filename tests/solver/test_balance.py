@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 
 from kurbel import loads
 from kurbel.numerics.enclosing import ClosedCurve
-from kurbel.solver.balance import MachineBalance
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.balance import MachineBalance
 
 ANGLES = np.array([0.0, 7.3, 45.0, 90.0, 133.7, 180.0, 211.0, 299.9])
 OMEGA = 20 * math.pi  # 600 rpm

@@ -10,8 +10,8 @@ from scipy.integrate import fixed_quad
 
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.solver.bearings import Bearing
 from kurbel.solver.case import Case
+from kurbel.solver.chapters.bearings import Bearing
 from representative import CONFIGS, few
 
 ENGINE = CONFIGS["gas-engine"].read_text("utf-8")

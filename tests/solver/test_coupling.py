@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from kurbel.errors import NoSolutionError
 from kurbel.machine.turning import Coupling, Load
-from kurbel.solver.coupling import natural_order
+from kurbel.solver.chapters.coupling import natural_order
 from kurbel.solver.flywheel import MachineTurning
 from representative import few
 from turning_machines import of_points

@@ -13,8 +13,8 @@ from kurbel.machine.indicator import Card
 from kurbel.machine.parts import ConnectingRod, Masses
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
+from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, places
 from kurbel.solver.shaft import weight_in_throw
-from kurbel.solver.stress import PARTS, CrankshaftStrength, places
 from machines import STEAM_CARD, constant_pressure
 from representative import few
 from shafts import body, place_at, shaft, strength

@@ -17,7 +17,7 @@ from kurbel.machine.parts import Masses, Piston
 from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
-from kurbel.solver.harmonics import MachineOrders
+from kurbel.solver.chapters.harmonics import MachineOrders
 from machines import STEAM_CARD
 from representative import CONFIGS
 from turning_machines import of_points

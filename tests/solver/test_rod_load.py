@@ -6,7 +6,7 @@ import pytest
 from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 
 from kurbel.machine_file import loads
-from kurbel.report.warnings import cylinder_warnings
+from kurbel.notes.warnings import cylinder_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 

@@ -12,8 +12,8 @@ from kurbel.machine.shaft_line import ShaftPart, line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
-from kurbel.solver.chain import Chain, Modes, holzer_at, response
-from kurbel.solver.torsion import ShaftVibration
+from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response
+from kurbel.solver.chapters.torsion import ShaftVibration
 from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}

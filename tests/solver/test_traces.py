@@ -27,9 +27,9 @@ from kurbel.machine.parts import Friction, Masses, Piston
 from kurbel.machine_file import load
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.tables.frame import Frame
 from kurbel.traces.correct import Trace
 from kurbel.traces.read import Layout
 from representative import few

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from kurbel.checks.check import Checked, Finding, checked, faults_found, findings
 from kurbel.cli.group import DONE, message_of, to_stderr
 from kurbel.designs.uncertainty import given_uncertainty
 from kurbel.errors import KurbelError
@@ -13,10 +14,9 @@ from kurbel.machine_file.reader import load_cases
 from kurbel.render import Look
 from kurbel.render.json_text import findings_json, findings_junit
 from kurbel.render.output import listing, look_at, refuse_overwriting, write_out
-from kurbel.report.check import Checked, Finding, checked, faults_found, findings
 from kurbel.report.commands import BROKEN
-from kurbel.report.frame import provenance
 from kurbel.solver.case import Case
+from kurbel.tables.frame import provenance
 
 _GRAVEST = 2, 3, BROKEN, DONE
 """Exit statuses, of which the first is that of several files."""

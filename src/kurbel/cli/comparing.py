@@ -5,9 +5,10 @@ import click
 from kurbel.cli.group import Progress
 from kurbel.cli.request import case_of
 from kurbel.machine_file import loads
+from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.render.drawing import check_file, draw_file
 from kurbel.render.formats import Output
-from kurbel.report.accuracy import accuracy_picture, accuracy_report, extremes_report
+from kurbel.report.accuracy import accuracy_report, extremes_report
 
 
 def compare(

@@ -100,6 +100,17 @@ def columns(text: str) -> tuple[str, ...]:
     return tuple(ids)
 
 
+def key_values(text: str) -> tuple[str, ...]:
+    """Return names of key values separated by commas or blanks, in the order given; a name may have blanks itself."""
+    known = _quantities().all_key_values
+    names = list[str]()
+    for piece in words(text):
+        parts = piece.split()
+        are_names = all(called(part.rpartition(".")[2], known) for part in parts)  # without their scopes
+        names += parts if are_names else [piece]
+    return tuple(names)
+
+
 def _quantities() -> Lists:
     from kurbel.quantities import every_quantity
 
@@ -160,7 +171,7 @@ def _machine(ctx: click.Context) -> "Machine":
 
 
 def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
-    from kurbel.report.pictures import PICTURES
+    from kurbel.pictures.pictures import PICTURES
 
     return (*(one.id for one in PICTURES), "all")
 

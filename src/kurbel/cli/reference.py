@@ -20,8 +20,8 @@ from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.render.formats import Output
 from kurbel.render.output import write_entries, write_out
-from kurbel.report.tables import crank_angles
 from kurbel.shipped import shipped
+from kurbel.tables.tables import crank_angles
 
 
 def _ratio(text: str) -> float:

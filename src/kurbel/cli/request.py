@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 import click
 from click.core import ParameterSource
 
+from kurbel.checks.limits import cases_report
 from kurbel.cli.group import Progress
 from kurbel.cli.options import Spreads
 from kurbel.errors import UsageError
@@ -14,11 +15,10 @@ from kurbel.machine_file.reader import load_cases
 from kurbel.render.formats import Output
 from kurbel.render.output import refuse_overwriting
 from kurbel.report.commands import COMMANDS
-from kurbel.report.frame import Frame, Subject, over_stroke, rows_where
-from kurbel.report.limits import cases_report
-from kurbel.report.named_values import choices_in
-from kurbel.report.tables import crank_angles
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame, Subject, over_stroke, rows_where
+from kurbel.tables.named_values import choices_in
+from kurbel.tables.tables import crank_angles
 
 _OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "comma", "digits", "width"}
 """Options that ask for nothing of which a first selection has only a part."""

@@ -9,14 +9,14 @@ import click
 from kurbel.cli.group import Progress
 from kurbel.cli.request import case_of, cases_of
 from kurbel.machine_file.overrides import given
+from kurbel.page.summary import facts_of, subtitle_of, tiles
+from kurbel.page.whole import side_by_side, whole_report
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import PICTURES, pictures, pictures_of
 from kurbel.render import Look
 from kurbel.render.drawing import check_file, check_poster, draw, draw_poster
 from kurbel.render.output import refuse_overwriting, write_entries, write_out
 from kurbel.render.report_page import report_page
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import PICTURES, pictures, pictures_of
-from kurbel.report.summary import facts_of, subtitle_of, tiles
-from kurbel.report.whole import side_by_side, whole_report
 
 
 def write_page(

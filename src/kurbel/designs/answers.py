@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Union
 import numpy as np
 
 from kurbel.arrays import Indices
+from kurbel.checks.limits import breaks, holders, without
 from kurbel.declared.forms.figures import MACHINE, scoped
 from kurbel.declared.reading import shown
 from kurbel.declared.unit_systems import units_of
@@ -26,9 +27,8 @@ from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity, ambiguity, called, in_sentences, joined
 from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Subject, too_large
-from kurbel.report.limits import breaks, holders, without
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Subject, too_large
 from kurbel.traces.correct import Trace
 
 _WHOLE = "whole machine"

@@ -24,8 +24,8 @@ from kurbel.designs.plan import Input, Plan
 from kurbel.errors import KurbelError, UsageError
 from kurbel.machine.origin import Origin
 from kurbel.machine_file.overrides import case_names
-from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
+from kurbel.tables.tables import grouped, together
 
 _BLOCK, _SLOW_BLOCK = 1000, 10
 """Rows computed together, and those of designs that are computed one after another."""

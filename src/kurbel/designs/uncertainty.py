@@ -24,8 +24,8 @@ from kurbel.machine import Machine
 from kurbel.machine_file.events import located
 from kurbel.machine_file.overrides import path_of, text_at, tree_of
 from kurbel.report.commands import subjects_of
-from kurbel.report.tables import Column, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+from kurbel.tables.tables import Column, Part, PlaceTable, Report
 
 SAMPLE, SLOW_SAMPLE = 2000, 200
 """Sampled machines where the first order does not hold: computed in batches, and where each is computed alone."""

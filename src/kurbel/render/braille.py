@@ -7,10 +7,10 @@ from operator import itemgetter
 import numpy as np
 
 from kurbel.arrays import ComplexArray
+from kurbel.pictures.picture import Panel, Picture
 from kurbel.render import Look
 from kurbel.render.picture import Medium, PanelFrame, axis_text, dense, legend_text, looks_of, ticks
 from kurbel.render.text import BLANK, Line, Piece, folded, line, padded, paragraph, width
-from kurbel.report.picture import Panel, Picture
 
 # lengths in columns; a row is as high as two columns are wide
 TERMINAL = Medium(letter=1.0, line=2.0, dot=0.0, grain=(1.0, 2.0), covering=1.5, shortest=13.5, tallest=59.5)

@@ -6,7 +6,7 @@ from itertools import repeat
 
 from kurbel.render import Look
 from kurbel.render.text import rounded, whole_if_integral
-from kurbel.report.tables import PISTONS, Column, Part, PlaceTable, Report, Value
+from kurbel.tables.tables import PISTONS, Column, Part, PlaceTable, Report, Value
 
 _FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠")
 """Characters that begin a formula in a spreadsheet, also wide ones."""

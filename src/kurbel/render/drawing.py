@@ -10,12 +10,12 @@ from typing import Literal
 import numpy as np
 
 from kurbel.errors import UsageError
+from kurbel.pictures.picture import Fact, Facts, Picture
 from kurbel.render import Look
 from kurbel.render.braille import braille
 from kurbel.render.output import look_at, opened, write_lines
 from kurbel.render.svg import poster_svg, svg_file
 from kurbel.render.text import BLANK, DIGITS, subscripts
-from kurbel.report.picture import Fact, Facts, Picture
 
 _PAGE = """#set document(date: none)
 #set page(width: auto, height: auto, margin: 0pt)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from kurbel.render import Look
 from kurbel.render.output import look_at, write_lines, write_out
 from kurbel.render.text import Line, plain
-from kurbel.report.tables import Report
+from kurbel.tables.tables import Report
 
 
 def render(report: Report, look: Look = Look()) -> str:  # noqa: B008 (immutable)

@@ -13,7 +13,7 @@ from kurbel import __version__
 from kurbel.errors import UsageError
 from kurbel.render import Look
 from kurbel.render.text import TURNING, rounded, whole_if_integral
-from kurbel.report.tables import PISTONS, Column, InputFile, KeyValue, Part, Provenance, Report, Value
+from kurbel.tables.tables import PISTONS, Column, InputFile, KeyValue, Part, Provenance, Report, Value
 
 Content = dict[str, object]
 """What becomes an object of JSON."""

@@ -21,7 +21,7 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
-from kurbel.report.tables import Report, for_people, notes_for_people
+from kurbel.tables.tables import Report, for_people, notes_for_people
 
 _ON_PAPER = 9
 """Columns of numbers, apart from that of the angle, that fit on A4; further ones go into another table."""

@@ -9,7 +9,7 @@ from kurbel.render import Look
 from kurbel.render.output import terminal_size
 from kurbel.render.text import BLANK, Line, Piece, in_two_columns, line, padded, paragraph, sentence, width
 from kurbel.render.text_tables import MARK, TextColumn, headed, key_value_table, part_name, place_table, sheets
-from kurbel.report.tables import KeyValue, Report, first_selection, for_people, notes_for_people
+from kurbel.tables.tables import KeyValue, Report, first_selection, for_people, notes_for_people
 
 _NINE = 9  # angles to a block: the book breaks after 80°
 _SIDE, _CELL = 14, 8

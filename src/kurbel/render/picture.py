@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
+from kurbel.pictures.picture import Axis, Curve, PageFigure, Panel, Picture, Words
 from kurbel.render import Look
 from kurbel.render.text import angle_scale, cell, folded, width
-from kurbel.report.picture import Axis, Curve, PageFigure, Panel, Picture, Words
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 
 from kurbel import __version__
+from kurbel.pictures.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
 from kurbel.render import Look
 from kurbel.render.json_text import sha256_of
 from kurbel.render.markup import Html, listed, of_places, over_angle, page, written
@@ -11,8 +12,7 @@ from kurbel.render.style import LONG_REPORT, MOVING, PAIRS, PICTURE, PICTURE_COL
 from kurbel.render.svg import svg
 from kurbel.render.text import DIGITS
 from kurbel.render.text_tables import TextColumn, TextTable, key_value_table, part_name, place_table
-from kurbel.report.picture import Answers, Document, Fact, Facts, Grid, Item, Notice, OverAngle, Pair, Picture, Shown
-from kurbel.report.tables import PlaceTable
+from kurbel.tables.tables import PlaceTable
 
 _CLOSE = 5
 """Digits of a value next to its bound."""

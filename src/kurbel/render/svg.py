@@ -7,6 +7,7 @@ from html import escape
 import numpy as np
 
 from kurbel.arrays import ComplexArray
+from kurbel.pictures.picture import MOMENTS_PER_TURN, Body, Curve, Panel, Picture, Shape
 from kurbel.render import Look
 from kurbel.render.picture import (
     LOOKS,
@@ -21,7 +22,6 @@ from kurbel.render.picture import (
 )
 from kurbel.render.style import picture_css
 from kurbel.render.text import folded, subscripts, width
-from kurbel.report.picture import MOMENTS_PER_TURN, Body, Curve, Panel, Picture, Shape
 
 # lengths in points from the upper left corner
 PAPER_SIZES = Medium(letter=5.8, line=12.0, dot=4.0, grain=(4.0, 4.0), covering=40.0, shortest=110.0, tallest=460.0)

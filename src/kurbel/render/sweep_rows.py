@@ -24,6 +24,8 @@ from kurbel.designs.chosen import Condition, Unit
 from kurbel.designs.find import Solutions
 from kurbel.designs.sweep import Sweep, rows_of
 from kurbel.errors import UsageError
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
+from kurbel.pictures.picture_source import in_units, level
 from kurbel.render import Look
 from kurbel.render.csv_text import csv_cell, csv_line
 from kurbel.render.json_text import FORMAT
@@ -32,8 +34,6 @@ from kurbel.render.output import look_at, opened, write_out
 from kurbel.render.page import blocks
 from kurbel.render.text import plain, single
 from kurbel.render.text_tables import TextColumn, TextTable
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
-from kurbel.report.picture_source import in_units, level
 
 _AT_LEAST_EVERY = 0.5
 """Seconds after which lines that are ready are written."""

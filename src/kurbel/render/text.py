@@ -10,7 +10,7 @@ from unicodedata import combining, east_asian_width, normalize
 
 from kurbel.declared.unit_systems import SYSTEMS
 from kurbel.quantity import GREEK
-from kurbel.report.tables import Value
+from kurbel.tables.tables import Value
 
 # numbers
 

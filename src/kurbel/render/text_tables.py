@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
 from kurbel.render.text import Scale, angle, angle_scale, cell, scale_of, single, whole_if_integral
-from kurbel.report.tables import Column, KeyValue, Part, PlaceTable, Report, Value, grouped
+from kurbel.tables.tables import Column, KeyValue, Part, PlaceTable, Report, Value, grouped
 
 MARK = "*"
 _MOST_LISTED = 12

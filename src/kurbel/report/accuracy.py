@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
-from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,13 +12,11 @@ import numpy as np
 
 from kurbel.accuracy import trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
-from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
-from kurbel.report.frame import Frame, provenance
-from kurbel.report.picture import Axis, Curve, Panel, Picture, Words
-from kurbel.report.tables import Column, LeftOut, Part, PlaceTable, Report
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame, provenance
+from kurbel.tables.tables import Column, LeftOut, Part, PlaceTable, Report
 
 Loads = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
@@ -137,46 +134,3 @@ def answer(machine: Machine, asked: str) -> float | None:
         if (value := values.get(name)) is not None:
             return value
     return None
-
-
-# the picture
-
-_LEAST = 1e-17
-"""Errors below this, zero too, are drawn here."""
-
-
-def accuracy_picture(report: Report) -> Picture:
-    """Return a panel for each quantity of an accuracy report, with a curve for each method and scene.
-
-    Raises UsageError where nothing was compared.
-    """
-    curves: dict[str, list[Curve]] = {}
-    methods: list[str] = []
-    for one in (one for part in report.parts for one in part.place_tables if one.id == NUMERICAL):
-        columns = {column.id: column.values for column in one.columns}
-        rows = zip(one.names, columns["error"], columns["median"])
-        found = ((names[:2], max(error, _LEAST), time) for names, error, time in rows if error is not None)
-        for (quantity, method), dots in groupby(found, key=lambda row: row[0]):
-            if method not in methods:
-                methods.append(method)
-            _, errors, times = map(np.array, zip(*dots))
-            curves.setdefault(quantity, []).append(Curve(Words(method), errors, times, "dots", methods.index(method)))
-    if not curves:
-        raise UsageError("--plot: nothing was compared, there is nothing to draw")
-
-    every = np.concatenate([one.y for of_quantity in curves.values() for one in of_quantity])
-    low, high = every.min(), every.max()
-    rounding = Curve(Words(""), np.array([2.0**-53, 2.0**-53]), np.array([low, high]), "faint")
-    x = Axis(Words("error"), log=True, low=_LEAST, high=1.0, falling=True)
-    y = Axis(Words("time"), unit="ms", log=True, low=low, high=high)
-    panels = [Panel(x, y, (rounding, *drawn), title=quantity) for quantity, drawn in curves.items()]
-    return Picture(
-        "accuracy",
-        "time over error",
-        "Time over relative error of each method, lines between its answers for one machine; the error falls to the "
-        "right, the thin upright line is the rounding of one float.",
-        tuple(panels),
-        report.title,
-        across=min(4, len(curves)),
-        legend=tuple((Words(method), number) for number, method in enumerate(methods)),
-    )

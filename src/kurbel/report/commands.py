@@ -9,9 +9,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from kurbel.report.frame import Frame, Functions, Subject
-    from kurbel.report.tables import Report
     from kurbel.solver.case import Case
+    from kurbel.tables.frame import Frame, Functions, Subject
+    from kurbel.tables.tables import Report
 
 BROKEN, NO_SOLUTION = 1, 3
 """Exit statuses that only some commands return."""
@@ -70,7 +70,7 @@ def _motion() -> "Functions":
     A sliding output has x, c, b, a swinging one theta, theta_dot, theta_ddot. Without a speed in FILE only the
     positions are printed.
     """
-    from kurbel.report.crank import MOTION
+    from kurbel.report.forces import MOTION
 
     return MOTION
 
@@ -81,7 +81,7 @@ def _forces() -> "Functions":
     P acts along the stroke line, S in the rod, N on the guide, D and T at the crank pin; forces toward the shaft
     count positive. At a jump of the pressure the table has the value just after it.
     """
-    from kurbel.report.crank import FORCES
+    from kurbel.report.forces import FORCES
 
     return FORCES
 
@@ -93,7 +93,7 @@ def _flywheel() -> "Functions":
     inertia forces in it. E is the excess of the work over that of the resistance, omega the speed under the load of
     FILE, which may depend on it.
     """
-    from kurbel.report.turning import FLYWHEEL
+    from kurbel.report.flywheel import FLYWHEEL
 
     return FLYWHEEL
 
@@ -105,7 +105,7 @@ def _stress() -> "Functions":
     the largest stress of the place over the whole cycle; combined after Bach (sigma_res) and after von Mises
     (sigma_v). FILE needs 'crankshaft', one cylinder and a pressure.
     """
-    from kurbel.report.crank import STRESS
+    from kurbel.report.stress import STRESS
 
     return STRESS
 
@@ -117,7 +117,7 @@ def _bearings() -> "Functions":
     and mean load, pressures, p v, and the arcs of the surfaces that are never loaded. Main bearings need 'crankshaft',
     whose throw is used for every throw of a machine with several. --cylinder takes the name of a pin or bearing.
     """
-    from kurbel.report.crank import BEARINGS
+    from kurbel.report.bearings import BEARINGS
 
     return BEARINGS
 
@@ -130,7 +130,7 @@ def _balance() -> "Functions":
     it. Each order is a vector that turns with the crank and one that turns against it; an order that cancels is
     exactly 0. The best counterweights replace those of FILE.
     """
-    from kurbel.report.crank import BALANCE
+    from kurbel.report.balance import BALANCE
 
     return BALANCE
 
@@ -142,7 +142,7 @@ def _harmonics() -> "Functions":
     piece between the corners of the cards. t is the tangential pressure |M|/(R A). Major orders are those in which all
     cranks pull together.
     """
-    from kurbel.report.turning import HARMONICS
+    from kurbel.report.harmonics import HARMONICS
 
     return HARMONICS
 
@@ -154,7 +154,7 @@ def _torsion() -> "Functions":
     working speed, all orders together, and at the critical speeds that the machine meets, with orders up to 24;
     --columns M_shaft,tau prints them over the crank angle. FILE needs 'shaft', or a 'coupling' behind a 'flywheel'.
     """
-    from kurbel.report.turning import TORSION
+    from kurbel.report.torsion import TORSION
 
     return TORSION
 

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 from itertools import chain, pairwise
 
 from kurbel.declared.unit_systems import show
+from kurbel.notes.left_out import missing
+from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Functions, Places, Row, Subject
-from kurbel.report.left_out import missing
-from kurbel.report.tables import LeftOut
-from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
-from kurbel.solver.delivery import CompressorStage, MachineDelivery
+from kurbel.solver.chapters.delivery import CompressorStage, MachineDelivery
+from kurbel.tables.frame import Functions, Places, Row, Subject
+from kurbel.tables.tables import LeftOut
 
 ENDS = by_id(
     Quantity("stroke_volume", "V_s", "volume", "Volume that the end sweeps in a turn"),

@@ -4,9 +4,9 @@ import math
 
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Places, Row, shown_key_values
-from kurbel.report.tables import LeftOut, Part, Report
 from kurbel.solver.friction import holding_force
+from kurbel.tables.frame import Places, Row, shown_key_values
+from kurbel.tables.tables import LeftOut, Part, Report
 
 _UP = Quantity("P_up", "P_1/Q", "ratio", "Force over the weight that moves the body up")
 _HELD = Quantity("P_held", "P_2/Q", "ratio", "Force over the weight that keeps the body from sliding down")

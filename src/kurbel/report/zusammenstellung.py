@@ -13,7 +13,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
-from kurbel.report.tables import Column, Part, PlaceTable, Report
+from kurbel.tables.tables import Column, Part, PlaceTable, Report
 
 _EACH = (
     ("b", Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R")),

@@ -12,16 +12,16 @@ from kurbel.errors import UsageError
 from kurbel.machine import Machine
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import called
-from kurbel.solver.balance import MachineBalance
-from kurbel.solver.bearings import Bearing, ShaftBearings
-from kurbel.solver.delivery import CompressorStage, Delivery, MachineDelivery
+from kurbel.solver.chapters.balance import MachineBalance
+from kurbel.solver.chapters.bearings import Bearing, ShaftBearings
+from kurbel.solver.chapters.delivery import CompressorStage, Delivery, MachineDelivery
+from kurbel.solver.chapters.harmonics import MachineOrders
+from kurbel.solver.chapters.stress import CrankshaftStrength
+from kurbel.solver.chapters.torsion import ShaftVibration
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import Figure, Results, Shown, rows_of
 from kurbel.solver.flywheel import DeadCentre, MachineTurning
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.harmonics import MachineOrders
-from kurbel.solver.stress import CrankshaftStrength
-from kurbel.solver.torsion import ShaftVibration
 
 
 class Case(Shown):

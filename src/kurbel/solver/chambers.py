@@ -14,7 +14,7 @@ from kurbel.quantity import value, values_for
 from kurbel.solver.drive import Drive
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
-from kurbel.solver.trace import TracePressure
+from kurbel.traces.pressure import TracePressure
 
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
 """End of the cylinder -> index of its symbols, and its name."""

@@ -6,7 +6,7 @@
     A_K = 4 J/(π ρ D (D² + h²))     section of a rim of height h and mean diameter D that has J
 
 The textbook formula takes the moment of inertia as constant and the load as independent of the speed. The speed line
-(`kurbel.solver.speed`, with an elastic coupling `kurbel.solver.coupling`) assumes neither.
+(`kurbel.solver.speed`, with an elastic coupling `kurbel.solver.chapters.coupling`) assumes neither.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
-from kurbel.solver.coupling import ElasticCoupling, natural_order
+from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results, Searched, part

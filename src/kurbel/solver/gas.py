@@ -8,7 +8,7 @@ angle, not by displacement, so that each side of a vertical jump is exact. The w
     p V^n         P V ln(V′/V) (e^u − 1)/u − p_a (z′ − z),  u = (1 − n) ln(V′/V),  P = p + p_a absolute,
                   V = z + clearance, p_a: 0 for absolute pressures, else the ambient pressure
 
-A measured trace is in `kurbel.solver.trace`. The force is P = p_H A_H − p_C A_C (R 296), gauge pressures.
+A measured trace is in `kurbel.traces.pressure`. The force is P = p_H A_H − p_C A_C (R 296), gauge pressures.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ from kurbel.numerics.arithmetic import some, spread, total
 from kurbel.numerics.extreme import Extreme
 from kurbel.numerics.pieces import Angles
 from kurbel.solver.figures import result
-from kurbel.solver.trace import TracePressure
 from kurbel.traces.correct import Setting, Trace
+from kurbel.traces.pressure import TracePressure
 
 _NO_WIDTH = 1e-10
 """Degrees of crank angle: a segment over less is a jump."""

@@ -12,8 +12,8 @@ from kurbel.numerics.extreme import Extreme
 from kurbel.quantity import Quantity, value
 from kurbel.solver.figures import Results
 from kurbel.solver.gas import PistonGas
-from kurbel.solver.trace import TracePressure
 from kurbel.traces.correct import COMPRESSION, EXPANSION, exponent
+from kurbel.traces.pressure import TracePressure
 
 
 class Cycles(NamedTuple):

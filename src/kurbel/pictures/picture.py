@@ -11,7 +11,7 @@ import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.quantity import Quantity
-from kurbel.report.tables import PlaceTable, Provenance, Report
+from kurbel.tables.tables import PlaceTable, Provenance, Report
 
 
 class Words(NamedTuple):

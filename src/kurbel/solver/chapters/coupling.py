@@ -4,7 +4,7 @@
 
     J₁ ω̇₁ = M − T        J₂ ω̇₂ = T − M_load(ω₂)        d/dt = ω_n d/dφ
 
-It is the shortest chain of `kurbel.solver.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n.
+It is the shortest chain of `kurbel.solver.chapters.chain`. Its natural order is q = √(k (1/J₁ + 1/J₂))/ω_n.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extremes
 from kurbel.quantity import value
-from kurbel.solver.chain import Chain, ChainEquation
+from kurbel.solver.chapters.chain import Chain, ChainEquation
+from kurbel.solver.chapters.harmonics import amplitudes
 from kurbel.solver.effort import TurningEffort
-from kurbel.solver.harmonics import amplitudes
 from kurbel.solver.speed import SpeedLaw, SpeedLine
 
 _NEAR, _WORTH, _AMPLIFIED = 0.1, 1e-3, 1.5

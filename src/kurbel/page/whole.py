@@ -8,24 +8,24 @@ from operator import itemgetter
 
 import numpy as np
 
+from kurbel.checks.check import checked
+from kurbel.checks.limits import cases_report
 from kurbel.declared.unit_systems import convert, shown_unit, units_of
 from kurbel.errors import KurbelError, NoSolutionError, UsageError
+from kurbel.notes.warnings import of_machine
 from kurbel.numerics.extreme import number_of, size_of
+from kurbel.page.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
+from kurbel.pictures.picture import Answers, Document, Grid, Item, Notice, OverAngle, Pair, Picture, Section, Shown
+from kurbel.pictures.picture_source import PictureOptions
+from kurbel.pictures.pictures import PICTURES, PictureKind, pictures_if_any
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Quantity
-from kurbel.report.check import checked
 from kurbel.report.commands import REPORTS, subjects_of
-from kurbel.report.frame import Frame, Subject, provenance
 from kurbel.report.keys import every_place, meaning
-from kurbel.report.limits import cases_report
-from kurbel.report.picture import Answers, Document, Grid, Item, Notice, OverAngle, Pair, Picture, Section, Shown
-from kurbel.report.picture_source import PictureOptions
-from kurbel.report.pictures import PICTURES, PictureKind, pictures_if_any
-from kurbel.report.summary import facts_of, firing_order, if_any, subtitle_of, summary, verdicts
-from kurbel.report.tables import Report, for_people, grouped, stepped, together
-from kurbel.report.warnings import of_machine
 from kurbel.solver.case import Case
 from kurbel.solver.forces import RUBBING, SLIDING, CylinderForces
+from kurbel.tables.frame import Frame, Subject, provenance
+from kurbel.tables.tables import Report, for_people, grouped, stepped, together
 
 Given = Sequence[tuple[str, str]]
 """The keys of a machine file with their values, as they were read."""

@@ -17,9 +17,9 @@ from kurbel.numerics.extreme import Extreme, number_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import NOISE_POWER, Quantity, by_id, called
 from kurbel.report.commands import COMMANDS, subjects_of
-from kurbel.report.frame import Frame, Places, Row, Subject, report_on, too_large
-from kurbel.report.tables import Report, grouped, together
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Frame, Places, Row, Subject, report_on, too_large
+from kurbel.tables.tables import Report, grouped, together
 
 _ROUNDING = 1e-9
 """Relative tolerance of a bound: a stroke of 110 mm does not break a limit of 110 mm through rounding."""

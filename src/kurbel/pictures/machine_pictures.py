@@ -7,14 +7,14 @@ from functools import partial
 import numpy as np
 
 from kurbel.arrays import Array, ComplexArray, Number
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
-from kurbel.report.picture_source import Line, Source, curve, level
-from kurbel.solver.bearings import BearingColumns
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
+from kurbel.pictures.picture_source import Line, Source, curve, level
+from kurbel.solver.chapters.bearings import BearingColumns
+from kurbel.solver.chapters.stress import PARTS
 from kurbel.solver.effort import Term
 from kurbel.solver.figures import AtAngles
 from kurbel.solver.flywheel import TurningState
 from kurbel.solver.state import State
-from kurbel.solver.stress import PARTS
 
 _MOST_NUMBERED = 24
 _HIGHEST = 12

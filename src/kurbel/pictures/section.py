@@ -10,9 +10,9 @@ from kurbel.arrays import ComplexArray
 from kurbel.crank_angle import CrankAngle
 from kurbel.machine import Machine
 from kurbel.mechanisms import PIN
-from kurbel.report.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel
-from kurbel.report.picture_source import NO_NAME, Source
-from kurbel.report.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
+from kurbel.pictures.picture import MOMENTS_PER_TURN, Axis, Body, Caption, Curve, Panel
+from kurbel.pictures.picture_source import NO_NAME, Source
+from kurbel.pictures.train import BORE, EYE, SHOE, WALL, Train, box, cranks, cylinders, disc, members, throw
 
 _STILL = 60.0
 """Crank angle in degrees at which a machine is shown at rest where nothing pushes it."""

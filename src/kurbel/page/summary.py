@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from kurbel.checks.limits import compared, name_of
 from kurbel.declared.unit_systems import convert, show, shown_unit
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine, firings
@@ -16,12 +17,11 @@ from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.several import intervals
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.numerics.extreme import Extreme, number_of
+from kurbel.pictures.picture import Fact, Facts, Grid, Item, Notice, Shown
 from kurbel.report.commands import subjects_of
-from kurbel.report.frame import Places, Row, Subject
-from kurbel.report.limits import compared, name_of
-from kurbel.report.picture import Fact, Facts, Grid, Item, Notice, Shown
-from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
+from kurbel.tables.frame import Places, Row, Subject
+from kurbel.tables.tables import grouped, together
 
 Thing = TypeVar("Thing")
 _LABELS = {

@@ -1,39 +1,19 @@
-"""The reports of `kurbel flywheel`, `harmonics` and `torsion`: what turns the shaft, and how it twists."""
+"""The report of `kurbel torsion`: natural vibrations, Holzer's table, critical speeds, forced vibration."""
 
 import math
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
-import numpy as np
-
-from kurbel.arrays import Array
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine import Machine
-from kurbel.numerics.arithmetic import is_whole
+from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
-from kurbel.report.frame import Frame, Functions, Places, Row, Subject, whole_machine
-from kurbel.report.left_out import flywheel_left_out, left_out, missing
-from kurbel.report.tables import LeftOut
-from kurbel.report.warnings import of_machine
+from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
-from kurbel.solver.chain import holzer_at
-from kurbel.solver.flywheel import DeadCentre
-from kurbel.solver.harmonics import CylinderOrders, MachineOrders, Orders
-from kurbel.solver.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
-
-TORQUE_ORDERS = by_id(
-    Quantity("speed", "n", "speed", "Speed of rotation"),
-    Quantity("order", "ν", "ratio", "Order: periods per turn of the shaft"),
-    Quantity("M_cos", "a_ν", "torque", "Coefficient of cos νφ"),
-    Quantity("M_sin", "b_ν", "torque", "Coefficient of sin νφ"),
-    Quantity("M_amplitude", "|M_ν|", "torque", "Amplitude of the order"),
-    Quantity("M_phase", "ε_ν", "angle", "Phase: the order is |M_ν| cos(νφ − ε_ν)"),
-    Quantity("M_gas", "|M_g|", "torque", "Amplitude of the part independent of speed"),
-    Quantity("M_inertia", "|M_b|", "torque", "Amplitude of the part from inertia forces, proportional to ω²"),
-    Quantity("t_order", "t_ν", "pressure", "Tangential-pressure coefficient |M_ν|/(R A)"),
-)
-"""Of one order of a torque, by id."""
+from kurbel.solver.chapters.chain import holzer_at
+from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
+from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.tables.tables import LeftOut
 
 MODES = by_id(
     Quantity("mode", "i", "ratio", "Mode number; 0 is rigid-body rotation"),
@@ -81,170 +61,6 @@ SPEEDS = by_id(TORQUE_ORDERS["speed"], PIECES["M_vibratory"], PIECES["tau_vibrat
 """Of one piece at one speed, by id."""
 
 
-# turning effort, excess work, flywheel and speed line
-
-
-def _turned(case: Case) -> list[Subject]:
-    turning, effort = case.flywheel, case.flywheel.effort
-    whole = Subject(
-        "whole machine",
-        turning,
-        turning.at if effort.swing is None else None,
-        left_out=flywheel_left_out(case.machine),
-        warnings=of_machine(case),
-        whole=True,
-    )
-    return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
-
-
-def _flywheel_notes(case: Case) -> Iterator[str]:
-    turning, effort, efficiency = case.flywheel, case.flywheel.effort, case.machine.efficiency
-    if turning.crank is not None:
-        over = "over" if any(term.factor > 1 for term in effort.terms) else "with"
-        eta = f", {over} the efficiency {efficiency:g}" if efficiency != 1 else ""
-        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
-    if effort.swing is not None:
-        yield "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
-    elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
-        yield "The load does not determine the speed: the mean of ω over time is taken as the nominal speed."
-    if efficiency != 1 and any(effort.lost(group) for group in effort.groups):
-        yield (
-            "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
-            "driven pistons, inertia, weight and friction count in full (R p. 613)."
-        )
-    if efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
-        yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
-    if turning.rigid:
-        yield (
-            f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
-            "the driven inertia turns with the flywheel."
-        )
-
-
-FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)
-
-
-# orders of the torque
-
-_HIGHEST_ORDER = 1000
-
-
-def _harmonics(
-    case: Case, frame: Frame, orders: Sequence[float] | None = None, speeds: Sequence[float] | None = None
-) -> tuple[list[Subject], Iterator[str]]:
-    """Return the orders of the turning effort; orders: those to show, None for all up to 24.
-
-    speeds: in revolutions per second, at which the orders of the whole machine are shown, too. Raises UsageError if
-    nothing turns the shaft.
-    """
-    machine, found = case.machine, case.harmonics(_orders(case.machine, orders))
-    if speeds is not None and not machine.speed:
-        raise UsageError("--speeds: the inertia forces are scaled from those at the 'speed' of the machine; give one")
-    cylinders = [
-        Subject(
-            one.forces.drive.name,
-            left_out=left_out(machine, one.forces.drive.cylinder),
-            tables=_orders_of_cylinder(one),
-        )
-        for one in found.cylinders
-    ]
-    no_masses = "no masses, or no speed given" if cylinders else "the effort is given as a torque"
-    apart = missing({"gas and inertia apart": no_masses if found.machine.inertia is None else ""})
-    whole = Subject(
-        "whole machine",
-        found,
-        left_out=chain(flywheel_left_out(machine), apart),
-        warnings=of_machine(case),
-        tables=_orders_of_machine(found, speeds or (), machine.speed),
-        whole=True,
-    )
-    return [*cylinders, whole], _harmonics_notes(found)
-
-
-HARMONICS = Functions("Harmonics of the turning effort", whole_machine("harmonics"), own=_harmonics)
-
-
-def _orders(machine: Machine, requested: Sequence[float] | None) -> Array | None:
-    """Return the requested orders (n,), ascending and each once; None for the usual ones.
-
-    Raises UsageError for one that the cycle does not have.
-    """
-    turns = machine.revolutions
-    for order in requested or ():
-        if not 0 < order <= _HIGHEST_ORDER:
-            most = f"at most {_HIGHEST_ORDER} periods per turn"
-            raise UsageError(f"--orders {order:g}: an order is more than 0 and {most}")
-        if not is_whole(order * turns):
-            known = {1: "1, 2, 3, …", 2: "½, 1, 1½, …"}.get(turns, f"1/{turns}, 2/{turns}, 3/{turns}, …")
-            cycle = f"the cycle repeats after {360 * turns} degrees"
-            raise UsageError(f"--orders {order:g}: {cycle} and has the orders {known}")
-    return None if requested is None else np.unique(requested)
-
-
-def _harmonics_notes(found: MachineOrders) -> Iterator[str]:
-    torques = {f"The torque of {one.forces.drive.name}": one.own for one in found.cylinders}
-    torques["The turning effort"] = found.machine
-    yield from (
-        f"{what} has none of these orders: they are all zero." for what, one in torques.items() if _uniform(one)
-    )
-    if not all(map(_uniform, torques.values())):
-        yield "M = M_m + Σ (a_ν cos νφ + b_ν sin νφ) = M_m + Σ |M_ν| cos(νφ − ε_ν), ν periods per turn of the shaft."
-        if found.machine.inertia is not None:
-            yield (
-                "M_b grows with the square of the speed; M_g, of gas, weight and friction, is the same at every speed."
-            )
-
-
-def _uniform(torque: Orders) -> bool:
-    """Whether every order is zero, at every speed; then a note says so, in place of a table."""
-    return not any(one.any() for one in (torque.gas, torque.inertia) if one is not None)
-
-
-def _orders_of_cylinder(cylinder: CylinderOrders) -> Iterator[Places]:
-    name, torque = cylinder.forces.drive.name, cylinder.own
-    rows = _order_rows(torque, cylinder.area)
-    title = f"Orders of the torque of {name}, φ from its own inner dead centre"
-    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=_uniform(torque))
-
-
-def _orders_of_machine(found: MachineOrders, speeds: Sequence[float], working: float | None) -> Iterator[Places]:
-    """Yield the orders of the turning effort at the working speed, and those at others, in revolutions per second."""
-    torque, uniform = found.machine, _uniform(found.machine)
-    title = "Orders of the turning effort, φ from the inner dead centre of crank 1"
-    rows = _order_rows(torque, major=found.major_orders or ())
-    yield Places("orders", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
-    rows = []
-    for speed in speeds:
-        each = zip(torque.orders.tolist(), torque.at_speed(speed / (working or speed)).tolist())
-        rows += [(("",), {"speed": speed, **_of_order(*order)}) for order in each]
-    if speeds:
-        title = "Orders of the turning effort at other speeds"
-        yield Places("orders_by_speed", title, ("kind",), TORQUE_ORDERS, rows, in_note=uniform)
-
-
-def _order_rows(torque: Orders, area: float | None = None, major: Sequence[float] = ()) -> list[Row]:
-    """Return the orders of a torque; area: R A of its cylinder in m³, if it has a piston; major: those to mark."""
-    rows = list[Row]()
-    for index, order in enumerate(torque.orders.tolist()):
-        values = _of_order(order, complex(torque.whole[index]))
-        if torque.inertia is not None:
-            values["M_gas"] = float(abs(torque.gas[index]))
-            values["M_inertia"] = float(abs(torque.inertia[index]))
-        if area:
-            values["t_order"] = abs(torque.whole[index]) / area
-        rows.append((("major" if order in major else "",), values))
-    return rows
-
-
-def _of_order(order: float, amplitude: complex) -> dict[str, float | None]:
-    """Return one order: Re(M e^{iνφ}) = a cos νφ + b sin νφ = |M| cos(νφ − ε), ε above −180° up to 180°."""
-    a, b = amplitude.real, -amplitude.imag
-    phase = math.degrees(math.atan2(b, a)) + 0.0 if amplitude else None
-    return {"order": order, "M_cos": a, "M_sin": b, "M_amplitude": abs(amplitude), "M_phase": phase}
-
-
-# torsional vibration of the shaft line: natural vibrations, Holzer's table, critical speeds, forced vibration
-
 _HIGHEST_CRITICAL = 12
 """Order up to which critical speeds are listed unless orders are requested."""
 _MODES = 3
@@ -278,7 +94,7 @@ def _torsion(
     """
     if mode is not None and at is not None:
         raise UsageError("--mode and --at: Holzer's table is that of a mode or at a frequency; leave one of them out")
-    found = case.torsion_of(_orders(case.machine, orders))
+    found = case.torsion_of(requested_orders(case.machine, orders))
     critical = found.critical_speeds(modes, _HIGHEST_CRITICAL if orders is None else math.inf)
     _limited(found)
     rows = _critical_rows(found, critical)

@@ -19,11 +19,11 @@ from kurbel.machine import Cylinder, Machine
 from kurbel.machine.ideal_cards import Compressor, Diesel, Otto, Steam
 from kurbel.machine.indicator import Card, Line
 from kurbel.machine.turning import Effort
-from kurbel.report.tables import grouped, together
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
-from kurbel.solver.trace import TracePressure
+from kurbel.tables.tables import grouped, together
 from kurbel.traces.checks import doubt
+from kurbel.traces.pressure import TracePressure
 
 
 class Note(NamedTuple):

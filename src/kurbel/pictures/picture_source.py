@@ -12,10 +12,10 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray
 from kurbel.declared.unit_systems import convert, shown_unit
 from kurbel.numerics.extreme import Extreme
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.quantity import Formula, Of, Quantity
-from kurbel.report.frame import too_large
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Shade, Words
 from kurbel.solver.figures import AtAngles, Results
+from kurbel.tables.frame import too_large
 
 PHI = "phi"
 FINENESS = 1 / 2000

@@ -5,19 +5,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+from kurbel.checks.limits import Entry, compared
 from kurbel.declared.unit_systems import show
 from kurbel.errors import Fault, KurbelError, MachineFileError, Path, path_text
 from kurbel.machine import Machine, firings
 from kurbel.machine.several import intervals
 from kurbel.machine.turning import Harmonics
+from kurbel.notes.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
+from kurbel.notes.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
 from kurbel.report.delivery import delivery_left_out, delivery_warnings
-from kurbel.report.left_out import balance_left_out, missing, stages, strength_left_out, turning_stages
-from kurbel.report.limits import Entry, compared
-from kurbel.report.tables import LeftOut, grouped, together
-from kurbel.report.turning import torsion_left_out, torsion_warnings
-from kurbel.report.warnings import Note, as_far_as_solved, bearing_warnings, machine_notes
+from kurbel.report.torsion import torsion_left_out, torsion_warnings
 from kurbel.solver.case import Case
 from kurbel.solver.shaft import shaft_obstacle
+from kurbel.tables.tables import LeftOut, grouped, together
 
 _EVEN = 0.5
 """Difference of firing intervals in degrees that rounded angles explain."""

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from kurbel.arrays import Number
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.turning import Swing
-from kurbel.report.tables import LeftOut
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
+from kurbel.tables.tables import LeftOut
 
 _IN_EFFORT = ("gas force", "piston rod", "inertia", "weight", "friction")
 """Stages of a cylinder that its turning effort consists of."""

@@ -15,7 +15,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.machine import CYCLES, Machine
 from kurbel.machine.parts import Piston
 from kurbel.mechanisms import PIN, SHAFT
-from kurbel.report.picture import MOMENTS_PER_TURN, Body, Shape
+from kurbel.pictures.picture import MOMENTS_PER_TURN, Body, Shape
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.gas import PistonGas
 

@@ -14,10 +14,8 @@ from kurbel.declared.reading import shown
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.near_words import did_you_mean
-from kurbel.report.commands import subjects_of
-from kurbel.report.constructions import construction, polar_force
-from kurbel.report.frame import equal_parts
-from kurbel.report.machine_pictures import (
+from kurbel.pictures.constructions import construction, polar_force
+from kurbel.pictures.machine_pictures import (
     campbell,
     crank_efforts,
     driven_force,
@@ -32,8 +30,8 @@ from kurbel.report.machine_pictures import (
     unbalanced_over_angle,
     unbalanced_vectors,
 )
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
-from kurbel.report.picture_source import (
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Picture, Words
+from kurbel.pictures.picture_source import (
     AROUND,
     NO_NAME,
     PHI,
@@ -44,11 +42,13 @@ from kurbel.report.picture_source import (
     in_units,
     level,
 )
-from kurbel.report.section import mechanism
-from kurbel.report.tables import cylinder_meant, grouped, together
+from kurbel.pictures.section import mechanism
+from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.state import State
+from kurbel.tables.frame import equal_parts
+from kurbel.tables.tables import cylinder_meant, grouped, together
 
 # one cylinder
 

@@ -13,8 +13,8 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.mechanisms.slotted_lever import SlottedLever
-from kurbel.report.picture import Axis, Curve, Mark, PageFigure, Panel, Words
-from kurbel.report.picture_source import AROUND, NO_NAME, Source, curve
+from kurbel.pictures.picture import Axis, Curve, Mark, PageFigure, Panel, Words
+from kurbel.pictures.picture_source import AROUND, NO_NAME, Source, curve
 from kurbel.solver.state import State
 
 _USUAL = 60.0

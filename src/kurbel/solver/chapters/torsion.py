@@ -1,9 +1,9 @@
 """Torsional vibration of the shaft line: natural vibrations, critical speeds, and forced vibration.
 
-The chain of masses and its equations are those of `kurbel.solver.chain`. On each mass act the torques of its cylinders,
-with what the efficiency leaves of the effort but all of the inertia, and on one of them the load:
+The chain of masses and its equations are those of `kurbel.solver.chapters.chain`. On each mass act the torques of its
+cylinders, with what the efficiency leaves of the effort but all of the inertia, and on one of them the load:
 
-    M(φ) = M_m + Σ Re(M_ν e^{iνφ})           orders of the torques, see `kurbel.solver.harmonics`
+    M(φ) = M_m + Σ Re(M_ν e^{iνφ})           orders of the torques, see `kurbel.solver.chapters.harmonics`
     n_k = ω_e/(2π ν)                         critical speed of order ν with the natural frequency ω_e
     |Σ Θ e^{−iνβ}|                           sum of the phase vectors of the cranks: how they excite the mode Θ together
 
@@ -29,11 +29,11 @@ from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import NOWHERE, Pieces, refined
 from kurbel.quantity import value
-from kurbel.solver.chain import Chain, ChainEquation, Holzer, Modes, passing, response
+from kurbel.solver.chapters.chain import Chain, ChainEquation, Holzer, Modes, passing, response
+from kurbel.solver.chapters.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.drive import Drive
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
 

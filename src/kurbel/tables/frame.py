@@ -21,8 +21,12 @@ from kurbel.near_words import did_you_mean
 from kurbel.numerics.extreme import Extreme, number_of, size_of
 from kurbel.quantities import every_quantity
 from kurbel.quantity import Lists, Quantity, ambiguity, called, in_sentences
-from kurbel.report.named_values import Choice, choices_in
-from kurbel.report.tables import (
+from kurbel.solver.case import Case
+from kurbel.solver.cycle import Where
+from kurbel.solver.figures import AtAngles, Results
+from kurbel.solver.forces import CylinderForces
+from kurbel.tables.named_values import Choice, choices_in
+from kurbel.tables.tables import (
     BEFORE,
     Column,
     InputFile,
@@ -36,11 +40,6 @@ from kurbel.report.tables import (
     grouped,
     stepped,
 )
-from kurbel.report.warnings import of_machine
-from kurbel.solver.case import Case
-from kurbel.solver.cycle import Where
-from kurbel.solver.figures import AtAngles, Results
-from kurbel.solver.forces import CylinderForces
 
 _AT_ONCE = 8192
 """Crank angles computed at once, so that a long table needs little memory apart from its own numbers."""
@@ -332,18 +331,6 @@ class Functions(NamedTuple):
         """
         found = self.own(case, frame, **options) if self.own else (self.subjects(case), self.notes(case))
         return report_on(frame, case.machine, self.title, *found)
-
-
-def whole_machine(command: str) -> Callable[[Case], list[Subject]]:
-    """Return the function of a command that has results of the whole machine, and of no part of it."""
-
-    def subjects(case: Case) -> list[Subject]:
-        (found,) = case.results(command)
-        return [
-            Subject("whole machine", found, found.at if found.state else None, warnings=of_machine(case), whole=True)
-        ]
-
-    return subjects
 
 
 def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:

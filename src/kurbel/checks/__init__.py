@@ -1,0 +1,1 @@
+"""Limits and expectations of a machine file, and what `kurbel check` says."""

@@ -1,0 +1,97 @@
+"""The commands that report on a machine, made from the rows of `COMMANDS`."""
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from kurbel.cli.group import kurbel
+from kurbel.cli.options import (
+    Command,
+    CommandWithKeyValues,
+    angle_options,
+    columns_option,
+    frequency,
+    machine_file,
+    orders_option,
+    output_options,
+    part_options,
+    row_options,
+    speeds_option,
+    stacked,
+    uncertainty_option,
+    units_option,
+    where_option,
+)
+from kurbel.declared.unit_systems import messages_in
+from kurbel.render.formats import Output
+from kurbel.report.commands import REPORTS
+from kurbel.report.commands import Command as Row
+
+_OF_EVERY = "Key values are exact, whichever rows are printed. FILE may be - for standard input."
+_cases_option = click.option(
+    "--cases", is_flag=True, help="A row of key values for every load case of FILE, those of --columns if given."
+)
+
+
+def _instead(name: str, text: str) -> Callable[[Command], Command]:
+    """Return a flag that asks for other tables instead of that over the crank angle; its value is its name."""
+    return click.option(name, "instead", is_flag=True, flag_value=name, default="", help=text)
+
+
+_SHARED = {"where": stacked(where_option), "uncertainty": stacked(uncertainty_option)}
+"""What the rows of commands call options that several commands take."""
+_OWN = {
+    "motion": row_options,
+    "forces": stacked(
+        row_options,
+        click.option(
+            "--cycle", type=click.IntRange(min=1), metavar="N", help="This measured cycle of a trace, not their mean."
+        ),
+        _instead("--each-cycle", "A line for every measured cycle instead of the table over the angle."),
+    ),
+    "stress": stacked(_instead("--places", "Only the stresses place by place; as csv one line each.")),
+    "balance": stacked(
+        click.option("--compare", is_flag=True, help="Also by the textbook formula cos phi + R/L cos 2phi (R 291)."),
+        _instead("--orders", "Only the tables of orders and weights, and key values."),
+    ),
+    "harmonics": stacked(orders_option, speeds_option),
+    "torsion": stacked(
+        orders_option,
+        speeds_option,
+        click.option(
+            "--modes", type=click.IntRange(1, 100), default=3, help="Critical speeds of so many modes; 3 if not given."
+        ),
+        click.option("--mode", type=click.IntRange(1), help="The mode of Holzer's table; 1 if not given."),
+        click.option(
+            "--at",
+            type=frequency,
+            metavar="'F Hz'",
+            help="Holzer's table at this frequency, with its residual torque, instead of a mode.",
+        ),
+    ),
+}
+"""Options beyond those of every command; the report gets them by name, but for those that `print_report` has."""
+
+
+def _command(row: Row) -> click.Command:
+    """Return the command of a row, with FILE and the options that its report needs."""
+
+    def run(units: str | None, output: Output, **options: Any) -> None:
+        from kurbel.cli.request import print_report
+
+        with messages_in(units or "metric"):
+            system = units or ("si" if output.look.format in ("csv", "json") else "metric")
+            print_report(row.word, output, units=system, **options)
+
+    rows = (angle_options, columns_option) if row.over_angle else ()
+    cases = (_cases_option,) if row.in_cases else ()
+    shared = [_SHARED[word] for word in row.options]
+    own = (_OWN[row.word],) if row.word in _OWN else ()
+    with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
+    text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
+    return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
+
+
+for _row in REPORTS:
+    kurbel.add_command(_command(_row))

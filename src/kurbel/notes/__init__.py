@@ -1,0 +1,1 @@
+"""What is said next to results: warnings, what is left out, and why."""

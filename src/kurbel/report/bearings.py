@@ -1,0 +1,58 @@
+"""The report of `kurbel bearings`: the loads on pins and main bearings."""
+
+from collections.abc import Iterator
+from itertools import chain
+
+from kurbel.notes.left_out import (
+    bearing_left_out,
+    bearings_left_out,
+)
+from kurbel.notes.warnings import (
+    as_far_as_solved,
+    bearing_warnings,
+    of_machine,
+)
+from kurbel.solver.case import Case
+from kurbel.tables.frame import Functions, Subject
+
+
+def _loaded(case: Case) -> list[Subject]:
+    for forces in case.cylinders:
+        forces.refuse_locking()
+    parts = [
+        Subject(
+            one.name,
+            one,
+            one.at,
+            left_out=bearing_left_out(*one.size, one.omega),
+            of=one.cylinders[0].drive.name if one.of_rod else "",
+        )
+        for one in case.bearings.parts
+    ]
+    warnings = chain(of_machine(case), as_far_as_solved(bearing_warnings(case), "bearings"))
+    return [*parts, Subject("whole machine", left_out=bearings_left_out(case), warnings=warnings, whole=True)]
+
+
+def _bearing_notes(case: Case) -> Iterator[str]:
+    machine, line = case.machine, case.bearings.line
+    yield (
+        "Loads are those of a rod on its pin and of the shaft on its bearings. Directions are measured in the sense "
+        "of rotation: ε_K from the throw outward (of a main bearing from that of crank 1), ε_M from the stroke line "
+        "of cylinder 1 outward, ε_S from the rod's line, crank pin to crosshead. A surface counts as loaded 60° to "
+        "either side of the load; crank pins and journals rotate with the throw, crosshead pins and main shells do "
+        "not."
+    )
+    if len(machine.cylinders) > 1:
+        yield "φ is the angle of crank 1."
+    if line and len(line.throws) > 1:
+        yield (
+            "Statically determinate, throw by throw: the shaft counts as hinged in every bearing between two throws, "
+            "and 'crankshaft' as the throw of every cylinder."
+        )
+    if line and any(len(throw.cylinders) > 1 for throw in line.throws):
+        yield "Rods on one pin are side by side, each on an equal part of its length; all load the pin in its middle."
+    if any(one.masses and one.masses.undivided for one in machine.cylinders):
+        yield "'reciprocating' is one sum, all of which counts as pushing on the crosshead pin."
+
+
+BEARINGS = Functions("Bearing loads", _loaded, _bearing_notes)

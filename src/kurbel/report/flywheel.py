@@ -1,0 +1,50 @@
+"""The report of `kurbel flywheel`: turning effort, excess work, flywheel and speed line."""
+
+from collections.abc import Iterator
+
+from kurbel.declared.unit_systems import show
+from kurbel.notes.left_out import flywheel_left_out
+from kurbel.notes.warnings import of_machine
+from kurbel.solver.case import Case
+from kurbel.solver.flywheel import DeadCentre
+from kurbel.tables.frame import Functions, Subject
+
+
+def _turned(case: Case) -> list[Subject]:
+    turning, effort = case.flywheel, case.flywheel.effort
+    whole = Subject(
+        "whole machine",
+        turning,
+        turning.at if effort.swing is None else None,
+        left_out=flywheel_left_out(case.machine),
+        warnings=of_machine(case),
+        whole=True,
+    )
+    return [*(Subject(one.drive.name, DeadCentre(one, effort.cycle)) for one in case.cylinders), whole]
+
+
+def _flywheel_notes(case: Case) -> Iterator[str]:
+    turning, effort, efficiency = case.flywheel, case.flywheel.effort, case.machine.efficiency
+    if turning.crank is not None:
+        over = "over" if any(term.factor > 1 for term in effort.terms) else "with"
+        eta = f", {over} the efficiency {efficiency:g}" if efficiency != 1 else ""
+        yield f"T and W are referred to the radius of crank 1, {show(turning.crank, 'length')}{eta}; φ is its angle."
+    if effort.swing is not None:
+        yield "Of the effort its swing of energy alone is known: ω_m is the mean of ω_max and ω_min, δ = ΔE/(J ω_m²)."
+    elif turning.J is not None and turning.omega and not turning.elastic and turning.multiplier is None:
+        yield "The load does not determine the speed: the mean of ω over time is taken as the nominal speed."
+    if efficiency != 1 and any(effort.lost(group) for group in effort.groups):
+        yield (
+            "Where driving and driven pistons share a rod, the efficiency reduces the force of the driving pistons; "
+            "driven pistons, inertia, weight and friction count in full (R p. 613)."
+        )
+    if efficiency != 1 and any(term.factor != 1 for term in effort.inertia_terms) and turning.speed is not None:
+        yield "As in the book the efficiency applies to all of T; in ω the moving masses count in full."
+    if turning.rigid:
+        yield (
+            f"The coupling counts as rigid, its natural order {turning.natural_order:.4g} being above 100: "
+            "the driven inertia turns with the flywheel."
+        )
+
+
+FLYWHEEL = Functions("Turning effort and flywheel", _turned, _flywheel_notes)

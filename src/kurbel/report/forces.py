@@ -1,0 +1,123 @@
+"""The reports of `kurbel motion` and `kurbel forces`: every cylinder by itself."""
+
+from collections.abc import Iterable, Iterator
+
+from kurbel.errors import UsageError
+from kurbel.notes.left_out import (
+    forces_left_out,
+    motion_left_out,
+)
+from kurbel.notes.warnings import (
+    by_cylinder,
+    guide_notes,
+    rod_ratio_notes,
+)
+from kurbel.solver.case import Case
+from kurbel.solver.forces import CylinderForces
+from kurbel.solver.indicated import OF_CYCLES
+from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
+from kurbel.traces.pressure import TracePressure
+
+
+def mechanism_notes(case: Case) -> Iterable[str]:
+    """Return what a reader should know about the mechanisms, each sentence once."""
+    return dict.fromkeys(note for cylinder in case.machine.cylinders for note in cylinder.mechanism.notes)
+
+
+def _with_motion(case: Case) -> list[Subject]:
+    return [
+        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
+        for one in case.cylinders
+    ]
+
+
+MOTION = Functions("Motion of the crank train", _with_motion, mechanism_notes, lambda case: 360.0)
+
+
+def _with_forces(case: Case) -> list[Subject]:
+    return [
+        Subject(
+            one.drive.name,
+            one,
+            one.at,
+            left_out=forces_left_out(case.machine, one),
+            tables=_piston_table(one),
+            pistons=[Subject(piston.name, piston) for piston in one.pistons],
+            idle="" if one.drive.has_force else "no force acts; kurbel motion prints its motion",
+        )
+        for one in case.cylinders
+    ]
+
+
+def _forces_shown(case: Case, frame: Frame) -> tuple[list[Subject], Iterable[str]]:
+    """Return the forces of every cylinder; without the table over the crank angle its measured cycles, one to a line.
+
+    Raises UsageError without a cylinder, or without several cycles, NoSolutionError if its friction locks one.
+    """
+    cylinders, warnings = _with_forces(case), by_cylinder(case) if frame.prose and case.cylinders else {}
+    cylinders = [one._replace(warnings=warnings.get(one.name, ())) for one in cylinders]
+    if frame.table:
+        for forces in case.cylinders:
+            forces.refuse_locking()
+        return cylinders, _forces_notes(case)
+    if cylinders and not any(forces.indicated and forces.indicated.cycles for forces in case.cylinders):
+        raise UsageError("--each-cycle: no trace of this machine has several cycles; leave it out")
+    each = zip(cylinders, case.cylinders)
+    return [one._replace(tables=_cycle_table(forces)) for one, forces in each], ()
+
+
+def _piston_table(forces: CylinderForces) -> Iterator[Places]:
+    """Yield work, power and mean pressure of each piston of a rod that has several."""
+    if not forces.pistons:
+        return
+    declared, scope = forces.pistons[0].lists.key_values("forces"), f"{forces.drive.name}."
+    each = ((one.name.removeprefix(scope), one.key_values()) for one in forces.pistons)
+    rows: list[Row] = [((name,), {id: figure.value for id, figure in found.items()}) for name, found in each]
+    yield Places("pistons", "Each piston", ("piston",), declared, rows, headed=True)
+
+
+def _cycle_table(forces: CylinderForces) -> Iterator[Places]:
+    cycles, gas = forces.indicated and forces.indicated.cycles, forces.drive.own_gas
+    if not cycles:
+        return
+    declared = {one.id: one.absolute() if gas and gas.absolute else one for one in OF_CYCLES}
+    columns = zip(*(one.tolist() for one in cycles))
+    rows: list[Row] = [((str(number),), dict(zip(declared, values))) for number, values in enumerate(columns, 1)]
+    yield Places("cycles", "Measured cycles", ("cycle",), declared, rows, headed=True)
+
+
+def _forces_notes(case: Case) -> Iterator[str]:
+    yield from mechanism_notes(case)
+    yield from guide_notes(case)
+    yield from rod_ratio_notes(case)
+    if any(forces.drive.pin_friction and forces.drive.has_force for forces in case.cylinders):
+        yield (
+            "T is M/R, less the friction of pins and journals, and W its mean; T_Z is the force at the crank pin, "
+            "which the books call T."
+        )
+    if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
+        yield (
+            "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "
+            "S_H is that at the crosshead pin, S_Z that at the crank pin; the rod must carry the largest of both."
+        )
+    compressors = [forces.drive.cylinder for forces in case.cylinders if not forces.no_compressor]
+    if compressors:
+        yield (
+            "Rod load after API 618: P_G at the crosshead pin counts gas, inertia and weight of piston, piston rod, "
+            "crosshead and other parts, P_KS at the piston rod the same without the crosshead; neither has the "
+            "connecting rod's share or friction. d: in compression, z: in tension."
+        )
+    if any(cylinder.masses and cylinder.masses.undivided for cylinder in compressors):
+        yield (
+            "'reciprocating' is one sum, with the connecting rod's share: P_G counts all of it; give the parts to leave"
+            " that share out."
+        )
+    ends = [end for forces in case.cylinders for gas in forces.drive.gas for end in (gas.head, gas.crank)]
+    if any(isinstance(end, TracePressure) and end.trace.even for end in ends):
+        yield (
+            "ΔA/A of a trace is not a rounding error: the indicated work is by the trapezoid rule on the samples, "
+            "the quadrature by straight lines between them; the difference shows the effect of the sample spacing."
+        )
+
+
+FORCES = Functions("Forces in the crank train", _with_forces, _forces_notes, own=_forces_shown)
