@@ -122,6 +122,10 @@ class Quantity(NamedTuple):
         text = self.text.replace("piston force", "force along the stroke line").replace("piston speed", "ram speed")
         return self._replace(text=text)
 
+    def without_guide(self) -> Quantity:
+        """Return the quantity of a machine without a crosshead guide, whose piston rod takes the side force."""
+        return self._replace(text=self.text.replace("guide force", "side force on the piston rod"))
+
     def printed_by(self, command: str, heading: str = "") -> Quantity:
         """Return it as a key value of this command and its own `commands`, below this heading unless it has one."""
         words = (() if self.commands == ITS_OWN else self.commands) + ((command,) if command else ())

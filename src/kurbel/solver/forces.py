@@ -156,7 +156,8 @@ class CylinderForces(SampledCylinder, Results):
         """The rows that a machine with this mechanism may have, its pressures counted as in the machine file."""
         mechanism, cylinder, gas = self.mechanism, self.drive.cylinder, self.drive.own_gas
         of_ram = not cylinder.pistons and bool(cylinder.ram_force or mechanism.quick_return)
-        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, bool(gas and gas.absolute))
+        absolute = bool(gas and gas.absolute)
+        return _rows(mechanism.OFFERS, mechanism.KEY_OFFERS, of_ram, absolute, mechanism.guided)
 
     @property
     def _of(self) -> str:
@@ -629,10 +630,16 @@ def _float_or_array(values: Array) -> Number:
 
 
 @cache
-def _rows(offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool) -> Rows:
-    """Return the rows of cylinders with these quantities of mechanisms: of a ram without piston, or absolute."""
-    known = rows_of(CylinderForces, offers, key_offers)
-    return known.changed(Quantity.of_ram if of_ram else Quantity.absolute) if of_ram or absolute else known
+def _rows(
+    offers: tuple[Offer, ...], key_offers: tuple[KeyOffer, ...], of_ram: bool, absolute: bool, guided: bool
+) -> Rows:
+    """Return the rows of cylinders with these quantities of mechanisms, in the words for a machine of their kind."""
+    rows = rows_of(CylinderForces, offers, key_offers)
+    if of_ram:
+        rows = rows.changed(Quantity.of_ram)
+    elif absolute:
+        rows = rows.changed(Quantity.absolute)
+    return rows if guided else rows.changed(Quantity.without_guide)
 
 
 def _sum_of_all(values: Sequence[Any]) -> Any:

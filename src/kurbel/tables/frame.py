@@ -284,6 +284,16 @@ def _with_sides(
     subject: Subject, shown_values: Sequence[KeyValue], values: Sequence[tuple[Quantity, object]]
 ) -> Iterator[KeyValue]:
     """Yield key values as shown, those marked that are the limit of a column before a jump; values: the same in SI."""
+    before = before_jumps(subject, values)
+    for key_value in shown_values:
+        yield key_value._replace(side=BEFORE if key_value.id in before else "")
+
+
+def before_jumps(subject: Subject, values: Iterable[tuple[Quantity, object]]) -> set[str]:
+    """Return the ids of those key values that are the limit of a column before a jump: just after it is another value.
+
+    values: key values of the subject in SI.
+    """
     extremes = {quantity.id: value for quantity, value in values if isinstance(value, Extreme)}
     angles = np.array([extreme.degrees for extreme in extremes.values()], dtype=float)
     before = set[str]()
@@ -296,8 +306,7 @@ def _with_sides(
             same = [abs(abs(value) - size) <= _ANOTHER * max(abs(value), size) for value in after]
             if after and not any(same):
                 before.add(id)
-    for key_value in shown_values:
-        yield key_value._replace(side=BEFORE if key_value.id in before else "")
+    return before
 
 
 def _columns_of(id: str, state: AtAngles) -> Iterator[Array]:

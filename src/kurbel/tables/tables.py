@@ -293,9 +293,15 @@ def for_people(report: Report) -> Report:
         key_values = tuple(key_value for key_value in part.key_values if not key_value.minor)
         if len(columns) < 2 and len(columns) < len(part.columns):  # crank angles alone
             columns = ()
-        return part._replace(columns=columns, key_values=key_values)
+        tables = tuple(named(table, part) for table in part.place_tables)
+        return part._replace(columns=columns, key_values=key_values, place_tables=tables)
 
-    return shown_once(report).changed(printed)
+    def named(table: PlaceTable, part: Part) -> PlaceTable:
+        return table._replace(title=f"{table.title}: {part.name}") if titles.count(table.title) > 1 else table
+
+    report = shown_once(report)
+    titles = [table.title for table in report.printed_tables]
+    return report.changed(printed)
 
 
 def shown_once(report: Report) -> Report:
