@@ -164,7 +164,7 @@ def rows_of(text: str) -> set[str]:
 
 
 GAS_ALONE = """
-{speed: 60 rpm, crank: 100 mm, rod_ratio: inf, bore: 200 mm,
+{speed: 60 rpm, crank: 100 mm, rod_ratio: infinite, bore: 200 mm,
  indicator: {head_end: {constant: {expansion: 5 bar, compression: 1 bar}}}}
 """
 

@@ -448,8 +448,10 @@ class CylinderForces(SampledCylinder, Results):
         """Return whether people read the extremes of a column in those of the piston force, or they are 0."""
         if super().repeats(column):
             return True
-        piston_force = self.extremes_of("P")
-        return column not in ("P", "M") and piston_force is not None and self.extremes_of(column) == piston_force
+        piston_force, force = self.extremes_of("P"), self.extremes_of(column)
+        if column == "P" or piston_force is None or force is None:
+            return False
+        return all(_are_equal(one, other) for one, other in zip(force, piston_force))
 
     @property
     def inertia_extremes(self) -> list[Extreme]:
@@ -623,6 +625,12 @@ def mean_by_integral(lam: Number, f: Number) -> Number:
     # cos β − 1 without cancellation
     lost = np.log1p(f * np.sin(widest) - 2 * np.sin(widest / 2) ** 2)
     return _float_or_array(f * (f * widest - lost) / (divisor * (1 + f * f)))
+
+
+def _are_equal(force: Extreme, other: Extreme) -> bool:
+    """Return whether two extremes of one machine are equal but for rounding, at the same angle."""
+    same_value = math.isclose(force.value, other.value, rel_tol=1e-12)
+    return same_value and math.isclose(force.degrees, other.degrees, abs_tol=1e-9)
 
 
 def _float_or_array(values: Array) -> Number:
