@@ -244,9 +244,16 @@ _LEAST_REVERSAL = 15.0, 0.03
 """Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
 
+def valve_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield what a reader should know about the valve of a cylinder."""
+    if forces.valve_gear:
+        yield from forces.valve_gear.notes
+
+
 def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield what looks wrong in the forces of a cylinder; raises NoSolutionError if its friction locks it."""
     forces.refuse_locking()  # first, with an angle that does not depend on the step
+    yield from valve_warnings(forces)
     residual, traced = forces.energy_residual or 0.0, any(gas.traced for gas in forces.drive.gas)
     if traced and abs(residual) > _COARSE:  # it shows the spacing of the samples
         yield (

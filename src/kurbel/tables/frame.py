@@ -1,9 +1,11 @@
 """From results and their declared quantities to the tables of a report, and the crank angles of its rows."""
 
+import math
 import re
 from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -614,14 +616,17 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         if wrong := ambiguity(name, ids):
             raise UsageError(f"--where: {wrong}")
         column = own.get(ids[0])  # None for one that only other machines have
-        wanted = _value(subject, command, column, factor, of, text) if column else 0.0
-        results = subject.results
+        is_fraction = column is not None and not _has_unit(of, column)
+        searched = _with_any_speed(subject, column) if column and is_fraction else subject
+        wanted = _value(searched, command, column, factor, of, text) if column else 0.0
+        results = searched.results
         assert isinstance(results, Searchable)
         found = column and results.angles_where(column.id, wanted)
         if column is None or found is None:
             why = "; kurbel check shows why"
             if column and column.kind in _OF_SPEED and results.omega is None:
-                why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
+                fraction = "a fraction of a key value, as in 'b = 1/6 b_max', needs none"
+                why = f": no speed is given; add one by --set speed='60 rpm' ({fraction})"
             raise UsageError(f"--where: '{name}' is left out for this machine{why}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
@@ -633,6 +638,33 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()
 
     return angles
+
+
+def _has_unit(of: str, column: Quantity) -> bool:
+    """Return whether this is a unit of the column, not a key value."""
+    try:
+        unit_factor(of, column.kind)
+    except UnitError:
+        return False
+    return bool(of)
+
+
+def _with_any_speed(subject: Subject, column: Quantity) -> Subject:
+    """Return a cylinder without a speed as it moves at any speed, if the column needs one; else the subject itself.
+
+    At uniform rotation a velocity is a fraction of its largest at the same angles whatever the speed.
+    """
+    forces = subject.results
+    needs_speed = column.kind in _OF_SPEED and isinstance(forces, CylinderForces) and forces.omega is None
+    if not needs_speed:
+        return subject
+    assert isinstance(forces, CylinderForces)
+    machine = replace(forces.drive.machine, speed=_ANY_SPEED)
+    return subject._replace(results=CylinderForces(machine, forces.drive.cylinder))
+
+
+_ANY_SPEED = 1 / (2 * math.pi)
+"""Revolutions per second: 1 rad/s."""
 
 
 def _value(subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str) -> float:
