@@ -364,20 +364,21 @@ def _columns(frame: Frame, subject: Subject) -> tuple[tuple[Column, ...], str]:
     columns = shown_columns(subject.at, tuple(dict.fromkeys((known["phi"], *chosen))), angles, frame.system)
     if frame.columns:
         return columns, ""
-    minor = set(known) if subject.idle else _minor_columns(subject)
+    minor = set(known) if subject.idle else _minor_columns(subject, [column.id for column in columns])
     wanted = {quantity.id for quantity in added}
     return tuple(one._replace(minor=one.id in minor and one.id not in wanted) for one in columns), ""
 
 
-def _minor_columns(subject: Subject) -> set[str]:
-    """Return the ids of columns that tell people nothing: 0 at every angle, or a force that another row has, too.
+def _minor_columns(subject: Subject, ids: Iterable[str]) -> set[str]:
+    """Return those of these columns that tell people nothing: 0 at every angle, or a force that another row has, too.
 
     Of equal forces the first one stays, but the piston force in any case.
     """
     assert subject.at is not None
     state, minor = subject.at(_EVERYWHERE), set[str]()
     forces = dict[str, Array]()
-    for id, row in state.rows.items():
+    for id in ids:
+        row = state.rows[id]
         if row.repeats is not None and row.repeats(subject.results):
             minor.add(id)
         values = None if id == "phi" else row.of(state)
