@@ -50,7 +50,7 @@ def test_orders_over_the_speed() -> None:
 def test_every_piece_over_the_angle() -> None:
     found = answer("torsion", SHIP, "--columns", "M_shaft,tau", "--step", "1")
     pieces = found["cylinders"]
-    assert len(pieces) == 7
+    assert len(pieces) == 8
     shown = table(found, "pieces")
     for number, piece in enumerate(pieces):
         columns = {column["id"]: column["values"] for column in piece["columns"]}

@@ -12,7 +12,7 @@ from kurbel.machine.shaft_line import ShaftPart, line_of
 from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response
+from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response, row_of_joins
 from kurbel.solver.chapters.torsion import ShaftVibration
 from representative import CONFIGS, few
 
@@ -22,7 +22,9 @@ ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
 
 def undamped(inertias: list[float], stiffnesses: list[float], ground: str = "") -> Chain:
     nothing = np.zeros(len(stiffnesses))
-    return Chain(np.array(inertias), np.array(stiffnesses), nothing, np.zeros(len(inertias)), nothing, ground)
+    masses = len(inertias)
+    joins = row_of_joins(masses, ground)
+    return Chain(np.array(inertias), np.array(stiffnesses), nothing, np.zeros(masses), nothing, joins, nothing)
 
 
 def at_random(count: int, spread: float, ground: str, seed: int) -> Chain:
@@ -112,7 +114,7 @@ def test_holzer_at_a_frequency(ground: str) -> None:
 
     omega = 0.7 * modes.omegas[1] + 3
     table = holzer_at(chain, omega)
-    held = chain.held[1]
+    held = ground in ("after", "both")
     matrix = chain.twists.T @ np.diag(chain.stiffnesses) @ chain.twists - np.diag(omega**2 * chain.inertias)
     sides = matrix @ table.angles
     assert sides[:-1] == pytest.approx(np.zeros(4), abs=1e-9 * np.abs(table.torques).max())
@@ -135,7 +137,8 @@ def damped(count: int, ground: str, seed: int, loss: float = 0.03) -> Chain:
         draw.uniform(0, 5, pieces),
         draw.uniform(0, 5, count),
         draw.uniform(0, loss, pieces) if loss else np.zeros(pieces),
-        ground,
+        row_of_joins(count, ground),
+        np.zeros(pieces),
     )
 
 
@@ -185,7 +188,7 @@ def machine_of(load: Load | None = None, effort: Any = None, damping: float = 60
 def test_the_coupling_of_the_flywheel_where_the_effort_jumps(load: Load | None) -> None:
     """All orders of a jump, not the first 24 of them: wave and extremes as `flywheel` has them."""
     case = Case(machine_of(load))
-    (piece,) = case.torsion.pieces
+    (piece,) = case.torsion.segments
     angles = np.linspace(0, 360, 73)
     wanted = case.flywheel.at(angles).M_coupling
     assert piece.at(angles).M_shaft == pytest.approx(wanted, abs=1e-12 * np.abs(wanted).max())
@@ -219,7 +222,7 @@ def test_two_masses_in_closed_form() -> None:
         assert found.vibration_loss == pytest.approx(
             loss * stiffness * 4 * math.pi * speed * abs(exact / (stiffness * spring)) ** 2 / 2, rel=1e-12
         )
-    at_resonance = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), resonance / 2, *parts).pieces[0]
+    at_resonance = shaft(Harmonics(10.0, ((2.0, 6.0, 8.0),)), resonance / 2, *parts).segments[0]
     static = 10.0 * second / (first + second)
     assert at_resonance.M_vibratory == pytest.approx(static * abs(1 + 1j * loss) / loss, rel=1e-12)
 
@@ -227,7 +230,7 @@ def test_two_masses_in_closed_form() -> None:
 def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
     """The torque behind the gear is that of the referred chain over u, its stress that of its own section."""
     effort = Harmonics(10.0, ((1.0, 3.0, 2.0), (3.0, 1.0, -2.0)))
-    behind = (ShaftPart(diameter=0.03, length=0.5, loss_factor=0.05), ShaftPart(inertia=0.4))
+    behind = (ShaftPart(diameter=0.03, length=0.5, density=0.0, loss_factor=0.05), ShaftPart(inertia=0.4))
     before = (ShaftPart(inertia=2.0), ShaftPart(stiffness=5e4, loss_factor=0.01), ShaftPart(inertia=0.3))
     geared = shaft(effort, 10.0, *before, ShaftPart(gear=2.5), ShaftPart(inertia=0.1), *behind)
     stiffness = 82e9 * math.pi * 0.03**4 / 32 / 0.5 * 2.5**2
@@ -240,7 +243,7 @@ def test_a_gear_is_the_chain_referred_to_one_shaft() -> None:
         ShaftPart(inertia=0.4 * 2.5**2),
     )
     assert geared.modes.omegas == pytest.approx(plain.modes.omegas, rel=1e-14)
-    one, other = geared.pieces[1], plain.pieces[1]
+    one, other = geared.segments[1], plain.segments[1]
     assert one.M_vibratory == pytest.approx(other.M_vibratory / 2.5, rel=1e-12)
     assert one.M_shaft_mean == pytest.approx(4.0, rel=1e-14)
     assert one.tau_vibratory == pytest.approx(16 * one.M_vibratory / (math.pi * 0.03**3), rel=1e-14)
@@ -250,9 +253,9 @@ def test_the_mean_torque_goes_to_the_load() -> None:
     effort, piece = Harmonics(10.0, ((1.0, 3.0, 2.0),)), ShaftPart(stiffness=1e4, damping=1.0)
     masses = [ShaftPart(inertia=1.0), ShaftPart(inertia=2.0, load=True), ShaftPart(inertia=3.0)]
     found = shaft(effort, 5.0, masses[0], piece, masses[1], piece, masses[2])
-    assert [one.M_shaft_mean for one in found.pieces] == pytest.approx([10.0, 0.0], abs=1e-14)
+    assert [one.M_shaft_mean for one in found.segments] == pytest.approx([10.0, 0.0], abs=1e-14)
     held = shaft(effort, 5.0, ShaftPart(word="ground"), piece, masses[0], piece, masses[2])
-    assert [one.M_shaft_mean for one in held.pieces] == pytest.approx([-10.0, 0.0], abs=1e-14)
+    assert [one.M_shaft_mean for one in held.segments] == pytest.approx([-10.0, 0.0], abs=1e-14)
 
 
 def test_cylinders_on_the_shaft_count_by_their_mean_inertia() -> None:
@@ -276,7 +279,7 @@ def test_a_shaft_held_at_both_ends() -> None:
     effort, omega = Harmonics(80.0, ((2.0, 0.0, 12.0),)), 2 * 2 * math.pi * 5
     found = Case(Machine((), effort=effort, speed=5.0, shaft=line_of(parts))).torsion
     swing = 12 / (4e4 - 2 * omega**2)
-    before, after = found.pieces
+    before, after = found.segments
     assert (before.name, after.name) == ("ground – mass 1", "mass 1 – ground")
     assert (before.M_shaft_mean, after.M_shaft_mean) == pytest.approx((-60, 20))
     assert (before.M_vibratory, after.M_vibratory) == pytest.approx((3e4 * swing, 1e4 * swing), rel=1e-9)

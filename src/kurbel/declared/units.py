@@ -94,7 +94,11 @@ KINDS = {
         "10 kgf m2",
     ),
     "stiffness": Kind(
-        1e-12, 1e18, f"{_FORCES} * m/rad, mm/rad, ft/rad; Nm/rad, kNm/rad", "N m/rad", imperial="lbf ft/rad"
+        1e-12,
+        1e18,
+        f"{_FORCES} * m/rad, mm/rad, ft/rad, m/deg; Nm/rad, kNm/rad, Nm/deg",
+        "N m/rad",
+        imperial="lbf ft/rad",
     ),
     "damping": Kind(
         1e-15,
@@ -247,6 +251,7 @@ _ELSEWHERE: dict[str, dict[str, Factor]] = {
     **dict.fromkeys(("pressure", "stress", "torque", "spring"), _POUND_OF_FORCE),
     "pressure_rise": {**_DEGREES, **_POUND_OF_FORCE},
     "speed": {"rad": (1, 2 * math.pi)},
+    "stiffness": {"deg": (math.pi, 180)},
     "gd2": {"kgf": (1, 1), "kp": (1, 1), "tf": (1e3, 1), "N": (1, GRAVITY)},
 }
 """Kind -> single units that mean something else in it. GD2 = 4J counts in kg m2: 1 kgf is the weight of 1 kg."""

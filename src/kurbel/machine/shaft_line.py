@@ -16,15 +16,17 @@ from kurbel.declared.record import Record, Rule, field
 from kurbel.errors import Fault, Path, refuse
 from kurbel.near_words import did_you_mean
 
-STEEL = 82e9
-"""Shear modulus of steel in Pa."""
+STEEL, STEEL_DENSITY = 82e9, 7850.0
+"""Shear modulus in Pa, and density in kg/m³, of steel."""
+GROUNDED = -1
+"""In place of the number of a mass: a fixed end."""
 GROUND, FLYWHEEL = "ground", "flywheel"
 """Words in the list: an end that is held fast, and the flywheel of the machine."""
 
 SEGMENT = "shaft segment"
 _KEYS = {
     "mass": ("inertia", "cylinder", "load"),
-    SEGMENT: ("stiffness", "diameter", "length", "bore", "shear_modulus", "loss_factor"),
+    SEGMENT: ("stiffness", "diameter", "length", "bore", "shear_modulus", "density", "loss_factor"),
     "gear": ("gear",),
 }
 """Kind of an item -> the keys that only such an item has."""
@@ -64,6 +66,14 @@ class ShaftPart(Record):
     bore: float | None = field("length", "Bore of a hollow shaft segment", "d_i", least=0, absent="0", needs="diameter")
     shear_modulus: float | None = field(
         "stress", "Shear modulus of a shaft segment", "G", above=0, absent="82 GPa, steel", needs="length"
+    )
+    density: float | None = field(
+        "density",
+        "Density of a shaft segment, whose inertia counts along its length; 0 kg/m3: without inertia",
+        "ρ",
+        least=0,
+        absent="7850 kg/m3, steel",
+        needs="length",
     )
     loss_factor: float | None = field(
         "ratio",
@@ -113,6 +123,11 @@ class ShaftPart(Record):
         given = [kind for kind, keys in _KEYS.items() if any(vars(self)[key] is not None for key in keys)]
         return GROUND if self.word == GROUND else (*given, "mass")[0]
 
+    @property
+    def has_inertia(self) -> bool:
+        """Whether it is a shaft segment that has an inertia of its own."""
+        return self.length is not None and self.stiffness is None and self.density != 0
+
 
 SHAFT = Listing(
     OneOf(
@@ -140,7 +155,7 @@ class ShaftMass:
     """A mass: J in kg m² of what is no cylinder, damping in N m s/rad; both referred to the shaft of the cranks.
 
     cylinders: names of those whose cranks are here; flywheel: how many times J of the machine's flywheel counts here;
-    ratio: speed of this mass over that of the cranks.
+    ratio: speed of this mass over that of the cranks; is_joint: that it has no inertia, and joins two shaft segments.
     """
 
     name: str
@@ -149,13 +164,15 @@ class ShaftMass:
     flywheel: float = 0.0
     damping: float = 0.0
     ratio: float = 1.0
+    is_joint: bool = False
 
 
 @dataclass(frozen=True, eq=False)
-class ShaftPiece:
+class ShaftSegment:
     """A piece of shaft between two masses: stiffness in N m/rad and damping in N m s/rad referred to the cranks' shaft.
 
-    sections: of those of its parts whose diameters are known; ratio: its speed over that of the cranks.
+    before, behind: the masses by their numbers, or GROUNDED; sections: of those of its parts whose diameters are known;
+    ratio: its speed over that of the cranks; inertia: J_s in kg m², uniform along it, referred to the cranks' shaft.
     """
 
     stiffness: float
@@ -163,19 +180,26 @@ class ShaftPiece:
     loss_factor: float = 0.0
     sections: tuple[ShaftSection, ...] = ()
     ratio: float = 1.0
+    inertia: float = 0.0
+    before: int = 0
+    behind: int = 1
 
 
 @dataclass(frozen=True, eq=False)
 class ShaftLine:
-    """Masses along a shaft and the pieces between them; the piece to a fixed end comes first or last.
+    """Masses along a shaft and the segments between them, or from a mass to a fixed end.
 
-    ground: `before` or `after` the masses, `both`, or empty; load: which mass takes the load.
+    load: which mass takes the load.
     """
 
     masses: tuple[ShaftMass, ...]
-    pieces: tuple[ShaftPiece, ...]
-    ground: str = ""
+    segments: tuple[ShaftSegment, ...]
     load: int = -1
+
+    @property
+    def is_held(self) -> bool:
+        """Whether an end is fixed."""
+        return any(GROUNDED in (segment.before, segment.behind) for segment in self.segments)
 
 
 def shaft_faults(parts: Sequence[ShaftPart | Reported], cylinders: Sequence[str]) -> list[Fault]:
@@ -207,7 +231,8 @@ def _of_order(parts: Sequence[ShaftPart]) -> Iterator[tuple[bool, Path, str]]:
         yield kind == SEGMENT and not inside, here, "a shaft line begins and ends with a mass, or with 'ground'"
         twice = "no shaft segment between this mass and the one before; give it, or one mass"
         yield kind == before == "mass", here, twice
-        damped = kind == before == SEGMENT and bool(parts[index].damping or parts[index - 1].damping)
+        in_series = kind == before == SEGMENT and not (parts[index].has_inertia or parts[index - 1].has_inertia)
+        damped = in_series and bool(parts[index].damping or parts[index - 1].damping)
         yield damped, here, "segments in series with a damper cannot be combined; give a mass between them"
         yield kind == GROUND and inside, here, "'ground' is a fixed end; it must be first or last"
         at_end = kind == "gear" and not inside
@@ -237,31 +262,94 @@ def line_of(parts: Sequence[ShaftPart], cylinders: Sequence[str] = ()) -> ShaftL
     All is referred to the shaft of the cranks: inertia, damping and stiffness by the square of the ratio of speeds.
     """
     refuse(*shaft_faults(parts, cylinders))
-    kinds = [part.kind for part in parts]
-    gear = kinds.index("gear") if "gear" in kinds else len(parts)
-    ratio = next((part.gear for part in parts if part.gear), 1.0)
-    ratios = (1 / ratio, 1.0) if any(part.cylinder for part in parts[gear:]) else (1.0, ratio)
-    masses: list[ShaftMass] = []
-    pieces: list[ShaftPiece] = []
-    loads: list[int] = []
-    for index, (part, kind, before) in enumerate(zip(parts, kinds, ["", *kinds])):
-        turns = ratios[index > gear]
-        if kind == "mass":
-            square, cranks = turns**2, part.cylinder or ()
-            name = part.word or part.name or " + ".join(cranks) or f"mass {len(masses) + 1}"
-            inertia, damping = square * (part.inertia or 0.0), square * (part.damping or 0.0)
-            mass = ShaftMass(name, inertia, cranks, square * (part.word == FLYWHEEL), damping, turns)
-            joined = before == "gear" and kinds[gear - 1] == "mass"
-            masses.append(_geared(masses.pop(), mass) if joined else mass)
-            if part.load:
-                loads.append(len(masses) - 1)
-        elif kind == SEGMENT:
-            piece = _piece(part, turns)
-            pieces.append(_in_series(pieces.pop(), piece) if before == SEGMENT else piece)
-    ends = {(True, True): "both", (True, False): "before", (False, True): "after", (False, False): ""}
-    # the driving or driven machine is at an end, and is no crank
-    usual = 0 if masses[-1].cylinders and not masses[0].cylinders else len(masses) - 1
-    return ShaftLine(tuple(masses), tuple(pieces), ends[kinds[0] == GROUND, kinds[-1] == GROUND], (*loads, usual)[0])
+    return _Assembly(parts).line
+
+
+class _Assembly:
+    """A shaft line as it is put together, item by item, from a list without faults."""
+
+    def __init__(self, parts: Sequence[ShaftPart]) -> None:
+        self.masses: list[ShaftMass] = []
+        self.segments: list[ShaftSegment] = []
+        self._joints = 0
+        self._loads: list[int] = []
+        speeds = [speed for part, speed in _with_speeds(parts) if part.cylinder]
+        self._crank_speed = speeds[0] if speeds else 1.0
+        last = self._follow(parts, 1.0)
+        # the driving or driven machine is at an end, and is no crank
+        cranks_are_last = bool(self.masses[last].cylinders) and not self.masses[0].cylinders
+        usual = 0 if cranks_are_last else last
+        load = self._loads[0] if self._loads else usual
+        self.line = ShaftLine(tuple(self.masses), tuple(self.segments), load)
+
+    def _follow(self, parts: Sequence[ShaftPart], speed: float) -> int:
+        """Add the items along a shaft, and return the number of its last mass; speed: over that of the first item."""
+        last = mass = GROUNDED  # a line begins at a fixed end, unless a mass is first
+        segment: ShaftSegment | None = None
+        for part in parts:
+            if part.gear is not None:
+                speed *= part.gear
+            ratio = speed / self._crank_speed
+            if part.kind == "gear":
+                continue
+            if part.kind == SEGMENT:
+                following = _segment(part, ratio)
+                if segment is None:
+                    segment = following
+                elif segment.inertia or following.inertia:
+                    mass = self._join(segment, mass, self._joint(ratio))
+                    segment = following
+                else:
+                    segment = _in_series(segment, following)
+            elif part.kind == GROUND:
+                if segment is not None:
+                    self._join(segment, mass, GROUNDED)
+            else:
+                other = self._mass(part, ratio)
+                if segment is not None:
+                    mass = self._join(segment, mass, self._added(other))
+                elif mass == GROUNDED:
+                    mass = self._added(other)
+                else:  # a pair of gears is between them
+                    self.masses[mass] = _geared(self.masses[mass], other)
+                segment, last = None, mass
+                if part.load:
+                    self._loads.append(mass)
+        return last
+
+    def _mass(self, part: ShaftPart, ratio: float) -> ShaftMass:
+        square, cranks = ratio**2, part.cylinder or ()
+        number = 1 + sum(not mass.is_joint for mass in self.masses)
+        return ShaftMass(
+            name=part.word or part.name or " + ".join(cranks) or f"mass {number}",
+            inertia=square * (part.inertia or 0.0),
+            cylinders=cranks,
+            flywheel=square * (part.word == FLYWHEEL),
+            damping=square * (part.damping or 0.0),
+            ratio=ratio,
+        )
+
+    def _joint(self, ratio: float) -> int:
+        """Add a point without inertia between two segments, and return its number."""
+        self._joints += 1
+        return self._added(ShaftMass(f"joint {self._joints}", ratio=ratio, is_joint=True))
+
+    def _added(self, mass: ShaftMass) -> int:
+        self.masses.append(mass)
+        return len(self.masses) - 1
+
+    def _join(self, segment: ShaftSegment, before: int, behind: int) -> int:
+        """Add a segment between two masses, and return the one behind it."""
+        self.segments.append(replace(segment, before=before, behind=behind))
+        return behind
+
+
+def _with_speeds(parts: Sequence[ShaftPart], speed: float = 1.0) -> Iterator[tuple[ShaftPart, float]]:
+    """Yield each item with its speed over that of the first one."""
+    for part in parts:
+        if part.gear is not None:
+            speed *= part.gear
+        yield part, speed
 
 
 def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
@@ -276,22 +364,32 @@ def _geared(mass: ShaftMass, other: ShaftMass) -> ShaftMass:
     )
 
 
-def _piece(part: ShaftPart, ratio: float) -> ShaftPiece:
-    """Return a piece; where no stiffness is given, it is G π (d⁴ − d_i⁴)/(32 l) in N m/rad."""
-    stiffness, bore = part.stiffness, part.bore or 0.0
+def _segment(part: ShaftPart, ratio: float) -> ShaftSegment:
+    """Return a segment; where no stiffness is given, k = G I_p/l in N m/rad and J_s = ρ I_p l in kg m²."""
+    sections = () if part.diameter is None else (ShaftSection(part.diameter, part.bore or 0.0),)
+    stiffness, inertia = part.stiffness, 0.0
     if stiffness is None:
         assert part.diameter is not None
         assert part.length is not None
-        modulus = STEEL if part.shear_modulus is None else part.shear_modulus
-        stiffness = modulus * math.pi * (part.diameter**4 - bore**4) / (32 * part.length)
-    sections = () if part.diameter is None else (ShaftSection(part.diameter, bore),)
-    square, loss = ratio**2, part.loss_factor or 0.0
-    return ShaftPiece(square * stiffness, square * (part.damping or 0.0), loss, sections, ratio)
+        shear_modulus = STEEL if part.shear_modulus is None else part.shear_modulus
+        density = STEEL_DENSITY if part.density is None else part.density
+        fourth = part.diameter**4 - (part.bore or 0.0) ** 4
+        stiffness = shear_modulus * math.pi * fourth / (32 * part.length)
+        inertia = density * math.pi * fourth / 32 * part.length
+    square = ratio**2
+    return ShaftSegment(
+        stiffness=square * stiffness,
+        damping=square * (part.damping or 0.0),
+        loss_factor=part.loss_factor or 0.0,
+        sections=sections,
+        ratio=ratio,
+        inertia=square * inertia,
+    )
 
 
-def _in_series(piece: ShaftPiece, other: ShaftPiece) -> ShaftPiece:
-    """Return two pieces without a mass between them: 1/k = Σ 1/k; the loss factor is the mean over what they store."""
-    softness = 1 / piece.stiffness + 1 / other.stiffness
-    loss = (piece.loss_factor / piece.stiffness + other.loss_factor / other.stiffness) / softness
-    sections = (*piece.sections, *other.sections)
-    return replace(piece, stiffness=1 / softness, loss_factor=loss, sections=sections)
+def _in_series(segment: ShaftSegment, other: ShaftSegment) -> ShaftSegment:
+    """Return two segments without inertia as one: 1/k = Σ 1/k; the loss factor is the mean over what they store."""
+    softness = 1 / segment.stiffness + 1 / other.stiffness
+    loss = (segment.loss_factor / segment.stiffness + other.loss_factor / other.stiffness) / softness
+    sections = (*segment.sections, *other.sections)
+    return replace(segment, stiffness=1 / softness, loss_factor=loss, sections=sections)

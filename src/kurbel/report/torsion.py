@@ -6,11 +6,12 @@ from itertools import chain
 
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
+from kurbel.machine.shaft_line import GROUNDED
 from kurbel.notes.warnings import of_machine
 from kurbel.quantity import Quantity, by_id
 from kurbel.report.harmonics import TORQUE_ORDERS, requested_orders
 from kurbel.solver.case import Case
-from kurbel.solver.chapters.chain import holzer_at
+from kurbel.solver.chapters.chain import Holzer, holzer_at, tree_from_first
 from kurbel.solver.chapters.torsion import RUN_UP, Critical, SegmentTorque, ShaftVibration, stress
 from kurbel.tables.frame import Frame, Functions, Places, Row, Subject
 from kurbel.tables.tables import LeftOut
@@ -103,13 +104,13 @@ def _torsion(
         _holzer_table(found, mode or 1, at),
         Places("critical_speeds", "Critical speeds", ("note",), CRITICAL_SPEEDS, rows),
     ]
-    if found.pieces:
+    if found.segments:
         title = f"Torques and stresses at the working speed, all {'' if found.steady else 'these '}orders together"
-        of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.pieces]
+        of_pieces: list[Row] = [((piece.name,), _of_piece(piece)) for piece in found.segments]
         tables.append(Places("pieces", title, ("piece",), PIECES, of_pieces))
     if speeds is not None and not found.obstacle:
         by_speed: list[Row] = [
-            ((found.piece_name(number),), {"speed": speed, **amplitudes})
+            ((found.segment_name(number),), {"speed": speed, **amplitudes})
             for number, piece in enumerate(zip(*_at_speeds(found, speeds)))
             for speed, amplitudes in zip(speeds, piece)
         ]
@@ -124,7 +125,7 @@ def _torsion(
         tables=tables,
         whole=True,
     )
-    pieces = [Subject(one.name, at=one.at) for one in found.pieces] if frame.columns else []
+    pieces = [Subject(one.name, at=one.at) for one in found.segments] if frame.columns else []
     with_torque = ["M_vibratory" in values for _, values in rows]
     notes = _torsion_notes(found, orders is None, any(with_torque) and not all(with_torque))
     return [*pieces, whole], notes
@@ -146,47 +147,82 @@ def _critical_rows(found: ShaftVibration, critical: Sequence[Critical]) -> list[
     return rows
 
 
-def _modes_table(found: ShaftVibration) -> Places:
+def _modes_table(vibration: ShaftVibration) -> Places:
     """Return the natural frequencies, with how many nodes each mode has, and where if they are few."""
     rows: list[Row] = []
-    names, modes = [mass.name for mass in found.line.masses], found.modes
-    for index, omega in enumerate(modes.omegas.tolist()):
-        mode, nodes = found.first + index, "rotation"
-        if mode:
-            between = [
-                f"{names[mass]} + {share:.2f}" if share else names[mass] for mass, share in found.modes.nodes(index)
-            ]
-            where = ["at the ground"] * sum(found.chain.held) + between
-            nodes = f"{len(where)} node{'s' if len(where) > 1 else ''}"
-            nodes += f": {', '.join(where)}" if len(where) <= 2 else ""
+    for index, omega in enumerate(vibration.modes.omegas.tolist()):
+        mode = vibration.first + index
         values = {"mode": float(mode), "frequency": omega / (2 * math.pi), "omega_natural": omega}
-        rows.append(((nodes,), values))
+        rows.append(((_nodes_text(vibration, index) if mode else "rotation",), values))
     return Places("modes", "Natural frequencies", ("nodes",), MODES, rows)
 
 
-def _holzer_table(found: ShaftVibration, mode: int, at: float | None) -> Places:
+def _nodes_text(vibration: ShaftVibration, index: int) -> str:
+    """Return how many nodes a mode has, counted from 0, and where if they are few."""
+    where = ["at the ground"] * len(vibration.chain.fixed_segments)
+    for segment, share in vibration.modes.nodes(index):
+        before = vibration.line.segments[segment].before
+        name = "ground" if before == GROUNDED else vibration.line.masses[before].name
+        if not share:
+            where.append(name)
+        elif vibration.chain.has_branches:
+            where.append(f"{vibration.segment_name(segment)} at {share:.2f}")
+        else:
+            where.append(f"{name} + {share:.2f}")
+    count = f"{len(where)} node{'' if len(where) == 1 else 's'}"
+    return f"{count}: {', '.join(where)}" if 0 < len(where) <= 2 else count
+
+
+def _holzer_table(vibration: ShaftVibration, mode: int, at: float | None) -> Places:
     """Return Holzer's table of a mode, or at a frequency in Hz: each mass with the segment after it.
 
-    At a frequency that is not a natural one the last row has what is left: a torque, or the angle of a fixed end.
+    With branches that is the segment toward the last mass of the line. At a frequency that is not a natural one the
+    last row has what is left: a torque, or the angle of a fixed end.
     """
-    chain, left = found.chain, 0.0
+    chain, left = vibration.chain, 0.0
     if at is None:
-        table, omega = found.holzer(mode), float(found.modes.omegas[mode - found.first])
+        table, omega = vibration.holzer(mode), float(vibration.modes.omegas[mode - vibration.first])
         of = f"of mode {mode}, f = {omega / (2 * math.pi):.6g} Hz"
     else:
         table, omega = holzer_at(chain, 2 * math.pi * at), 2 * math.pi * at
         of, left = f"at f = {at:.6g} Hz", table.residual
-    first, last = chain.held
-    rows: list[tuple[tuple[str], dict[str, float]]] = [
-        ((mass.name,), {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta})
-        for mass, inertia, theta in zip(found.line.masses, chain.inertias.tolist(), table.angles.tolist())
-    ]
-    rows = [(("ground",), {"theta": 0.0})] * first + rows + [(("ground",), {"theta": left})] * last
-    for (_, values), torque, stiffness in zip(rows, table.torques.tolist(), chain.stiffnesses.tolist()):
-        values |= {"torque_sum": torque, "stiffness": stiffness, "twist": torque / stiffness}
-    if at is not None and not last:
+
+    tree = tree_from_first(chain)
+    rows: list[tuple[tuple[str, ...], dict[str, float]]] = []
+    for number, mass in enumerate(vibration.line.masses):
+        for segment in tree.fixed[number]:
+            is_before = chain.joins[segment][0] == GROUNDED
+            of_segment = _holzer_segment(vibration, table, segment, is_before)
+            rows.append((("ground", vibration.segment_name(segment)), {"theta": 0.0} | of_segment))
+        inertia, theta = float(chain.inertias[number]), float(table.angles[number])
+        values = {"inertia": inertia, "theta": theta, "inertia_torque": omega**2 * inertia * theta}
+        link, piece = tree.links[number], ""
+        if link is not None:
+            values |= _holzer_segment(vibration, table, link.segment, link.onward)
+            piece = vibration.segment_name(link.segment)
+        rows.append(((mass.name, piece), values))
+    if tree.root_segment is not None:
+        rows.append((("ground", ""), {"theta": left}))
+    elif at is not None:
         rows[-1][1]["torque_sum"] = left
-    return Places("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", ("mass",), HOLZER, rows)
+
+    labels: tuple[str, ...] = ("mass", "piece")
+    if not chain.has_branches:  # the segment is between the mass of its row and that of the next
+        labels = ("mass",)
+        rows = [(texts[:1], values) for texts, values in rows]
+    return Places("holzer", f"Holzer's table {of}, ω² = {omega**2:.6g} 1/s²", labels, HOLZER, rows)
+
+
+def _holzer_segment(vibration: ShaftVibration, table: Holzer, segment: int, onward: bool) -> dict[str, float]:
+    """Return the values of a segment in Holzer's table; onward: whether the mass of the row is before it."""
+    chain = vibration.chain
+    torque = float(table.torques[segment] if onward else -table.torques_behind[segment])
+    stiffness = float(chain.stiffnesses[segment])
+    if chain.segment_inertias[segment]:
+        twist = float(chain.twists[segment] @ table.angles) * (1 if onward else -1)
+    else:
+        twist = torque / stiffness
+    return {"torque_sum": torque, "stiffness": stiffness, "twist": twist}
 
 
 def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[dict[str, float]]]:
@@ -194,7 +230,7 @@ def _at_speeds(found: ShaftVibration, speeds: Sequence[float]) -> Iterator[list[
     if not speeds:
         return
     vibration = found.forced(speeds)
-    factors = [stress(found.line, piece) for piece in range(len(found.line.pieces))]
+    factors = [stress(found.line, piece) for piece in range(len(found.line.segments))]
     for torques, endless in zip(vibration.vibratory.T.tolist(), vibration.endless):
         yield [
             {} if endless else {"M_vibratory": torque} | ({} if factor is None else {"tau_vibratory": factor * torque})
@@ -210,7 +246,7 @@ def _of_piece(piece: SegmentTorque) -> dict[str, float]:
 
 def torsion_left_out(found: ShaftVibration) -> Iterator[LeftOut]:
     """Yield what torsional vibration leaves out."""
-    bare = [found.piece_name(index) for index, piece in enumerate(found.line.pieces) if not piece.sections]
+    bare = [found.segment_name(index) for index, piece in enumerate(found.line.segments) if not piece.sections]
     if found.obstacle:
         yield LeftOut("forced vibration, torques and stresses", found.obstacle)
     elif bare:
@@ -248,11 +284,13 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
             "Torques and stresses at a critical speed include all orders, when running there; – marks a speed that the "
             f"machine does not reach, beyond {RUN_UP:g} times the working speed, and a mode that is hardly damped."
         )
-    if any(piece.ratio != 1 for piece in line.pieces):
+    if found.chain.segment_inertias.any():
+        yield "Segments have inertia of their own; Σω²JΘ does not add up row by row."
+    if any(piece.ratio != 1 for piece in line.segments):
         yield "Masses and stiffnesses beyond the gear are referred to the cranks' shaft by u²; torques are true ones."
     if not found.machine.cylinders and found.machine.effort:
         yield f"The effort acts on {line.masses[0].name}, the first mass."
-    if found.pieces:
+    if found.segments:
         orders, more = "all orders", ""
         if found.summed is not None:
             names = [f"{order:g}" for order in found.summed]
@@ -260,5 +298,5 @@ def _torsion_notes(found: ShaftVibration, usual: bool, hidden: bool) -> Iterator
             orders = listed if len(names) <= 4 else f"{len(names)} orders from {names[0]} to {names[-1]}"
         if found.remainder is not None:
             more = f" (higher ones add about {show(found.remainder, 'torque', figures=2)} or less)"
-        taker = "what holds it" if found.chain.ground else line.masses[line.load].name
+        taker = "what holds it" if found.chain.is_held else line.masses[line.load].name
         yield f"Forced vibration: {orders} together{more}, about uniform rotation; the mean torque goes to {taker}."

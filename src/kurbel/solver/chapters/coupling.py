@@ -20,7 +20,7 @@ from kurbel.machine.turning import Coupling
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.extreme import Extremes
 from kurbel.quantity import value
-from kurbel.solver.chapters.chain import Chain, ChainEquation
+from kurbel.solver.chapters.chain import Chain, ChainEquation, row_of_joins
 from kurbel.solver.chapters.harmonics import amplitudes
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.speed import SpeedLaw, SpeedLine
@@ -82,7 +82,15 @@ class ElasticCoupling(SpeedLine):
         self._torques = np.stack((effort.true_excess.torque + load, -load))  # on either mass, less the mean
 
         nothing = np.zeros((2, *own.shape))
-        chain = Chain(self._masses, stiffness[None], self._damping[None], nothing, nothing[:1])
+        chain = Chain(
+            inertias=self._masses,
+            stiffnesses=stiffness[None],
+            segment_damping=self._damping[None],
+            mass_damping=nothing,
+            loss=nothing[:1],
+            joins=row_of_joins(2),
+            segment_inertias=nothing[:1],
+        )
         equation = ChainEquation(chain, self._order, effort.omega, pieces, self._torques, law, 1)
         self._found = periodic(equation, equation.pieces)
         pieces, y, failed = self._found.pieces, self._found.samples, self._found.failed

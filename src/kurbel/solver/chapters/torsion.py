@@ -24,15 +24,15 @@ from kurbel.arrays import Array, ComplexArray, Flags
 from kurbel.crank_angle import unit_vector
 from kurbel.errors import UsageError
 from kurbel.machine import Machine
-from kurbel.machine.shaft_line import ShaftLine, ShaftMass, ShaftPiece
+from kurbel.machine.shaft_line import GROUNDED, ShaftLine, ShaftMass, ShaftSegment
 from kurbel.numerics.arithmetic import unless_cancelled
 from kurbel.numerics.collocation import periodic
 from kurbel.numerics.pieces import NOWHERE, Pieces, refined
 from kurbel.quantity import value
-from kurbel.solver.chapters.chain import Chain, ChainEquation, Holzer, Modes, passing, response
+from kurbel.solver.chapters.chain import Chain, ChainEquation, Holzer, Modes, Tree, loss, passing, response
 from kurbel.solver.chapters.harmonics import HIGHEST, amplitudes, every_order
 from kurbel.solver.drive import Drive
-from kurbel.solver.effort import TurningEffort
+from kurbel.solver.effort import Term, TurningEffort
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.speed import SpeedLaw
 from kurbel.solver.state import State, reduced_inertia
@@ -67,13 +67,13 @@ def shaft_line_of(machine: Machine) -> ShaftLine:
         raise UsageError(f"{machine.name}: the mass before the coupling is not known; give 'flywheel' an 'inertia'")
     names = tuple(cylinder.name for cylinder in machine.cylinders)
     cranks = ShaftMass("cranks and flywheel", cylinders=names, flywheel=1.0)
-    piece = ShaftPiece(coupling.stiffness, coupling.damping)
-    return ShaftLine((cranks, ShaftMass("driven", coupling.inertia)), (piece,), load=1)
+    driven = ShaftMass("driven", coupling.inertia)
+    return ShaftLine((cranks, driven), (ShaftSegment(coupling.stiffness, coupling.damping),), load=1)
 
 
 def stress(line: ShaftLine, segment: int) -> float | None:
     """Return the stress in Pa that a torque of 1 N m makes in a segment, where it is thinnest; None if not known."""
-    moduli = [section.modulus for section in line.pieces[segment].sections]
+    moduli = [section.modulus for section in line.segments[segment].sections]
     return 1 / min(moduli) if moduli and math.isfinite(min(moduli)) else None
 
 
@@ -102,35 +102,47 @@ def torques_on(effort: TurningEffort, line: ShaftLine) -> tuple[Array, Array]:
     On the pieces of the effort. Efforts have the losses of the machine, inertia forces none; an effort that is known
     from elsewhere acts on the first mass. Where a load varies over the turn, it is in them but for its mean.
     """
-    whole, inertia = np.zeros((2, len(line.masses), *effort.pieces.degrees.shape))
+    torques, of_inertia = np.zeros((2, len(line.masses), *effort.pieces.degrees.shape))
     terms = [*effort.terms, *effort.missing_inertia]
     moving = [term._replace(factor=1.0) for term in effort.inertia_terms]
-    for place, mass in enumerate(line.masses):
-        for torque, each in ((whole[place], terms), (inertia[place], moving)):
-            here = [[one for one in term.cylinders if one.drive.name in mass.cylinders] for term in each]
-            torque += effort.sampled([term._replace(cylinders=own) for term, own in zip(each, here) if own])
+    for number, mass in enumerate(line.masses):
+        torques[number] = effort.sampled(_terms_of(mass, terms))
+        of_inertia[number] = effort.sampled(_terms_of(mass, moving))
     if effort.given is not None:
-        whole[0] = effort.M
+        torques[0] = effort.M
     if effort.diagram:
-        whole[line.load] -= effort.load - effort.mean
-    return whole, inertia
+        torques[line.load] -= effort.load - effort.mean
+    return torques, of_inertia
+
+
+def _terms_of(mass: ShaftMass, terms: Sequence[Term]) -> list[Term]:
+    """Return the terms of the torque with the cylinders alone whose cranks are at a mass."""
+    of_mass = list[Term]()
+    for term in terms:
+        cylinders = [cylinder for cylinder in term.cylinders if cylinder.drive.name in mass.cylinders]
+        if cylinders:
+            of_mass.append(term._replace(cylinders=cylinders))
+    return of_mass
 
 
 def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitation:
     """Return what acts on the masses of a shaft line, order by order; the load takes the mean of all torques."""
-    whole, inertia = torques_on(effort, line)
-    values = np.concatenate((whole - inertia, inertia))
-    acting, parts = values.any(axis=(1, 2)), np.zeros((len(values), len(orders)), complex)
-    parts[acting] = amplitudes(effort.pieces, values[acting], orders)[..., 0]
-    parts = unless_cancelled(parts, np.abs(values).max(axis=(1, 2))[:, None], _ROUNDING)
+    torques, of_inertia = torques_on(effort, line)
+    count = len(torques)
+    both = np.concatenate((torques - of_inertia, of_inertia))
+    acting = both.any(axis=(1, 2))
+    by_order = np.zeros((2 * count, len(orders)), complex)
+    by_order[acting] = amplitudes(effort.pieces, both[acting], orders)[..., 0]
+    by_order = unless_cancelled(by_order, np.abs(both).max(axis=(1, 2))[:, None], _ROUNDING)
 
-    means, slopes = effort.mean_of(whole)[:, 0], np.zeros(len(whole))
-    if not line.ground:
+    means = effort.mean_of(torques)[:, 0]
+    if not line.is_held:
         means[line.load] -= means.sum()
     omega, law = effort.omega or 0.0, SpeedLaw.of(effort)
+    slopes = np.zeros(count)
     if law:
         slopes[line.load] = law.steepness[0] / omega
-    return Excitation(omega, effort.cycle, orders, parts[: len(whole)], parts[len(whole) :], means, slopes)
+    return Excitation(omega, effort.cycle, orders, by_order[:count], by_order[count:], means, slopes)
 
 
 # forced vibration
@@ -139,9 +151,10 @@ def excitation(effort: TurningEffort, line: ShaftLine, orders: Array) -> Excitat
 class Vibration:
     """The forced vibration of a chain at angular velocities (s,) in rad/s, order by order.
 
-    driving, angles: amplitudes (n, s, k) in N m and in rad of the cranks' shaft; torques (segments, s, k) in N m, true
-    ones on both sides of a gear. endless (s,): where an order meets a mode that next to nothing damps, so that rounding
-    bounds the torques.
+    driving, angles: amplitudes (n, s, k) in N m and in rad of the cranks' shaft. sections: the places along the shaft
+    whose torques are computed, each a segment and a share of its length: the two ends and the middle of a segment that
+    has inertia, else one. torques (sections, s, k) in N m, true ones on both sides of a gear. endless (s,): where an
+    order meets a mode that next to nothing damps, so that rounding bounds the torques.
     """
 
     def __init__(self, chain: Chain, line: ShaftLine, acting: Excitation, omegas: Array) -> None:
@@ -151,21 +164,18 @@ class Vibration:
         # the load takes the same mean torque at every speed, so that its slope goes with 1/ω; (n, s, 1)
         self._load_damping = np.multiply.outer(acting.load_slope, acting.omega / omegas)[..., None]
         self.angles = response(chain, self._frequencies, self.driving, self._load_damping)
-        self.ratios = np.array([piece.ratio for piece in line.pieces])
-        passed = passing(chain, self._frequencies, self.angles)
-        self.torques = passed / self.ratios[:, None, None]
-        largest, driving = (np.abs(one).max(axis=(0, 2)) for one in (passed, self.driving))
+        self.ratios = np.array([segment.ratio for segment in line.segments])
+        self.sections = _sections(line)
+        passed = passing(chain, self._frequencies, self.angles, self.sections)
+        self._segments = np.array([segment for segment, _ in self.sections])
+        self.torques = passed / self.ratios[self._segments][:, None, None]
+        largest, driving = (np.abs(torques).max(axis=(0, 2)) for torques in (passed, self.driving))
         self.endless: Flags = np.isfinite(driving) & ~(largest <= _ENDLESS * driving)
 
     @cached_property
     def means(self) -> Array:
         """Mean torques in the segments in N m."""
-        chain, reached = self.chain, np.append(0.0, np.cumsum(self.acting.means))
-        # a free end has no torque; between two fixed ones the twists add up to nothing
-        free = np.eye(len(reached))[-1 if chain.held[0] else 0]
-        counted = 1 / chain.stiffnesses if all(chain.held) else free
-        reached -= reached @ counted / counted.sum()
-        return reached[chain.around != 0] / self.ratios
+        return mean_torques(self.chain, self.acting.means) / self.ratios
 
     def _turns(self, count: int) -> Pieces:
         """Return the turns of so many machines in equal pieces, on each of which the waves are polynomials."""
@@ -175,30 +185,86 @@ class Vibration:
 
     @cached_property
     def swings(self) -> tuple[Pieces, Array]:
-        """The torques in the segments less their mean in N m over the turn, (segments, s, nodes, pieces)."""
+        """The torques less their mean in N m over the turn, (sections, s, nodes, pieces)."""
         orders, pieces = self.acting.orders, self._turns(1)
         # at a node the waves are those at the beginning of its piece times those of a piece from there on
         inside = unit_vector(np.multiply.outer(pieces.half[0] * (1 + pieces.rule.nodes), orders))
         begin = unit_vector(np.multiply.outer(orders, pieces.low))
         return pieces, ((self.torques[:, :, None] * inside) @ begin).real
 
+    @cached_property
+    def _amplitudes(self) -> Array:
+        """Half peak-to-peak torques in N m, (sections, s)."""
+        torques, turns = self.swings[1], self._turns(self.swings[1].shape[1])
+        amplitudes = np.empty(torques.shape[:2])
+        for section, swing in enumerate(torques):
+            # each speed is searched as a machine of its own; (s, nodes, pieces) -> (1, nodes, s · pieces)
+            row = np.swapaxes(swing, 0, 1).reshape(1, swing.shape[1], -1)
+            ends = turns.extremes(row)
+            amplitudes[section] = (ends.largest[0] - ends.smallest[0]) / 2
+        return np.where(np.isfinite(self.torques).all(axis=2), amplitudes, math.nan)
+
     @property
     def vibratory(self) -> Array:
-        """Half peak-to-peak torques in the segments in N m, (segments, s)."""
-        torques, turns = self.swings[1], self._turns(self.swings[1].shape[1])
-        # each speed is searched as a machine of its own; (s, nodes, pieces) -> (1, nodes, s · pieces)
-        rows = (np.swapaxes(one, 0, 1).reshape(1, one.shape[1], -1) for one in torques)
-        half = [(ends.largest[0] - ends.smallest[0]) / 2 for ends in map(turns.extremes, rows)]
-        return np.where(np.isfinite(self.torques).all(axis=2), half, math.nan)
+        """Half peak-to-peak torques in the segments in N m, where each is largest, (segments, s)."""
+        largest = np.zeros((len(self.ratios), len(self.omegas)))
+        np.maximum.at(largest, self._segments, self._amplitudes)
+        return largest
+
+    @property
+    def decisive(self) -> list[int]:
+        """Of each segment the section whose torque swings most at the first speed."""
+        amplitudes = np.nan_to_num(self._amplitudes[:, 0])
+        decisive = list[int]()
+        for segment in range(len(self.ratios)):
+            sections = np.flatnonzero(self._segments == segment)
+            decisive.append(int(sections[amplitudes[sections].argmax()]))
+        return decisive
 
     @property
     def loss(self) -> Array:
         """Mean power in W lost in dampers, in the material, and in a load that rises with the speed, (s,)."""
-        chain, speeds = self.chain, np.abs(self._frequencies * self.angles) ** 2
-        twists = np.abs(np.tensordot(chain.twists, self.angles, 1)) ** 2
-        of_masses = ((chain.mass_damping[:, None, None] + self._load_damping) * speeds).sum(axis=(0, 2))
-        of_segments = (chain.springs(self._frequencies).imag * self._frequencies * twists).sum(axis=(0, 2))
-        return (of_masses + of_segments) / 2
+        speeds = np.abs(self._frequencies * self.angles) ** 2
+        damping = self.chain.mass_damping[:, None, None] + self._load_damping
+        of_masses = (damping * speeds).sum(axis=(0, 2)) / 2
+        return of_masses + loss(self.chain, self._frequencies, self.angles).sum(axis=(0, 2))
+
+
+def _sections(line: ShaftLine) -> list[tuple[int, float]]:
+    """Return the sections of a line whose torques are computed: of each its segment and the share before it."""
+    sections = list[tuple[int, float]]()
+    for segment, of_shaft in enumerate(line.segments):
+        shares = (0.0, 0.5, 1.0) if of_shaft.inertia else (0.0,)
+        sections += [(segment, share) for share in shares]
+    return sections
+
+
+def mean_torques(chain: Chain, means: Array) -> Array:
+    """Return the mean torques in N m that the segments carry, (segments,), of mean torques on the masses (n,)."""
+    torques = np.zeros(len(chain.joins))
+    fixed = chain.fixed_segments
+    tree = Tree(chain, fixed[-1] if fixed else None)
+    # with one fixed end, or none, each segment carries what acts beyond it
+    beyond = means.astype(float)
+    for mass in tree.leaves_first:
+        link = tree.links[mass]
+        if link is None:
+            continue
+        torques[link.segment] = beyond[mass] if link.onward else -beyond[mass]
+        if link.parent != GROUNDED:
+            beyond[link.parent] += beyond[mass]
+    if len(fixed) < 2:
+        return torques
+
+    # what flows from each other fixed end to that of the root is such that the twists on its way add up to nothing
+    ways = np.zeros((len(fixed) - 1, len(torques)))
+    for way, segment in zip(ways, fixed):
+        way[segment] = 1.0 if chain.joins[segment][0] == GROUNDED else -1.0
+        for _, link in tree.path_to_root(max(chain.joins[segment])):
+            assert link is not None
+            way[link.segment] = 1.0 if link.onward else -1.0
+    stiffness = ways / chain.stiffnesses @ ways.T
+    return torques - ways.T @ np.linalg.solve(stiffness, ways @ (torques / chain.stiffnesses))
 
 
 def _mean_inertia(drive: Drive) -> float:
@@ -257,13 +323,13 @@ class SegmentState(AtAngles):
         "M_w",
         "torque",
         "Torque in the shaft segment, mean and vibratory",
-        lambda one: one.segment and one.segment.torque_at(one.phi),
+        lambda columns: columns.segment and columns.segment.torque_at(columns.phi),
     )
     tau = value(
         "τ",
         "stress",
         "Torsional stress at the smallest section of the segment",
-        lambda one: one.segment and one.segment.stress_of(one.M_shaft),
+        lambda columns: columns.segment and columns.segment.stress_of(columns.M_shaft),
     )
 
     def __init__(self, segment: SegmentTorque | None, phi: Array) -> None:
@@ -306,13 +372,13 @@ class ShaftVibration(Results):
         "f_1",
         "frequency",
         "Lowest natural frequency of torsional vibration",
-        lambda one: float(one.modes.omegas[1 - one.first]) / (2 * math.pi),  # the rotation of the whole is none
+        lambda vibration: float(vibration.modes.omegas[1 - vibration.first]) / (2 * math.pi),  # no mode of rotation
     )
     holzer_residual = value(
         "ΣωJΘ",
         "ratio",
         "Residual torque of the Holzer table, relative to the largest torque",
-        lambda one: max(one.modes.holzer(index).residual for index in range(len(one.modes.omegas))),
+        lambda vibration: max(table.residual for table in map(vibration.modes.holzer, vibration.mode_numbers)),
         plain="sum w2 J Theta",
         residual=True,
     )
@@ -320,57 +386,69 @@ class ShaftVibration(Results):
         "N_d",
         "power",
         "Mean power dissipated by damping",
-        lambda one: None if one.vibration is None else float(one.vibration.loss[0]),
+        lambda vibration: None if vibration.vibration is None else float(vibration.vibration.loss[0]),
         after="tau_vibratory",
     )
     M_vibratory = value(
         "M_w,a",
         "torque",
         "Largest vibratory torque amplitude (half peak-to-peak) of any shaft segment",
-        lambda one: max((piece.M_vibratory for piece in one.pieces), default=None),
+        lambda vibration: max((segment.M_vibratory for segment in vibration.segments), default=None),
     )
     tau_vibratory = value(
         "τ_a",
         "stress",
         "Largest vibratory stress amplitude of any shaft segment",
-        lambda one: max((piece.tau_vibratory for piece in one.pieces if piece.tau_vibratory is not None), default=None),
+        lambda vibration: vibration.largest_stress(),
     )
 
     def __init__(self, effort: TurningEffort, orders: Array | None = None) -> None:
         self.effort, self.machine, self.line = effort, effort.machine, shaft_line_of(effort.machine)
         self._every = orders is None
         self.orders = every_order(effort.cycle) if orders is None else orders
-        wheel, drives = self.machine.flywheel, [one.drive for one in effort.cylinders]
-        inertias = []
-        for mass in self.line.masses:
-            moving = [_mean_inertia(one) for one in drives if one.name in mass.cylinders and one.cylinder.masses]
-            inertias.append(math.fsum((mass.inertia, mass.flywheel * ((wheel and wheel.inertia) or 0.0), *moving)))
-            if not inertias[-1] > 0:
-                raise UsageError(
-                    f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'"
-                )
-        self.chain = Chain.of(self.line, inertias)
+        self.chain = Chain.of(self.line, [self._inertia_of(mass) for mass in self.line.masses])
         self.modes = Modes(self.chain)
-        self.first = 1 if self.chain.ground else 0
+        self.first = 1 if self.chain.is_held else 0
         self.last = self.first + len(self.modes.omegas) - 1
 
-        if not self.machine.speed:
-            self._unexcited = "no speed given" if self.machine.speed is None else "not defined at rest"
+        if self.machine.speed is None:
+            self._unexcited = "no speed given"
+        elif not self.machine.speed:
+            self._unexcited = "not defined at rest"
+        elif not effort.groups and (not self.machine.effort or effort.swing is not None):
+            self._unexcited = "no torque acts: no effort and no cylinder with a force is given"
         else:
-            known = effort.groups or (self.machine.effort and effort.swing is None)
-            self._unexcited = "" if known else "no torque acts: no effort and no cylinder with a force is given"
-        damped = self.chain.segment_damping.any() or self.chain.mass_damping.any() or self.chain.loss.any()
-        undamped = "" if damped else "no damping given; at resonance nothing but damping bounds a vibration"
+            self._unexcited = ""
+        is_damped = self.chain.segment_damping.any() or self.chain.mass_damping.any() or self.chain.loss.any()
+        undamped = "" if is_damped else "no damping given; at resonance nothing but damping bounds a vibration"
         self.obstacle = self._unexcited or undamped
+
+    def _inertia_of(self, mass: ShaftMass) -> float:
+        """Return the inertia of a mass in kg m² with the flywheel and the cylinders there; none of a joint."""
+        wheel = self.machine.flywheel
+        of_wheel = (wheel and wheel.inertia) or 0.0
+        drives = [cylinder.drive for cylinder in self.effort.cylinders if cylinder.drive.name in mass.cylinders]
+        moving = [_mean_inertia(drive) for drive in drives if drive.cylinder.masses]
+        inertia = math.fsum((mass.inertia, mass.flywheel * of_wheel, *moving))
+        if not (inertia > 0 or mass.is_joint):
+            raise UsageError(f"{mass.name} has no inertia in the shaft line; give its item 'inertia', or it 'masses'")
+        return inertia
 
     def _columns(self, phi: Array, within: Array) -> SegmentState:
         return SegmentState(None, phi)
 
-    def piece_name(self, segment: int) -> str:
+    def segment_name(self, segment: int) -> str:
         """Return what a segment is between."""
-        names = [mass.name for mass in self.line.masses]
-        ends = [*(["ground"] if self.chain.held[0] else []), *names, "ground"]
-        return f"{ends[segment]} – {ends[segment + 1]}"
+        ends = [
+            "ground" if mass == GROUNDED else self.line.masses[mass].name
+            for mass in (self.line.segments[segment].before, self.line.segments[segment].behind)
+        ]
+        return " – ".join(ends)
+
+    @property
+    def mode_numbers(self) -> range:
+        """The modes, counted from 0 even of a line that is held."""
+        return range(len(self.modes.omegas))
 
     def holzer(self, mode: int) -> Holzer:
         """Return Holzer's table of a mode by its number. Raises UsageError where there is none."""
@@ -386,11 +464,11 @@ class ShaftVibration(Results):
         The phase sum is |Σ Θ e^{−iνβ}| over the cranks; of an effort without cranks the amplitude where it acts. The
         share is that of |Σ M_ν Θ|, of the torques at the working speed; of torques that are not known of the phase sum.
         """
-        found, working = [], self.machine.speed
+        critical, working = list[Critical](), self.machine.speed
         for mode in range(1, min(modes, self.last) + 1):
             angles, omega = self.holzer(mode).angles, float(self.modes.omegas[mode - self.first])
-            at = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
-            cranks = [(at[one.name], one.crank_position) for one in self.machine.cylinders]
+            at_cranks = {name: float(angles[i]) for i, mass in enumerate(self.line.masses) for name in mass.cylinders}
+            cranks = [(at_cranks[cylinder.name], cylinder.crank_position) for cylinder in self.machine.cylinders]
             amplitudes, positions = np.array(cranks or [(float(angles[0]), 0.0)]).T
             sums = np.abs(unit_vector(np.outer(self.orders, positions)) @ amplitudes)
             sums = np.where(sums > _PRESENT * np.abs(amplitudes).sum(), sums, 0.0)
@@ -401,8 +479,8 @@ class ShaftVibration(Results):
                 speed = omega / (2 * math.pi * order)
                 distance = speed / working - 1 if working else None
                 if order <= highest:
-                    found.append(Critical(order, mode, speed, total, distance, share))
-        return tuple(found)
+                    critical.append(Critical(order, mode, speed, total, distance, share))
+        return tuple(critical)
 
     def met(self, critical: Critical) -> bool:
         """Whether the machine meets a critical speed on its way to the working speed, or a little beyond."""
@@ -428,28 +506,34 @@ class ShaftVibration(Results):
     def steady(self) -> tuple[Pieces, Array] | None:
         """The motion at the working speed with all orders: torques in the segments less their means, in N m.
 
-        (segments, nodes, pieces). None where certain orders are requested, where a
-        loss factor is given, and where no motion is found, or none that is worth its time.
+        (segments, nodes, pieces). None where certain orders are requested, where a loss factor or a segment with
+        inertia is given, and where no motion is found, or none that is worth its time.
         """
-        # the springs of a chain between two fixed ends are more unknowns than equations
-        if self.vibration is None or not self._every or self.chain.loss.any() or self.chain.ground == "both":
+        chain, effort = self.chain, self.effort
+        if self.vibration is None or not self._every or chain.loss.any() or chain.segment_inertias.any():
             return None
-        effort, loaded = self.effort, self.line.load % len(self.line.masses)
-        order, (driven, _) = self.modes.omegas[-1] / effort.omega, torques_on(effort, self.line)
+        # the springs of a chain between several fixed ends are more unknowns than equations
+        if len(chain.fixed_segments) > 1:
+            return None
+        order, loaded = self.modes.omegas[-1] / effort.omega, self.line.load % len(self.line.masses)
+        driven, _ = torques_on(effort, self.line)
         driven -= effort.pieces.mean(driven)[:, None]
-        equation = ChainEquation(self.chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded)
+        equation = ChainEquation(chain, order, effort.omega, effort.pieces, driven, SpeedLaw.of(effort), loaded)
         if max(len(equation.pieces.half), _FEWEST) * equation.unknowns**3 > _MOST_WORK:
             return None
-        found = periodic(equation, equation.pieces)
-        if found.failed[0]:
+        motion = periodic(equation, equation.pieces)
+        if motion.failed[0]:
             return None
-        return found.pieces, equation.torques(found.samples, found.pieces) / self.vibration.ratios[:, None, None]
+        torques = equation.torques(motion.samples, motion.pieces)
+        return motion.pieces, torques / self.vibration.ratios[:, None, None]
 
     @cached_property
     def _summed(self) -> Vibration | None:
         """The orders that are summed at the working speed, four times the usual ones; None where `steady` has all."""
-        if self.steady or self.vibration is None or not self._every:
-            return None if self.steady else self.vibration
+        if self.steady or self.vibration is None:
+            return None
+        if not self._every:
+            return self.vibration
         acting = excitation(self.effort, self.line, every_order(self.effort.cycle, 4 * HIGHEST))
         return Vibration(self.chain, self.line, acting, self.vibration.omegas)
 
@@ -471,18 +555,35 @@ class ShaftVibration(Results):
         return float(np.abs(self._summed.torques[:, 0, orders > orders[-1] / 2]).sum(axis=1).max())
 
     @cached_property
-    def pieces(self) -> tuple[SegmentTorque, ...]:
+    def segments(self) -> tuple[SegmentTorque, ...]:
         """The torque in every segment at the working speed; none where no forced vibration can be computed."""
         if self.vibration is None:
             return ()
         if self._summed:
-            pieces, torques = self._summed.swings[0], self._summed.swings[1][:, 0]
+            pieces, swings = self._summed.swings
+            torques = swings[self._summed.decisive, 0]
         else:
             assert self.steady
             pieces, torques = self.steady
-        found, ends, known = [], pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
-        highs, lows = (np.where(known, one[:, 0], math.nan).tolist() for one in (ends.largest, ends.smallest))
-        for segment, (mean, high, low, swing) in enumerate(zip(self.vibration.means.tolist(), highs, lows, torques)):
-            factor = stress(self.line, segment)
-            found.append(SegmentTorque(self.piece_name(segment), mean, mean + high, mean + low, pieces, swing, factor))
-        return tuple(found)
+        ends, are_finite = pieces.extremes(torques), np.isfinite(torques).all(axis=(1, 2))
+        highest = np.where(are_finite, ends.largest[:, 0], math.nan).tolist()
+        lowest = np.where(are_finite, ends.smallest[:, 0], math.nan).tolist()
+        segments = list[SegmentTorque]()
+        for segment, mean in enumerate(self.vibration.means.tolist()):
+            segments.append(
+                SegmentTorque(
+                    name=self.segment_name(segment),
+                    M_shaft_mean=mean,
+                    M_shaft_max=mean + highest[segment],
+                    M_shaft_min=mean + lowest[segment],
+                    pieces=pieces,
+                    swing=torques[segment],
+                    factor=stress(self.line, segment),
+                )
+            )
+        return tuple(segments)
+
+    def largest_stress(self) -> float | None:
+        """Return the largest vibratory stress of any segment in Pa, None if no section is known."""
+        stresses = [segment.tau_vibratory for segment in self.segments]
+        return max((stress for stress in stresses if stress is not None), default=None)
