@@ -15,7 +15,7 @@ from command import answer, printed, run
 from kurbel.machine_file import load
 from kurbel.render import Look
 from kurbel.render.page import selection
-from kurbel.render.text import plain
+from kurbel.render.text import plain_lines
 from kurbel.report.commands import COMMANDS, report_of
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame
@@ -46,7 +46,7 @@ def forces_of(path: Path) -> Report:
 
 def screen_of(report: Report, width: int) -> list[str]:
     first = first_selection(report, COMMANDS["forces"].first.split(), (width - 14) // 8, rows=4)
-    return list(plain(selection(first, Look(width=width))))
+    return list(plain_lines(selection(first, Look(width=width))))
 
 
 # the first selection
@@ -55,7 +55,9 @@ def screen_of(report: Report, width: int) -> list[str]:
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_what_the_user_named_is_on_the_first_screen(path: Path) -> None:
     report = forces_of(path)
-    symbols = [one.symbol for one in report.parts[0].key_values if one.id in NAMED]
+    symbols = [
+        key_value.symbol for key_value in report.parts[0].key_values if key_value.id in NAMED
+    ]
     for width in (80, 100):
         begun = [line.split()[0] for line in screen_of(report, width)[:24] if line.startswith("  ")]
         assert set(symbols) <= set(begun)
@@ -74,7 +76,12 @@ def test_the_first_selection_of_the_waterworks_engine_has_at_most_26_lines() -> 
 def test_the_first_page_of_the_report_has_the_same_figures() -> None:
     page = run("report", WATERWORKS, "-o", "-").stdout
     tiles = page[page.index('class="facts"') : page.index("</div>", page.index('class="facts"'))]
-    for title in ("Largest acceleration", "Highest piston speed", "Friction power", "Friction loss"):
+    for title in (
+        "Largest acceleration",
+        "Highest piston speed",
+        "Friction power",
+        "Friction loss",
+    ):
         assert f"<small>{title}</small>" in tiles
 
 
@@ -96,8 +103,12 @@ def test_the_three_losses_of_the_locomotive_after_redtenbacher() -> None:
     assert all(f"  {symbol} " in compared for symbol in ("½ λ f", "e_ln", "e_β"))
 
 
-@pytest.mark.parametrize("name", ["waterworks", "diesel-four-stroke", "scotch-yoke-pump", "compressor"])
-def test_the_power_of_friction_is_the_mean_of_its_column_and_the_work_times_cycles_per_second(name: str) -> None:
+@pytest.mark.parametrize(
+    "name", ["waterworks", "diesel-four-stroke", "scotch-yoke-pump", "compressor"]
+)
+def test_the_power_of_friction_is_the_mean_of_its_column_and_the_work_times_cycles_per_second(
+    name: str,
+) -> None:
     case = Case(load(str(CONFIGS / f"{name}.yaml")))
     (forces,) = case.cylinders
     cycle = 360.0 * forces.drive.revolutions
@@ -112,12 +123,30 @@ def test_the_power_of_friction_is_the_mean_of_its_column_and_the_work_times_cycl
 
 
 def test_the_new_key_values_in_sweeps_limits_and_conditions() -> None:
-    swept = printed("sweep", LOCOMOTIVE, "--vary", "speed=100,200 rpm", "--columns", "friction_power", "-f", "csv")
+    swept = printed(
+        "sweep",
+        LOCOMOTIVE,
+        "--vary",
+        "speed=100,200 rpm",
+        "--columns",
+        "friction_power",
+        "-f",
+        "csv",
+    )
     first, second = (float(row["friction_power_W"]) for row in csv.DictReader(StringIO(swept)))
     assert second == pytest.approx(2 * first)
     checked = run("check", LOCOMOTIVE, "--set", "limits.friction_power=1 kW")
     assert (checked.exit_code, "friction_power" in checked.stdout) == (1, True)
-    rows = printed("forces", LOCOMOTIVE, "--where", "friction_power = 3 kW", "--columns", "friction_power", "-f", "csv")
+    rows = printed(
+        "forces",
+        LOCOMOTIVE,
+        "--where",
+        "friction_power = 3 kW",
+        "--columns",
+        "friction_power",
+        "-f",
+        "csv",
+    )
     values = [float(row["friction_power_W"]) for row in csv.DictReader(StringIO(rows))]
     assert values == pytest.approx([3000.0] * 4)
 
@@ -132,7 +161,9 @@ def test_T_is_the_torque_over_the_crank_with_friction_in_pins_and_journals() -> 
     assert columns["M"] == pytest.approx(columns["T"] * 0.1)
     assert values["W"] == pytest.approx(-11596.24, abs=0.005)
     assert values["T_min"] == pytest.approx(-35723.0, abs=0.5)
-    whole = {one["id"]: one["value"] for one in answer("flywheel", "-", text=PUMP)["machine_key_values"]}
+    whole = {
+        one["id"]: one["value"] for one in answer("flywheel", "-", text=PUMP)["machine_key_values"]
+    }
     assert (whole["T_min"], whole["W"]) == pytest.approx((values["T_min"], values["W"]), rel=1e-12)
     # the force at the pin alone, R 303, with the friction that the rod passes on to the guide
     assert columns["T_pin"][180 * 2] == pytest.approx(393, abs=1)
@@ -144,7 +175,13 @@ def test_T_is_the_torque_over_the_crank_with_friction_in_pins_and_journals() -> 
 def test_an_extreme_before_a_jump_says_so() -> None:
     (cylinder,) = answer("forces", WATERWORKS)["cylinders"]
     sides = {one["id"]: one.get("side", "") for one in cylinder["key_values"]}
-    assert {id for id, side in sides.items() if side} == {"P_max", "P_min", "P_peak", "P_start_max", "P_start_min"}
+    assert {id for id, side in sides.items() if side} == {
+        "P_max",
+        "P_min",
+        "P_peak",
+        "P_start_max",
+        "P_start_min",
+    }
     text = printed("forces", WATERWORKS)
     assert "at 360°−" in text
     assert "− after an angle: just before the jump there." in text
@@ -172,19 +209,25 @@ GAS_ALONE = """
 def test_rows_that_repeat_others_or_are_zero_are_for_programs() -> None:
     """An infinite rod without masses: P = P_gas = S = P_0, N = 0, and the largest magnitude is that of max or min."""
     page = rows_of(printed("forces", "-", text=GAS_ALONE))
-    assert page.isdisjoint({"P_gas", "S", "N", "M", "N_max", "S_max", "P_0,max", "P_peak", "T_peak", "A_C", "φ_i"})
+    assert page.isdisjoint(
+        {"P_gas", "S", "N", "M", "N_max", "S_max", "P_0,max", "P_peak", "T_peak", "A_C", "φ_i"}
+    )
     assert {"P", "T", "P_max", "T_max", "T_min"} <= page
     head, *_ = printed("forces", "-", "-f", "csv", text=GAS_ALONE).splitlines()
     assert {"P_gas_N", "P_N", "S_N", "N_N", "M_Nm"} <= set(head.split(","))
     (cylinder,) = answer("forces", "-", text=GAS_ALONE)["cylinders"]
     ids = {one["id"] for one in cylinder["key_values"]}
     assert {"P_peak", "T_peak", "N_max", "S_max", "P_start_max", "A_crank", "phi_idc"} <= ids
-    assert {"P_gas", "N", "M"} <= rows_of(printed("forces", "-", "--columns", "P_gas,N,M", text=GAS_ALONE))
+    assert {"P_gas", "N", "M"} <= rows_of(
+        printed("forces", "-", "--columns", "P_gas,N,M", text=GAS_ALONE)
+    )
     assert "P_peak" in rows_of(printed("forces", "-", "--key-values", "P_peak", text=GAS_ALONE))
 
 
 def test_the_weight_of_a_horizontal_engine_is_no_row() -> None:
-    with_masses = GAS_ALONE.replace("bore", "inclination: 0 deg, masses: {reciprocating: 10 kg}, bore")
+    with_masses = GAS_ALONE.replace(
+        "bore", "inclination: 0 deg, masses: {reciprocating: 10 kg}, bore"
+    )
     assert "P_w" not in rows_of(printed("forces", "-", text=with_masses))
     upright = with_masses.replace("0 deg", "90 deg")
     assert "P_w" in rows_of(printed("forces", "-", text=upright))

@@ -7,10 +7,10 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Seq
 from itertools import groupby
 from typing import NamedTuple, TypeVar, Union
 
-from kurbel.declared.reading import shown
+from kurbel.declared.reading import text_in_one_line
 from kurbel.errors import NoSolutionError, UsageError
 
-Value = Union[float, int, None]
+CellValue = Union[float, int, None]
 
 
 class Column(NamedTuple):
@@ -28,7 +28,7 @@ class Column(NamedTuple):
     symbol: str
     ascii_symbol: str
     unit: str
-    values: Sequence[Value]
+    values: Sequence[CellValue]
     text: str = ""
     decimals: int | None = None
     marked: tuple[int, ...] = ()
@@ -49,7 +49,7 @@ class KeyValue(NamedTuple):
     symbol: str
     ascii_symbol: str
     unit: str
-    value: Value | tuple[float, ...]
+    value: CellValue | tuple[float, ...]
     text: str
     at_deg: float | None = None
     noise: bool = False
@@ -149,7 +149,9 @@ class Report(NamedTuple):
     @property
     def printed_tables(self) -> Iterator[PlaceTable]:
         """The tables of places that are printed for people."""
-        return (table for part in self.all_parts for table in part.place_tables if not table.in_note)
+        return (
+            table for part in self.all_parts for table in part.place_tables if not table.in_note
+        )
 
     def of_cylinder(self, name: str) -> "Report":
         """Return the results of one part, or of all parts of a cylinder, given by name or number.
@@ -162,7 +164,7 @@ class Report(NamedTuple):
         if not found:
             there = ", ".join(str(part.name) for part in self.parts) or "the whole machine only"
             raise UsageError(
-                f"--cylinder: kurbel {self.command} has no results of '{shown(name)}'; it has those of {there}"
+                f"--cylinder: kurbel {self.command} has no results of '{text_in_one_line(name)}'; it has those of {there}"
             )
         if nowhere := found[0].nowhere:
             raise NoSolutionError(nowhere)
@@ -171,7 +173,9 @@ class Report(NamedTuple):
 
     def changed(self, change: Callable[[Part], Part]) -> "Report":
         """Return the report with another part in place of each."""
-        return self._replace(parts=tuple(map(change, self.parts)), whole=self.whole and change(self.whole))
+        return self._replace(
+            parts=tuple(map(change, self.parts)), whole=self.whole and change(self.whole)
+        )
 
     def key_values_alone(self) -> "Report":
         """Return the report without its tables."""
@@ -187,8 +191,8 @@ def cylinder_meant(name: str, cylinders: Sequence[str]) -> str:
     if numbered.get(name, name) != name and name in cylinders:
         own = cylinders.index(name) + 1
         raise UsageError(
-            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{shown(numbered[name])}'; "
-            f"write '{own}' or '{shown(numbered[name])}'"
+            f"--cylinder: '{name}' is the name of cylinder {own} and the number of '{text_in_one_line(numbered[name])}'; "
+            f"write '{own}' or '{text_in_one_line(numbered[name])}'"
         )
     return numbered.get(name, name)
 
@@ -226,7 +230,9 @@ def check_rows(angles: float, parts: int) -> None:
         )
 
 
-def crank_angles(step: float, angles: Sequence[float] | None, end: float, parts: int) -> Sequence[float]:
+def table_angles(
+    step: float, angles: Sequence[float] | None, end: float, parts: int
+) -> Sequence[float]:
     """Return the given angles, or 0, step, 2 step, … `end` in degrees; parts: see `check_rows`."""
     if angles is None:
         return stepped(step, end, parts)
@@ -243,7 +249,12 @@ _JUMPS = "− after an angle: just before the jump there."
 
 def notes_for_people(report: Report) -> tuple[str, ...]:
     """Return the notes of a report, with that on extremes before a jump where it has any."""
-    sides = {key_value.side for part in report.all_parts for key_value in part.key_values if not key_value.minor}
+    sides = {
+        key_value.side
+        for part in report.all_parts
+        for key_value in part.key_values
+        if not key_value.minor
+    }
     jumps = (_JUMPS,) if BEFORE in sides else ()
     return tuple(note for note in (report.mirrored, *report.notes, *jumps) if note)
 
@@ -265,10 +276,15 @@ def together(names: Sequence[str]) -> str:
         text = group[0]
         if len(group) > 1:
             # runs of numbers from the first to the last
-            numbers = [int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))]
+            numbers = [
+                int(found.group(2)) for name in group if (found := _NUMBERED.fullmatch(name))
+            ]
             runs = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
             spans = [[number for _, number in run] for _, run in runs]
-            listed = (f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span)) for span in spans)
+            listed = (
+                f"{span[0]}–{span[-1]}" if len(span) > 2 else ", ".join(map(str, span))
+                for span in spans
+            )
             stem = _NUMBERED.sub(r"\1", text).replace("cylinder ", "cylinders ")
             text = f"{stem}{', '.join(listed)}"
         texts.append(text)
@@ -297,7 +313,11 @@ def for_people(report: Report) -> Report:
         return part._replace(columns=columns, key_values=key_values, place_tables=tables)
 
     def named(table: PlaceTable, part: Part) -> PlaceTable:
-        return table._replace(title=f"{table.title}: {part.name}") if titles.count(table.title) > 1 else table
+        return (
+            table._replace(title=f"{table.title}: {part.name}")
+            if titles.count(table.title) > 1
+            else table
+        )
 
     report = shown_once(report)
     titles = [table.title for table in report.printed_tables]
@@ -317,9 +337,9 @@ def shown_once(report: Report) -> Report:
     def content(part: Part) -> Hashable:
         if bearings:
             return equal_loads(str(part.name), part.of, part.key_values), part.left_out
-        columns = [part.columns, *(one.columns for one in part.place_tables)]
+        columns = [part.columns, *(place_table.columns for place_table in part.place_tables)]
         curves = [(one.id, one.unit, _nine_digits(one.values)) for some in columns for one in some]
-        titles = [(one.title, one.names) for one in part.place_tables]
+        titles = [(place_table.title, place_table.names) for place_table in part.place_tables]
         return *curves, _figures(part.key_values), part.left_out, *titles
 
     groups = grouped(report.parts, content)
@@ -328,8 +348,14 @@ def shown_once(report: Report) -> Report:
     parts = []
     for group in groups:
         warnings = tuple(dict.fromkeys(warning for part in group for warning in part.warnings))
-        parts.append(group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings))
-    title = f"{report.title}: {parts[0].name}" if len(parts) == 1 and report.whole is None else report.title
+        parts.append(
+            group[0]._replace(name=together([str(part.name) for part in group]), warnings=warnings)
+        )
+    title = (
+        f"{report.title}: {parts[0].name}"
+        if len(parts) == 1 and report.whole is None
+        else report.title
+    )
     notes = (*report.notes, _SHIFTED) if bearings else report.notes
     return report._replace(parts=tuple(parts), title=title, notes=notes)
 
@@ -360,29 +386,43 @@ def first_selection(report: Report, ids: Sequence[str], across: int, rows: int) 
         printed = [column for column in part.columns if not column.minor]
         # of an id that both a column and a key value have the key value is meant
         values = {key_value.id for key_value in part.key_values}
-        columns = [one for one in printed if not ids or one.id in set(ids) - values or one is printed[0]]
+        columns = [
+            one for one in printed if not ids or one.id in set(ids) - values or one is printed[0]
+        ]
         last = len(columns[0].values) - 1 if len(columns) > 1 else 0
         by = next((k for k in range(1, last) if last % k == 0 and last // k < across), 1)
-        tables = [one for one in part.place_tables if (one.id in ids if ids else not of_whole or part is report.whole)]
+        tables = [
+            place_table
+            for place_table in part.place_tables
+            if (place_table.id in ids if ids else not of_whole or part is report.whole)
+        ]
         return part._replace(
-            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns) if last else (),
+            columns=tuple(one._replace(values=one.values[::by], marked=()) for one in columns)
+            if last
+            else (),
             key_values=_first_key_values(part.key_values, order),
             place_tables=tuple(
-                one._replace(
-                    names=one.names[:rows],
-                    columns=tuple(each._replace(values=each.values[:rows]) for each in one.columns),
+                table._replace(
+                    names=table.names[:rows],
+                    columns=tuple(
+                        each._replace(values=each.values[:rows]) for each in table.columns
+                    ),
                 )
-                for one in tables
+                for table in tables
             ),
             left_out=(),
         )
 
-    way_on = f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
+    way_on = (
+        f"First selection. All columns, angles and key values: kurbel {report.command} FILE --all"
+    )
     selected = report.changed(chosen)._replace(notes=left_out, head=(*report.head, way_on))
     return selected._replace(notes=tuple(filter(None, [" ".join(notes_for_people(selected))])))
 
 
-def _first_key_values(key_values: Sequence[KeyValue], order: Mapping[str, int]) -> tuple[KeyValue, ...]:
+def _first_key_values(
+    key_values: Sequence[KeyValue], order: Mapping[str, int]
+) -> tuple[KeyValue, ...]:
     """Return the key values that have a place in an order, in it; without any order those that people are shown."""
     shown = [key_value for key_value in key_values if not key_value.minor]
     if not order:
@@ -391,9 +431,7 @@ def _first_key_values(key_values: Sequence[KeyValue], order: Mapping[str, int]) 
     return tuple(sorted(chosen, key=lambda key_value: order[key_value.id]))
 
 
-_SHIFTED = (
-    "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."
-)
+_SHIFTED = "Pins and bearings named together carry equal loads, each at its own crank angles; those of the first are shown."
 
 
 def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
@@ -403,14 +441,18 @@ def equal_loads(name: str, of: str, key_values: Iterable[KeyValue]) -> Hashable:
 
 def _figures(key_values: Iterable[KeyValue]) -> Hashable:
     """Return the key values without their crank angles, to nine digits of the largest one of the same unit."""
-    given, by_unit = tuple(key_values), dict[str, list[Value]]()
+    given, by_unit = tuple(key_values), dict[str, list[CellValue]]()
     for one in given:
         if not one.noise:
-            by_unit.setdefault(one.unit, []).extend(one.value if isinstance(one.value, tuple) else (one.value,))
-    return *(one.id for one in given), *((unit, _nine_digits(values)) for unit, values in by_unit.items())
+            by_unit.setdefault(one.unit, []).extend(
+                one.value if isinstance(one.value, tuple) else (one.value,)
+            )
+    return *(one.id for one in given), *(
+        (unit, _nine_digits(values)) for unit, values in by_unit.items()
+    )
 
 
-def _nine_digits(values: Sequence[Value]) -> Hashable:
+def _nine_digits(values: Sequence[CellValue]) -> Hashable:
     """Return the largest of these values, and a hash of all relative to it, both rounded to nine digits."""
     largest = max((abs(value) for value in values if value is not None), default=0.0) or 1.0
     relative = tuple(None if value is None else round(value / largest, 9) for value in values)

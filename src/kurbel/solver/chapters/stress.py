@@ -40,7 +40,7 @@ from kurbel.machine.crankshaft import Crankshaft
 from kurbel.numerics.arithmetic import every, magnitude, some, where
 from kurbel.numerics.extreme import Extreme, Extremes, chosen, largest
 from kurbel.numerics.pieces import Pieces, highest, resolved
-from kurbel.quantity import Answers, Heading, value, values_for
+from kurbel.quantity import Heading, ValuesById, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import Force, FreeBody, flywheel_weight
@@ -82,7 +82,9 @@ class Place(NamedTuple):
     def combined(self) -> Any:
         """Combined stress 0.35 σ + 0.65 √(σ² + 4 (α₀ τ)²) in Pa after Bach (G, "Resultierende Beanspruchung")."""
         torsion = 0.0 if self.torsion is None else self.torsion
-        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(self.normal, 2 * self.alpha * torsion)
+        return 0.35 * magnitude(self.normal) + 0.65 * np.hypot(
+            self.normal, 2 * self.alpha * torsion
+        )
 
     @property
     def von_mises(self) -> Any:
@@ -91,7 +93,9 @@ class Place(NamedTuple):
 
     def one_of(self, number: int, degrees: float) -> Place:
         """Return the place at a crank angle in one of several states."""
-        own: dict[str, Any] = {name: float(each[number]) for name, each in self._asdict().items() if np.ndim(each)}
+        own: dict[str, Any] = {
+            name: float(each[number]) for name, each in self._asdict().items() if np.ndim(each)
+        }
         return self._replace(**own, degrees=degrees)
 
 
@@ -101,17 +105,27 @@ def places(body: FreeBody) -> Iterator[Place]:
     α₀ is 1 for what is round (G, for the pin), and that of the allowable stresses for the webs.
     """
     shaft, f, diameter = body.shaft, body.shaft.flywheel_position, body.shaft.journal_diameter
-    inner, outer = (shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1))  # faces of a web
+    inner, outer = (
+        shaft.web_distance + side * shaft.web_thickness / 2 for side in (-1, 1)
+    )  # faces of a web
     before = body.before_pin.imag * body.crank
     # in the middle of the pin M_b = a √(A_T² + A_D²) and M_d = A_T r (G)
-    sections = {"at web A": inner} if shaft.overhung else {"middle": 0.0, "at web A": -inner, "at web B": inner}
+    sections = (
+        {"at web A": inner}
+        if shaft.overhung
+        else {"middle": 0.0, "at web A": -inner, "at web B": inner}
+    )
     for name, u in sections.items():
         yield _round("pin", name, body.moments_at(u), before, shaft.pin_diameter)
 
     at_pin, at_shaft = magnitude(before), magnitude(body.torque)
-    worse = where(at_pin >= at_shaft, at_pin, at_shaft)  # of the ends of the web between pin and shaft
+    worse = where(
+        at_pin >= at_shaft, at_pin, at_shaft
+    )  # of the ends of the web between pin and shaft
     if not shaft.overhung:
-        yield from _web("web_A", shaft, body.before_pin.real, body.moments_at(-shaft.web_distance), at_pin)
+        yield from _web(
+            "web_A", shaft, body.before_pin.real, body.moments_at(-shaft.web_distance), at_pin
+        )
     last_web = "web_A" if shaft.overhung else "web_B"
     yield from _web(last_web, shaft, body.along_web, body.moments_at(shaft.web_distance), worse)
 
@@ -134,13 +148,24 @@ def _round(part: str, name: str, moments: Force, torque: Number | None, diameter
 
     Bending σ = 32 M/(π d³), torsion τ = 16 M/(π d³).
     """
-    bendings = (magnitude(32 / math.pi * one / diameter / diameter / diameter) for one in (moments.real, moments.imag))
+    bendings = (
+        magnitude(32 / math.pi * one / diameter / diameter / diameter)
+        for one in (moments.real, moments.imag)
+    )
     in_plane, out_of_plane = bendings
-    torsion = None if torque is None else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
-    return Place(part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane))
+    torsion = (
+        None
+        if torque is None
+        else magnitude(16 / math.pi * torque / diameter / diameter / diameter)
+    )
+    return Place(
+        part, name, 1.0, None, in_plane, out_of_plane, torsion, np.hypot(in_plane, out_of_plane)
+    )
 
 
-def _web(part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number) -> Iterator[Place]:
+def _web(
+    part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_plane: Number
+) -> Iterator[Place]:
     """Stresses of a web, a rectangle t × w: σ = S/(t w) + 6 M/(b h²) across h (G, webs, "auf Druck", "auf Biegung").
 
     force: along it; moments: in-plane bending and twist. α₀ = k_b/(1.3 k_d), or 1 where one of the allowable stresses
@@ -149,13 +174,31 @@ def _web(part: str, shaft: Crankshaft, force: Number, moments: Force, out_of_pla
     Its torsion is τ = (9/2) M_d/(t² w) in the middle of the wide faces and (9/2) M_d/(t w²) in that of the narrow ones
     (G, webs, "auf Drehung"): Bach's rounded factor; de Saint-Venant's own is 4.81 for a square and 3 for a strip.
     """
-    t, w, allowed, twisting = shaft.web_thickness, shaft.web_width, shaft.allowable_bending, shaft.allowable_torsion
+    t, w, allowed, twisting = (
+        shaft.web_thickness,
+        shaft.web_width,
+        shaft.allowable_bending,
+        shaft.allowable_torsion,
+    )
     alpha = 1.0 if allowed is None or twisting is None else allowed / (1.3 * twisting)
     direct, twist = force / t / w, 4.5 * magnitude(moments.imag)
     wide, narrow = magnitude(6 * moments.real / w / t / t), 6 * out_of_plane / t / w / w
-    yield Place(part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide)
-    yield Place(part, "narrow face", alpha, direct, None, narrow, twist / w / w / t, magnitude(direct) + narrow)
-    yield Place(part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow)
+    yield Place(
+        part, "wide face", alpha, direct, wide, None, twist / t / t / w, magnitude(direct) + wide
+    )
+    yield Place(
+        part,
+        "narrow face",
+        alpha,
+        direct,
+        None,
+        narrow,
+        twist / w / w / t,
+        magnitude(direct) + narrow,
+    )
+    yield Place(
+        part, "corner", alpha, direct, wide, narrow, None, magnitude(direct) + wide + narrow
+    )
 
 
 class StressColumns(AtAngles):
@@ -164,27 +207,43 @@ class StressColumns(AtAngles):
     commands = ("stress",)
     D = value("D", "force", "Radial force at the crank pin, positive toward the shaft")
     T = value("T", "force", "Tangential force M/R: the torque on the shaft over the crank radius")
-    T_pin = value("T_Z", "force", "Tangential force of the rod on the crank pin, where its friction makes it another")
+    T_pin = value(
+        "T_Z",
+        "force",
+        "Tangential force of the rod on the crank pin, where its friction makes it another",
+    )
     A_D = value("A_D", "force", "Force on bearing A along D, in the frame rotating with the throw")
     A_T = value("A_T", "force", "Force on bearing A along T")
     B_D = value("B_D", "force", "Force on bearing B, next to the flywheel, along D")
     B_T = value("B_T", "force", "Force on bearing B along T")
     sigma = values_for(PARTS, "sigma_*", "σ_*", "stress", "Largest combined stress of * (Bach)")
-    mises = values_for(PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)")
+    mises = values_for(
+        PARTS, "mises_*", "σ_v,*", "stress", "Largest equivalent stress of * (von Mises)"
+    )
 
     def __init__(self, phi: Array, state: State, body: FreeBody) -> None:
         self.phi, self._state, self._body = phi, state, body
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The columns by id; of the stresses those of the parts that are examined."""
         A, B = self._body.A, self._body.B
         state = self._state
-        found = {"D": state.D, "T": state.T, "A_D": A.real, "A_T": A.imag, "B_D": B.real, "B_T": B.imag}
+        found = {
+            "D": state.D,
+            "T": state.T,
+            "A_D": A.real,
+            "A_T": A.imag,
+            "B_D": B.real,
+            "B_T": B.imag,
+        }
         if state.T_pin is not None:
             found["T_pin"] = state.T_pin
         for place in places(self._body):
-            for id, stress in ((f"sigma_{place.part}", place.combined), (f"mises_{place.part}", place.von_mises)):
+            for id, stress in (
+                (f"sigma_{place.part}", place.combined),
+                (f"mises_{place.part}", place.von_mises),
+            ):
                 found[id] = np.maximum(found.get(id, 0.0), stress)
         return found
 
@@ -201,9 +260,16 @@ class CrankshaftStrength(Results):
 
     _loads = Heading("Loads")
     P_dc = value(
-        "P_dc", "force", "Full piston force, without inertia, applied at the dead centre", lambda one: one.full_force
+        "P_dc",
+        "force",
+        "Full piston force, without inertia, applied at the dead centre",
+        lambda one: one.full_force,
     )
-    C_rod = value("C_r", "force", "Centrifugal force of the rotating part of the connecting rod, not included in D")
+    C_rod = value(
+        "C_r",
+        "force",
+        "Centrifugal force of the rotating part of the connecting rod, not included in D",
+    )
     _stresses = Heading("Stresses")
     sigma_dc = values_for(
         PARTS,
@@ -214,7 +280,12 @@ class CrankshaftStrength(Results):
         group=str,
     )
     sigma_max = values_for(
-        PARTS, "sigma_*_max", "σ_*,max", "stress", "Largest combined stress of * over the cycle (Bach)", group=str
+        PARTS,
+        "sigma_*_max",
+        "σ_*,max",
+        "stress",
+        "Largest combined stress of * over the cycle (Bach)",
+        group=str,
     )
     mises_max = values_for(
         PARTS,
@@ -284,10 +355,14 @@ class CrankshaftStrength(Results):
     def _body(self, pin: Force, angle: CrankAngle, pieces: Pieces | None = None) -> FreeBody:
         """Return the throw under a force on its pin at crank angles: of the nodes of pieces, or one of each machine."""
         several = pieces is not None and self.count is not None
-        machine = taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
+        machine = (
+            taken(self.machine, pieces.machine) if pieces is not None and several else self.machine
+        )
         (cylinder,), shaft = machine.cylinders, machine.crankshaft
         assert shaft is not None
-        return FreeBody(shaft, cylinder.mechanism.crank, pin, flywheel_weight(machine, cylinder, angle))
+        return FreeBody(
+            shaft, cylinder.mechanism.crank, pin, flywheel_weight(machine, cylinder, angle)
+        )
 
     def _columns(self, phi: Array, within: Array) -> StressColumns:
         state = State.at(self.forces.drive, phi, within)
@@ -306,12 +381,18 @@ class CrankshaftStrength(Results):
         pieces, state = self.forces.pieces, self.forces.samples
         pin = on_pin(state)
         body = self._body(pin.complex, state.angle, pieces)
-        if self.count is None and not all(np.isfinite(one.combined + one.von_mises).all() for one in places(body)):
+        if self.count is None and not all(
+            np.isfinite(one.combined + one.von_mises).all() for one in places(body)
+        ):
             raise UsageError(
                 f"{self.machine.name}: the stresses of the crankshaft are too large to compute with: "
                 "check the numbers and units of the machine file"
             )
-        bends, at_pin, at_shaft = body.moments_at(body.shaft.web_distance), body.before_pin.imag, body.pin.imag
+        bends, at_pin, at_shaft = (
+            body.moments_at(body.shaft.web_distance),
+            body.before_pin.imag,
+            body.pin.imag,
+        )
         both = [part for one in (body.pin, body.A, bends) for part in (one.real, one.imag)]
         # the web beyond the pin is bent out of plane as much at the pin as at the shaft
         kinked = (*both, body.along_web, at_pin - at_shaft, at_pin + at_shaft, state.D)
@@ -339,15 +420,24 @@ class CrankshaftStrength(Results):
             found = [*places(self._body(pin[0] + 1j * pin[1], CrankAngle.at_nodes(some), some))]
             return [*(one.combined for one in found), *(one.von_mises for one in found)]
 
-        return [Extreme(*map(self.forces.result, pair)) for pair in zip(*highest(*self._cycle[:2], stresses))]
+        return [
+            Extreme(*map(self.forces.result, pair))
+            for pair in zip(*highest(*self._cycle[:2], stresses))
+        ]
 
     @cached_property
-    def answers(self) -> Answers:
+    def answers(self) -> ValuesById:
         """The key values by id; stresses of the parts that are examined, the safety where k_b is given."""
-        shaft, pull, allowable = self.shaft, self.forces.drive.rod_centrifugal_force, self.shaft.allowable_bending
+        shaft, pull, allowable = (
+            self.shaft,
+            self.forces.drive.rod_centrifugal_force,
+            self.shaft.allowable_bending,
+        )
         found = self._of_loads()
         found["C_rod"] = pull if some(pull != 0) else None
-        found["p_pin_dc"] = abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length  # G: P_max/(d_z l_z)
+        found["p_pin_dc"] = (
+            abs(self.full_force.value) / shaft.pin_diameter / shaft.pin_length
+        )  # G: P_max/(d_z l_z)
         at = self.at_dead_centre
         rows = [*zip(at, self._largest[: len(at)], self._largest[len(at) :])]
         for part in dict.fromkeys(place.part for place in at):
@@ -362,16 +452,19 @@ class CrankshaftStrength(Results):
                 found[f"safety_{part}_min"] = Extreme(safety, worst.degrees)
         return found
 
-    def _of_loads(self) -> Answers:
+    def _of_loads(self) -> ValuesById:
         """The key values of the loads by id, pressures of what has a diameter and length, p_m v where a speed is given.
 
         The mean on the pin is that of the rod force alone, as G has it for its bounds on p_m v, v = π d n.
         """
         (pieces, _, loads), shaft, speed = self._cycle, self.shaft, self.machine.speed
         extremes = pieces.extremes(loads[:3])
-        most = [Extreme(*map(self.forces.result, pair)) for pair in zip(extremes.largest, extremes.largest_at)]
+        most = [
+            Extreme(*map(self.forces.result, pair))
+            for pair in zip(extremes.largest, extremes.largest_at)
+        ]
         mean_A, mean_B, of_rod = map(self.forces.result, pieces.mean(loads[1:]))
-        found: Answers = {"A_max": most[1], "B_max": most[2]}
+        found: ValuesById = {"A_max": most[1], "B_max": most[2]}
         for part, load, mean in zip(_BEARINGS, most, (of_rod, mean_A, mean_B)):
             diameter, length = shaft.journal_diameter, shaft.journal_length
             if part == "pin":
@@ -379,7 +472,9 @@ class CrankshaftStrength(Results):
             if diameter is not None and length is not None:
                 found[f"p_{part}_max"] = Extreme(load.value / diameter / length, load.degrees)
                 found[f"p_{part}_mean"] = pressure = mean / diameter / length
-                found[f"k_{part}"] = None if speed is None else pressure * math.pi * diameter * speed
+                found[f"k_{part}"] = (
+                    None if speed is None else pressure * math.pi * diameter * speed
+                )
         return found
 
     def unbalanced(self) -> Number:
@@ -387,7 +482,9 @@ class CrankshaftStrength(Results):
         pieces, state = self.forces.pieces, self.forces.samples
         body = self._body(on_pin(state).complex, state.angle, pieces)
         return self.forces.result(
-            pieces.largest(body.equilibrium_residual(state.tangential_at_pin * state.mechanism.crank))
+            pieces.largest(
+                body.equilibrium_residual(state.tangential_at_pin * state.mechanism.crank)
+            )
         )
 
     # the two positions of the book, and the worst of the cycle
@@ -406,7 +503,10 @@ class CrankshaftStrength(Results):
         """
         found, motion = self._force_extremes("P_start"), self.forces.motion
         pushes = found.largest.value >= -found.smallest.value
-        inner, outer = Extreme(found.largest.value, motion.phi_idc), Extreme(found.smallest.value, motion.phi_odc)
+        inner, outer = (
+            Extreme(found.largest.value, motion.phi_idc),
+            Extreme(found.smallest.value, motion.phi_odc),
+        )
         return chosen(pushes, inner, outer)
 
     @cached_property
