@@ -121,7 +121,12 @@ def fitting(report: Report, look: Look, first: Sequence[str]) -> Iterator[Line]:
     if len(begin) < most:
         return chain(begin, lines)
     across = max(((look.width or 80) - _SIDE) // _CELL, 4)
-    return selection(first_selection(report, first, across, rows=most // 6), look)
+    selected = first_selection(report, first, across, rows=most // 6)
+    first_page = [*selection(selected, look)]
+    # the prompt takes a line, too; a table over the angle must not push key values off the screen
+    if len(first_page) < most or not any(part.key_values for part in selected.all_parts):
+        return iter(first_page)
+    return selection(selected.changed(lambda part: part._replace(columns=())), look)
 
 
 # a line for each row
