@@ -27,6 +27,7 @@ from kurbel.render.text_tables import (
     place_table,
     sheets,
 )
+from kurbel.tables.sources import legend_of
 from kurbel.tables.tables import KeyValue, Report, first_selection, for_people, notes_for_people
 
 _NINE = 9  # angles to a block: the book breaks after 80°
@@ -37,7 +38,7 @@ _LONGEST = 16  # of a number, or two angles; a longer list gets lines of its own
 
 
 def page_lines(report: Report, look: Look) -> Iterator[Line]:
-    """Yield the lines of the whole page."""
+    """Yield the lines of the whole page, the books of its references last."""
     report = for_people(report)
     yield from _title(report, look)
     yield from _tables(report, look)
@@ -56,6 +57,8 @@ def page_lines(report: Report, look: Look) -> Iterator[Line]:
         if part.warnings:
             yield from (BLANK, line(f"Warnings{of}", "name"))
             yield from _sentences("  ", part.warnings, look)
+    if books := legend_of(report):
+        yield from sentence("", books, look)
 
 
 def selection(report: Report, look: Look) -> Iterator[Line]:
