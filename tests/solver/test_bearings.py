@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import fixed_quad
+from scipy.special import ellipk
 
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
@@ -243,3 +244,23 @@ def test_work_of_friction_is_that_of_the_energy_balance() -> None:
     assert pin.work_rubbing == work_of("crank_pin")
     assert crosshead.work_rubbing == work_of("crosshead_pin")
     assert A.work_rubbing + B.work_rubbing == pytest.approx(work_of("journals"), rel=1e-12)
+
+
+def test_work_of_friction_is_that_of_a_cycle_of_the_machine() -> None:
+    """A compressor turns twice in the cycle of the four-stroke engine beside it: its pins lose twice their own work."""
+    friction = "friction: {crank_pin: 0.05}"
+    shape = f"crank: 45 mm, rod: 150 mm, bore: 90 mm, {friction}"
+    engine = "indicator: {head_end: {otto: {intake: 0 bar, compression_ratio: 8, peak: 40 bar}}}"
+    compressor = "indicator: {head_end: {constant: {expansion: 0 bar, compression: 2 bar}}}"
+    cylinders = (
+        f"cylinders:\n  - {{name: engine, {shape}, {engine}}}\n"
+        f"  - {{name: compressor, cycle: two-stroke, {shape}, {compressor}}}\n"
+    )
+    case = Case(loads("speed: 1800 rpm\ncycle: four-stroke\n" + SHAFT + cylinders))
+    works = {part.name: part.work_rubbing for part in case.bearings.parts}
+    own = [cylinder.friction_works["crank_pin"] for cylinder in case.cylinders]
+    assert works["crank pin of engine"] == pytest.approx(own[0], rel=1e-14)
+    assert works["crank pin of compressor"] == pytest.approx(2 * own[1], rel=1e-14)
+    # S = P/cos ψ over half a turn: 2 K(λ²)
+    force = 2e5 * math.pi / 4 * 0.09**2
+    assert own[1] == pytest.approx(0.05 * 0.025 * force * 2 * ellipk(0.3**2), rel=1e-12)

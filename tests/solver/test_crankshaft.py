@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.crank_angle import CrankAngle
+from kurbel.crank_angle import CrankAngle, unit_vector
 from kurbel.machine.indicator import Card
 from kurbel.machine.parts import ConnectingRod, Masses
+from kurbel.machine_file import loads
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
 from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.chapters.stress import PARTS, CrankshaftStrength, places
-from kurbel.solver.shaft import weight_in_throw
+from kurbel.solver.shaft import flywheel_weight, weight_in_throw
 from machines import STEAM_CARD, constant_pressure
 from representative import few
 from shafts import body, place_at, shaft, strength
@@ -125,6 +126,11 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
             assert brute == pytest.approx(largest.value, rel=1e-4)
 
 
+SHAFT_LINES = """crankshaft: {a: 60 mm, b: 50 mm, web_distance: 30 mm, web_thickness: 15 mm, web_width: 60 mm,
+  pin_diameter: 50 mm, pin_length: 40 mm, journal_diameter: 55 mm, flywheel_mass: 500 kg, flywheel_position: 200 mm}
+"""
+
+
 @pytest.mark.parametrize(
     ("inclination", "degrees", "D", "T"),
     [
@@ -140,6 +146,21 @@ def test_largest_stresses_are_those_of_the_whole_cycle(name: str) -> None:
 def test_direction_of_the_weight(inclination: float, degrees: float, D: float, T: float) -> None:
     """Lying, the pin stands above the shaft at 90° and the weight points from it to the shaft."""
     assert weight_in_throw(1.0, CrankAngle.of(float(degrees)), float(inclination)) == complex(D, T)
+
+
+def test_the_flywheel_hangs_downward_whichever_throw_is_beside_it() -> None:
+    """In the frame of the engine its weight is one vector at every angle, seen from the throws of both banks."""
+    each = "{crank: 45 mm, rod: 150 mm, bore: 90 mm, inclination: 45 deg}"
+    banks = "bank_angles: [0 deg, 60 deg]\n  spacing: 110 mm\n  crank_positions: [0 deg, 90 deg]"
+    machine = loads(f"{SHAFT_LINES}cylinders:\n  count: 2\n  {banks}\n  each: {each}\n")
+    phi = np.arange(0.0, 360.0, 15.0)
+    for cylinder in machine.cylinders:
+        own = phi - cylinder.crank_position
+        seen = flywheel_weight(machine, cylinder, CrankAngle.of(own))
+        in_engine = -np.conj(seen) * unit_vector(own + cylinder.bank_angle)
+        # 45° below the horizontal on the other side of the stroke line of cylinder 1, the shaft turning upward
+        downward = 500 * 9.80665 * unit_vector(-135.0)
+        assert np.abs(in_engine - downward).max() <= 1e-12 * 500 * 9.80665
 
 
 def test_largest_torque_at_a_jump_is_taken_before_it() -> None:
