@@ -59,7 +59,7 @@ def test_volumes_of_both_ends_in_both_dead_centres() -> None:
     cylinder = Case(loads(text)).cylinders[0]
     head, crank = math.pi / 4 * 0.2**2 * 0.2, math.pi / 4 * (0.2**2 - 0.05**2) * 0.2
     ends_of_stroke = cylinder.at([0.0, 180.0])
-    assert ends_of_stroke.V == pytest.approx([0.05 * head, 1.05 * head], rel=1e-12)
+    assert pytest.approx([0.05 * head, 1.05 * head], rel=1e-12) == ends_of_stroke.V
     assert ends_of_stroke.V_crank == pytest.approx([1.08 * crank, 0.08 * crank], rel=1e-12)
     # over a turn of 360 degrees: the rate is that of a degree
     near = cylinder.at([59.999, 60.0, 60.001])
