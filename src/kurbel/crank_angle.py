@@ -9,13 +9,11 @@ from kurbel.arrays import Array, Number
 from kurbel.numerics.arithmetic import magnitude, where
 from kurbel.numerics.pieces import Pieces
 
-<<<<<<< HEAD
 _SINES = np.array([0.0, 1.0, 0.0, -1.0])
 """Of 0°, 90°, 180° and 270°."""
-=======
+
 CYCLES = {"two-stroke": 1, "four-stroke": 2}
 """Working cycle -> revolutions of the shaft."""
->>>>>>> main
 
 
 class CrankAngle(NamedTuple):
