@@ -119,6 +119,21 @@ def test_a_bearing_between_two_throws_carries_both() -> None:
         assert np.abs(in_engine(part, phi) - wanted).max() <= 1e-12 * part.load_max.value
 
 
+def test_a_counterweight_is_shared_by_the_bearings_as_by_a_lever() -> None:
+    """0.06 kg m opposite the pin, in its plane, between bearings at 60 and 50 mm: A takes 5/11 of it, B 6/11."""
+    text = MACHINES["one"] + "counterweights: [{product: 0.06 kg m, angle: 180 deg}]\n"
+    phi = np.linspace(0.0, 720.0, 25)
+    pull = 0.06 * (60 * math.pi) ** 2
+    for part, bare, share in zip(
+        main_bearings(Case(loads(text))),
+        main_bearings(Case(loads(MACHINES["one"]))),
+        (5 / 11, 6 / 11),
+    ):
+        more = in_engine(part, phi) - in_engine(bare, phi)
+        opposite = -share * pull * np.exp(1j * np.radians(phi))
+        assert np.abs(more - opposite).max() <= 1e-9 * pull
+
+
 def test_two_rods_on_one_pin_have_half_of_it_each() -> None:
     parts = Case(loads(VEE)).bearings.parts
     assert [part.name for part in parts] == [
@@ -224,6 +239,8 @@ def test_rubbing_speeds() -> None:
     ).bearings.parts
     omega = 2 * math.pi * 200 / 60
     assert pin.rubbing_speed_max.value == pytest.approx(omega * 0.105 * 1.2, rel=1e-13)
+    # in the inner dead centre the rod turns against the crank
+    assert pin.rubbing_speed_max.degrees == pytest.approx(0.0, abs=1e-6)
     assert pin.rubbing_speed_mean == pytest.approx(omega * 0.105, rel=1e-12)
     assert A.rubbing_speed_max.value == pytest.approx(omega * 0.100, rel=1e-13)
     assert A.rubbing_speed_mean == pytest.approx(omega * 0.100, rel=1e-13)

@@ -229,6 +229,25 @@ class TestBearings:
         )
 
 
+def test_in_the_corner_of_a_web_all_normal_stresses_add_up() -> None:
+    """A rectangle of 120 × 220 mm: thrust, and bendings across both its sides, by the handbook."""
+    D, T = 1e5, 4e4
+    corner = place_at(body(D, T), "web_A", "corner")
+    radial, tangential = (force * 0.42 / 0.82 for force in (D, T))
+    thrust = radial / (0.12 * 0.22)
+    across_thickness = 6 * radial * (0.4 - 0.17) / (0.22 * 0.12**2)
+    across_width = 6 * tangential * 0.3 / (0.12 * 0.22**2)
+    assert corner.normal == pytest.approx([thrust + across_thickness + across_width], rel=1e-12)
+
+
+def test_a_web_under_torsion_alone_is_fully_used_at_its_allowable_torsion() -> None:
+    """G: α₀ = k_b/(1.3 k_d)."""
+    allowed = {"allowable_bending": 60e6, "allowable_torsion": 40e6}
+    web = place_at(body(1e5, 4e4, **allowed), "web_A", "wide face")
+    twisted = web._replace(normal=0.0, torsion=40e6)
+    assert twisted.combined == pytest.approx(60e6, rel=1e-14)
+
+
 def test_safety_counts_dead_centre_and_cycle() -> None:
     solved = strength(**ENGINES["lying"] | {"crankshaft": shaft(**HEAVY, allowable_bending=60e6)})
     for part in PARTS:
