@@ -657,8 +657,8 @@ def _turning_points(values: Array, of: LobattoRule) -> tuple[Indices, Array, Arr
     """Return columns, positions in [−1, 1] and values where polynomials through samples (nodes, n) are level."""
     slopes = of.scan_slope @ values
     interval, column = _where((slopes[1:] < 0) != (slopes[:-1] < 0))
-    low = of.places[interval]
-    high = of.places[interval + 1]
+    low = of.scan_positions[interval]
+    high = of.scan_positions[interval + 1]
     low_slope = slopes[interval, column]
     high_slope = slopes[interval + 1, column]
     series = of.series @ values[:, column]
@@ -680,8 +680,8 @@ def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Ar
     fine = of.scan @ values
     is_below = fine < tiny
     interval, column = _where(is_below[1:] != is_below[:-1])
-    low = of.places[interval]
-    high = of.places[interval + 1]
+    low = of.scan_positions[interval]
+    high = of.scan_positions[interval + 1]
     first = fine[interval, column]
     last = fine[interval + 1, column]
 
@@ -689,8 +689,8 @@ def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Ar
     near = np.flatnonzero(np.abs(fine).min(axis=0) < _NEAR * np.ptp(fine, axis=0))
     owner, turns, summits = _turning_points(values[:, near], of)
     owner = near[owner]
-    before = np.searchsorted(of.places, turns, side="right") - 1
-    before = np.clip(before, 0, len(of.places) - 2)
+    before = np.searchsorted(of.scan_positions, turns, side="right") - 1
+    before = np.clip(before, 0, len(of.scan_positions) - 2)
     starts_below = is_below[before, owner]
     ends_below = is_below[before + 1, owner]
     rises_through = starts_below & ends_below & (summits > -tiny[owner])
@@ -703,8 +703,8 @@ def _crossings(values: Array, of: LobattoRule, tiny: Array) -> tuple[Indices, Ar
 
     # it crosses once on either side of the summit
     column = np.concatenate((column, owner, owner))
-    low = np.concatenate((low, of.places[before], turns))
-    high = np.concatenate((high, turns, of.places[before + 1]))
+    low = np.concatenate((low, of.scan_positions[before], turns))
+    high = np.concatenate((high, turns, of.scan_positions[before + 1]))
     first = np.concatenate((first, fine[before, owner], summits))
     last = np.concatenate((last, summits, fine[before + 1, owner]))
     positions = _roots(of.series @ values[:, column], low, high, first, last)
