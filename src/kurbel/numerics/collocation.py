@@ -418,8 +418,9 @@ def around_the_cycle(gain: Array, more: Array) -> Array:
     A single unknown that grows along the cycle is followed backward, where it decays. What the equations leave open is
     taken as small as can be. Of what is not finite it is not a number.
     """
-    is_finite = np.isfinite(gain).all(axis=(1, 2, 3)) & np.isfinite(more).all(axis=(1, 2))
-    is_finite = np.asarray(is_finite)[:, None, None]
+    has_finite_gain = np.isfinite(gain).all(axis=(1, 2, 3))
+    has_finite_more = np.isfinite(more).all(axis=(1, 2))
+    is_finite = np.asarray(has_finite_gain & has_finite_more)[:, None, None]
     gain = np.where(is_finite[..., None], gain, 0.0)
     more = np.where(is_finite, more, 0.0)
     # backward: x_i = (x_{i+1} − more_i)/gain_i

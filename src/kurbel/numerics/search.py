@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import permutations, product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,10 @@ _LEAVES = 1e-3
 """Share of the spread of the samples: a sample farther from the cubic through its neighbours needs more around it."""
 _ROUNDING = 1e-12
 """Share of the largest value: smaller differences of samples are rounding errors."""
+_LEVEL = 1e-3
+"""Width of an interval over which a function that is zero counts as level."""
+_HALVES = 30
+"""Times that the interval in which it ends to be level is halved."""
 _NARROWEST = 2.0**-20
 """Width of the narrowest interval that is halved."""
 _SAME = 1e-8
@@ -42,34 +47,89 @@ _EQUAL = 1e-14
 RealFunction = Callable[[Array], Array]
 
 
-def roots(function: RealFunction) -> tuple[Array, Flags]:
-    """Return all places (n,) in the interval where a function changes sign, in order, and whether it jumps there.
+class Roots(NamedTuple):
+    """Roots in order: places (n,); whether the function jumps there; until where it stays zero, nan for one place."""
 
-    Roots closer together than 1/64 may be missed where the function looks smooth between the samples.
+    places: Array
+    jumps: Flags
+    until: Array
+
+
+def roots(function: RealFunction, size: float = 0.0) -> Roots:
+    """Return all places in the interval where a function changes sign, is zero, or ends at zero but for rounding.
+
+    size: of the terms of which the function is the difference. Roots closer together than 1/64 may be missed where the
+    function looks smooth between the samples.
     """
     x, y = _sampled(function)
     spread = np.nanmax(np.abs(y), initial=0.0)
-    exact_roots = x[y == 0]
-    at_samples = np.zeros(len(exact_roots), dtype=bool)
-    low = np.flatnonzero(y[:-1] * y[1:] < 0)
-    if not len(low):
-        return exact_roots, at_samples
+    rounding = _ROUNDING * size
+    y = _zero_at_ends(y, rounding)
 
-    def finite_values(points: Array) -> Array:
-        return np.nan_to_num(function(points[:, None]))
+    # where it is zero at samples: a stretch counts as one root
+    starts, stops = _runs(np.abs(y) <= rounding)
+    is_level = x[stops] - x[starts] > _LEVEL
+    starts = starts[is_level]
+    stops = stops[is_level]
+    is_inside = np.zeros(len(x), dtype=bool)
+    for start, stop in zip(starts, stops):
+        is_inside[start : stop + 1] = True
+    alone = x[(y == 0) & ~is_inside]
 
-    # what is left at a root tells a jump from a zero
+    # where it changes sign between two samples; what is left there tells a jump from a zero
+    low = np.flatnonzero((y[:-1] * y[1:] < 0) & ~is_inside[:-1] & ~is_inside[1:])
     high = low + 1
-    between = _closed(finite_values, x[low], x[high], y[low], y[high])
-    left = function(between[:, None])
+    crossings: Array = np.empty(0)
+    left: Array = np.empty(0)
+    if len(low):
+
+        def finite_values(points: Array) -> Array:
+            return np.nan_to_num(function(points[:, None]))
+
+        crossings = _closed(finite_values, x[low], x[high], y[low], y[high])
+        left = function(crossings[:, None])
     has_value = np.isfinite(left)
+    crossings = crossings[has_value]
     is_jump = np.abs(left[has_value]) > _LEFT * spread
 
-    # in order, with those that are samples
-    all_roots = np.append(exact_roots, between[has_value])
-    jumps = np.append(at_samples, is_jump)
-    order = np.argsort(all_roots)
-    return all_roots[order], jumps[order]
+    # all of them in order
+    levels = _edges(function, x[starts], x[np.maximum(starts - 1, 0)], rounding)
+    level_ends = _edges(function, x[stops], x[np.minimum(stops + 1, len(x) - 1)], rounding)
+    points = np.concatenate((levels, alone, crossings))
+    order = np.argsort(points, kind="stable")
+    no_stretch = np.full(len(alone) + len(crossings), np.nan)
+    until = np.concatenate((level_ends, no_stretch))
+    no_jump = np.zeros(len(levels) + len(alone), dtype=bool)
+    jumps = np.concatenate((no_jump, is_jump))
+    return Roots(points[order], jumps[order], until[order])
+
+
+def _zero_at_ends(y: Array, rounding: float) -> Array:
+    """Return samples that are exactly zero at either end where only rounding is left there and no root is beside it."""
+    y = y.copy()
+    for end, neighbour in ((0, 1), (-1, -2)):
+        is_rounding = abs(y[end]) <= rounding
+        if is_rounding and not y[end] * y[neighbour] < 0:
+            y[end] = 0.0
+    return y
+
+
+def _edges(function: RealFunction, zero: Array, beyond: Array, rounding: float) -> Array:
+    """Return how far from places (n,) toward others a function stays zero, by halves."""
+    for _ in range(_HALVES if len(zero) else 0):
+        middle = (zero + beyond) / 2
+        is_zero = np.abs(function(middle[:, None])) <= rounding
+        zero = np.where(is_zero, middle, zero)
+        beyond = np.where(is_zero, beyond, middle)
+    return zero
+
+
+def _runs(flags: Flags) -> tuple[Indices, Indices]:
+    """Return the first and the last index of every run of true flags."""
+    padded = np.concatenate(([False], flags, [False]))
+    starts = np.flatnonzero(padded[1:] & ~padded[:-1])
+    stops = np.flatnonzero(padded[:-1] & ~padded[1:]) - 1
+    return starts, stops
 
 
 def _closed(function: RealFunction, low: Array, high: Array, f_low: Array, f_high: Array) -> Array:

@@ -458,8 +458,8 @@ class Places(NamedTuple):
     """A table of places with its values in SI; see `PlaceTable`.
 
     declared: its quantities by id; one that no row has is left out. headed: the names of the rows are texts for people;
-    otherwise spaces in them become underscores. alone: the digits to which every value is rounded by itself; values of
-    one kind then have one unit.
+    otherwise programs have them without spaces and punctuation. alone: the digits to which every value is rounded by
+    itself; values of one kind then have one unit.
     """
 
     id: str
@@ -498,13 +498,34 @@ class Places(NamedTuple):
                     decimals=decimals, alone=0 if quantity.kind == "angle" else self.alone
                 )
             )
-        names = [
-            names if self.headed else tuple(name.replace(" ", "_") for name in names)
-            for names, _ in self.rows
-        ]
+        names = [names for names, _ in self.rows]
+        words: dict[str, str] = {}
+        if not self.headed:
+            words = {_as_id(name): name for row in names for name in row}
+            names = [tuple(map(_as_id, row)) for row in names]
         return PlaceTable(
-            self.id, self.title, self.heads, tuple(names), tuple(columns), self.headed, self.in_note
+            self.id,
+            self.title,
+            self.heads,
+            tuple(names),
+            tuple(columns),
+            self.headed,
+            self.in_note,
+            words,
         )
+
+
+_BETWEEN = re.compile(r"[\s,:;=–]+")
+"""What parts the words of the name of a row."""
+
+
+def _as_id(name: str) -> str:
+    """Return the name of a row as programs have it.
+
+    >>> _as_id("shaft n = 1, against the crank: A")
+    'shaft_n_1_against_the_crank_A'
+    """
+    return _BETWEEN.sub("_", name)
 
 
 def shown_key_values(found: Iterable[tuple[Quantity, object]], system: str) -> list[KeyValue]:
@@ -604,8 +625,11 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         raise UsageError(f"--where: {error}") from None
 
     def angles(subject: Subject) -> Sequence[float]:
-        own, every = subject.lists.columns(command), every_quantity().columns(command)
-        ids = called(name, own.values()) or called(name, every.values())
+        own = subject.lists.columns(command)
+        ids = called(name, own.values())
+        if not ids:
+            every = every_quantity().columns(command)
+            ids = called(name, every.values())
         if not ids:
             near = did_you_mean(name, tuple(every))
             raise UsageError(f"--where: '{name}' is no column{near} (known: {', '.join(every)})")
