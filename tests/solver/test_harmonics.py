@@ -170,3 +170,12 @@ def test_major_orders_are_those_in_which_all_cranks_agree(
     assert found == (
         () if major is None else tuple(float(order) for order in range(major, 25, major))
     )
+
+
+@pytest.mark.parametrize("ratio", [0.5, 2.0])
+def test_orders_at_another_speed_are_those_of_the_machine_that_runs_so(ratio: float) -> None:
+    orders = [1.0, 2.0, 3.0, 4.0]
+    here = orders_of(Machine((steam(),), speed=1.5), orders).machine
+    there = orders_of(Machine((steam(),), speed=1.5 * ratio), orders).machine
+    size = np.abs(there.whole).max()
+    assert np.abs(here.at_speed(ratio) - there.whole).max() <= 1e-12 * size

@@ -13,7 +13,7 @@ from kurbel.machine.turning import Coupling, Effort, Flywheel, Harmonics, Load
 from kurbel.machine_file import load
 from kurbel.solver.case import Case
 from kurbel.solver.chapters.chain import Chain, Modes, holzer_at, response, row_of_joins
-from kurbel.solver.chapters.torsion import ShaftVibration
+from kurbel.solver.chapters.torsion import ShaftVibration, Vibration
 from representative import CONFIGS, few
 
 ENDS = {"": 0, "before": 1, "after": 1, "both": 2}
@@ -234,6 +234,28 @@ def test_the_damping_takes_what_the_torques_give() -> None:
         speeds = 1j * vibration.acting.orders * vibration.omegas[0] * vibration.angles[:, 0]
         power = (vibration.driving[:, 0] * speeds.conj()).real.sum() / 2
         assert power == pytest.approx(vibration.loss[0], rel=1e-12)
+
+
+def test_away_from_the_working_speed_the_load_takes_the_same_mean_torque() -> None:
+    """A load of slip s has the slope M/(s ω_n) at ω_n, and ω_n/ω times that at ω: two masses as a linear system."""
+    found = Case(machine_of(Load(slip=0.05))).torsion
+    acting, ratio = found.vibration.acting, 1.5
+    omega = 2 * math.pi * ratio
+    vibration = Vibration(found.vibration.chain, found.vibration.line, acting, np.array([omega]))
+    mean = (60 * 500 + 120 * 300 + 60 * 400 + 120 * 400) / 360
+    slope = mean / (0.05 * 2 * math.pi) / ratio
+    stiffness = (2.4 * 2 * math.pi) ** 2 / (1 / 60.0 + 1 / 40.0)
+    for index, order in enumerate(acting.orders.tolist()):
+        turning = order * omega
+        spring = stiffness + 60.0j * turning
+        system = np.array(
+            [
+                [spring - turning**2 * 60.0, -spring],
+                [-spring, spring - turning**2 * 40.0 + 1j * turning * slope],
+            ]
+        )
+        angles = np.linalg.solve(system, vibration.driving[:, 0, index])
+        assert vibration.angles[:, 0, index] == pytest.approx(angles, rel=1e-9, abs=1e-15)
 
 
 def shaft(effort: Any, speed: float, *parts: Any, **more: Any) -> ShaftVibration:

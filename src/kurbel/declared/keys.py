@@ -181,6 +181,8 @@ class Record:
     """
 
     KEYS: ClassVar[Keys] = {}
+    UNWRITTEN: ClassVar[Mapping[str, str]] = {}
+    """Words that people try for what no key describes -> what to write instead."""
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
     __signature__: ClassVar[Signature]
 

@@ -185,7 +185,7 @@ def answered(
     """
     batches, failures = binder.bound(columns)
     found = failures | answers_of(batches, requested)
-    return [found[row] for row in range(len(columns[0].places))]
+    return [found[row] for row in range(len(columns[0].indices))]
 
 
 @np.errstate(all="ignore")
@@ -201,7 +201,7 @@ def answers_of(batches: Sequence[Batch], requested: Sequence[Answer]) -> dict[in
                 )
         for place, row in enumerate(batch.rows):
             if row not in found:
-                found[row] = answered_alone(batch.one(place), requested)
+                found[row] = answered_alone(batch.single(place), requested)
     return found
 
 

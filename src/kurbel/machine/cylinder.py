@@ -55,6 +55,24 @@ _OTHER_NAMES = {
 """Common name of a mechanism -> the word of the machine file."""
 
 
+_ROD_ON_ROD = (
+    "a rod on the knuckle pin of a master rod has no key: all rods count as on the crank pin, "
+    "which cylinders share that have a 'bank_angle' each and no 'crank_position'"
+)
+_SPRING = (
+    "a spring on what slides has no key; a straight card on a piston of 1 m2 has its force: "
+    "'bore: 1128.379167 mm', and in 'indicator.head_end' 'unit: Pa', "
+    "'expansion: [[0, F1], [1, F2]]', 'compression: [[1, F2], [0, F1]]' with forces in N"
+)
+_NO_KEYS = {
+    **dict.fromkeys(
+        ("link_rod", "master_rod", "master", "slave_rod", "articulated_rod"), _ROD_ON_ROD
+    ),
+    **dict.fromkeys(("spring", "spring_rate", "spring_stiffness"), _SPRING),
+}
+"""Word for what a cylinder may have, but no key describes -> what to write instead."""
+
+
 def _valve() -> type[Valve]:
     from kurbel.machine.valve import Valve
 
@@ -92,6 +110,8 @@ class Cylinder(Record):
     ram_force, moment: what the output works against, where it slides or only swings. Raises
     RuleError for parts that the mechanism cannot have.
     """
+
+    UNWRITTEN = _NO_KEYS
 
     mechanism: Mechanism = field(
         Variant("slider-crank", MECHANISMS, _OTHER_NAMES),

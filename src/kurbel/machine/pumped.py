@@ -46,6 +46,11 @@ class Gas(Record):
         example="1.4",
     )
 
+    @property
+    def mass_of_mole(self) -> float | None:
+        """Its molar mass in kg/mol."""
+        return None if self.gas_constant is None else GAS_CONSTANT / self.gas_constant
+
 
 class Liquid(Record):
     """What a pump moves."""

@@ -17,6 +17,7 @@ from kurbel.declared.unit_systems import convert, show
 from kurbel.errors import KurbelError, NoSolutionError
 from kurbel.machine import Cylinder, Machine
 from kurbel.machine.indicator import Card, CardLine
+from kurbel.notes.plausible import cylinder_doubts, machine_doubts
 from kurbel.solver.case import Case
 from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.tables.tables import grouped, together
@@ -33,8 +34,11 @@ class Note(NamedTuple):
     command: str = ""
 
 
-def machine_notes(case: Case) -> tuple[Note, ...]:
-    """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
+def machine_notes(case: Case, of_forces: bool = False) -> tuple[Note, ...]:
+    """Return all warnings on a machine, each once: on what was given, on measurements, and on results.
+
+    of_forces: leave out those on the speed line and on strength, which take far longer to compute than forces.
+    """
     machine, found = case.machine, list[Note]()
 
     def add(texts: Iterable[str], cylinder: str | None = None, command: str = "") -> None:
@@ -44,10 +48,10 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
         add(_card_warnings(cylinder), cylinder.name)
     if machine.effort:
         add(f"effort: {text}" for text in machine.effort.notes)
-    add(_speed_warnings(machine))
+    add(machine_doubts(machine))
     add(_fluctuation_warnings(machine), command="flywheel")
     for cylinder in machine.cylinders:
-        add(_size_warnings(cylinder), cylinder.name)
+        add(cylinder_doubts(machine, cylinder), cylinder.name)
     add(pin_warnings(machine))
     if machine.effort or any(
         one.pistons or one.masses or one.ram_force or one.moment for one in machine.cylinders
@@ -58,8 +62,9 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
             add(_brake_warnings(case))
             for forces in case.cylinders:
                 add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
-            add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
-            add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
+            if not of_forces:
+                add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
+                add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
     return tuple(dict.fromkeys(found))
 
 
@@ -77,7 +82,7 @@ def by_cylinder(case: Case) -> dict[str, list[str]]:
     """Return the warnings on the forces of each cylinder by its name; those on all of them are with the last one."""
     found: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
     last = case.machine.cylinders[-1].name
-    for note in machine_notes(case):
+    for note in machine_notes(case, of_forces=True):
         if note.command in ("", "forces"):
             found[note.cylinder or last].append(note.text)
     return found
@@ -93,19 +98,7 @@ def of_machine(case: Case) -> Iterator[str]:
 
 # what was given: sizes and speeds
 
-_LARGEST_BORE = 5.0  # m; the widest cylinder built, of the Cruquius engine of 1849, has 3.66 m
-_LARGEST_MASS = (
-    1e5  # kg reciprocating in one cylinder; those of the largest marine diesels weigh some 2e4
-)
-_HIGHEST_SPEED = 1000.0  # 1/s; model racing engines stay below 700
-_ASK = "is beyond anything built; is its unit right?"
 _LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for crushers and hammers
-
-
-def _speed_warnings(machine: Machine) -> Iterator[str]:
-    """Yield a warning on a speed that no crank has reached."""
-    if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
-        yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
 
 
 def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
@@ -116,17 +109,6 @@ def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
             f"a wanted fluctuation of {wanted:g} lets the speed vary between {1 - wanted / 2:g} and {1 + wanted / 2:g} "
             "times its mean; those of the books are 1/5 to 1/300: is it right?"
         )
-
-
-def _size_warnings(cylinder: Cylinder) -> Iterator[str]:
-    """Yield warnings on a bore and on moving masses beyond those of any machine built."""
-    for piston in cylinder.pistons:
-        if piston.bore > _LARGEST_BORE:
-            yield f"{piston.name}: a bore of {show(piston.bore, 'length')} {_ASK}"
-    rod = cylinder.masses.connecting_rod if cylinder.masses else None
-    moving = (cylinder.masses.parts if cylinder.masses else 0.0) + (rod.mass if rod else 0.0)
-    if moving > _LARGEST_MASS:
-        yield f"a mass of {show(moving, 'mass')} in moving parts {_ASK}"
 
 
 _SAME_PLACE = 1e-9  # m
@@ -204,6 +186,8 @@ _LEAST_OF_SEVERAL = 1.1
 """Brake over indicated power of one cylinder from which others are probably missing."""
 _TAKEN = 0.3, 1.0
 """Indicated over brake power of a machine that is driven."""
+_LEAST_EFFICIENCY = 0.05
+"""Brake over indicated power below which a size or a unit is wrong, rather than the engine idle."""
 _GOOD = 0.85
 """Mechanical efficiency assumed for the number of cylinders that the brake power needs."""
 
@@ -238,6 +222,11 @@ def _brake_warnings(case: Case) -> Iterator[str]:
                 "each: …}' with a firing order"
             )
         yield f"{shown} below the brake power, {taken}: check angle_zero, units and areas{several}"
+    if indicated > 0 and brake / indicated < _LEAST_EFFICIENCY:
+        yield (
+            f"the brake power, {taken}, is {100 * brake / indicated:.2g} % of the indicated power, "
+            f"{show(indicated, 'power')}: check bore, units and areas"
+        )
 
 
 # results of a cylinder

@@ -181,7 +181,7 @@ def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> Te
     """Return key values as a table: symbol, value, unit, crank angle, meaning."""
     rows = []
     for one in found:
-        at = "" if one.at_deg is None else look.degrees(one.at_deg)
+        at = "" if one.at_deg is None else look.extreme_at(one.at_deg, one.side)
         symbol = look.symbol(one.symbol, one.ascii_symbol)
         rows.append((symbol, _value(one, look), look.unit(one.unit), at, look.sentence(one.text)))
     heads = (

@@ -62,6 +62,7 @@ def _with_forces(case: Case) -> list[Subject]:
             left_out=_forces_left_out(case, forces),
             tables=_piston_table(forces),
             pistons=[Subject(piston.name, piston) for piston in forces.pistons],
+            idle="" if forces.drive.has_force else "no force acts; kurbel motion prints its motion",
         )
         for forces in case.cylinders
     ]
@@ -126,6 +127,11 @@ def _forces_notes(case: Case) -> Iterator[str]:
     yield from mechanism_notes(case)
     yield from guide_notes(case)
     yield from rod_ratio_notes(case)
+    if any(forces.drive.pin_friction and forces.drive.has_force for forces in case.cylinders):
+        yield (
+            "T is M/R, less the friction of pins and journals, and W its mean; T_Z is the force at the crank pin, "
+            "which the books call T."
+        )
     if any(forces.drive.rod and forces.drive.has_force for forces in case.cylinders):
         yield (
             "S of an exact rod is the force between the masses at its ends and the force along it at neither pin: "

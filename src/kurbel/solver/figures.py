@@ -201,9 +201,10 @@ class PartResults(Computed[V]):
             found = self.__get__(results)
             return None if found is None else function(found)
 
-        for quantity, of, unless in rows:
+        for quantity, of, unless, repeats in rows:
+            adds_nothing = self.unless or (unless and partial(of_part, unless))
             yield QuantityRow(
-                quantity, partial(of_part, of), self.unless or (unless and partial(of_part, unless))
+                quantity, partial(of_part, of), adds_nothing, repeats and partial(of_part, repeats)
             )
 
 
@@ -236,9 +237,16 @@ class ExtremesOfColumns:
             found = results.extremes_of(column)
             return None if found is None else self.ENDS[end](found)
 
-        for one in columns:
-            for end in self.ENDS if one.peak else ("max", "min"):
-                yield QuantityRow(one.extreme(end), partial(extreme, one.id, end))
+        def repeats(column: str, end: str, results: Any) -> bool:
+            # the largest magnitude is that of the largest or the smallest value
+            return end == "peak" or results.repeats(column)
+
+        for column in columns:
+            for end in self.ENDS if column.peak else ("max", "min"):
+                names = column.id, end
+                yield QuantityRow(
+                    column.extreme(end), partial(extreme, *names), repeats=partial(repeats, *names)
+                )
 
 
 class Results(NotebookView):
@@ -336,6 +344,15 @@ class Results(NotebookView):
     def _columns(self, phi: Array, within: Array) -> AtAngles:
         """Return the columns at crank angles (n,) in degrees, on the sides of jumps that hold `within`."""
         raise UsageError("these results have key values, and no columns over the crank angle")
+
+    def repeats(self, column: str) -> bool:
+        """Return whether people read the extremes of a column in other rows, or they are 0."""
+        extremes = self.extremes_of(column)
+        return extremes is not None and extremes.largest.value == extremes.smallest.value == 0
+
+    def extremes_of(self, column: str) -> Extremes | None:
+        """Return the extremes in SI of a column that is declared to have them, None where it is left out."""
+        return None
 
     @property
     def _of(self) -> str:

@@ -89,6 +89,14 @@ class RecordForm(Form):
                     found |= case.names(mapping)
         return found
 
+    def unwritten(self) -> dict[str, str]:
+        """Return words for what no key describes, those of inline records too, each with what to write instead."""
+        advice = dict(self.record.UNWRITTEN)
+        for key in self.keys.values():
+            if isinstance(key.form, Inline):
+                advice |= key.form.unwritten()
+        return advice
+
     def take(self, reading: Reading, value: Node, path: Path) -> object:
         """Read the values of the keys of a mapping."""
         if not isinstance(value, dict):
@@ -135,10 +143,14 @@ class RecordForm(Form):
 
     def _unknown(self, reading: Reading, mapping: Tree, path: Path) -> Iterator[str]:
         """Report each unknown key, and yield the known keys that were probably meant."""
-        known, moved = self.names(mapping), self._moved(mapping)
+        known, moved = self.names(mapping), self.moved(mapping)
+        unwritten = self.unwritten()
         synonyms = {word: name for name, key in known.items() for word in (*key.also, key.symbol)}
         others = f"; valid keys here are {', '.join(known)}"
         for name in [name for name in mapping if name not in known]:
+            if name in unwritten:
+                reading.fault((*path, name), f"unknown key; {unwritten[name]}", at_key=True)
+                continue
             place = moved.get(name) or reading.where_it_belongs(name, path)
             meant = "" if name in moved else synonyms.get(name) or near(name, tuple(known))
             if meant:
@@ -154,7 +166,7 @@ class RecordForm(Form):
             if meant and meant not in mapping:
                 yield meant
 
-    def _moved(self, mapping: Tree) -> dict[str, str]:
+    def moved(self, mapping: Tree) -> dict[str, str]:
         """Return the keys that belong below another key of this mapping, each with the message where to move it."""
         moved = {
             inner: f"move it below '{name}'"
@@ -469,10 +481,12 @@ class OneOf(Form):
         )
 
     def _list_of(self, mapping: Tree) -> "Listing | None":
-        """Return the list, among these forms, of which a mapping is an item; None if it is no item."""
-        of_records = {
-            key for form in self.forms if isinstance(form, RecordForm) for key in form.keys
-        }
+        """Return the list, among these forms, of which a mapping is an item; None if it is no item.
+
+        A record that has its keys, or knows below which of its own they belong, says more about them.
+        """
+        records = [form for form in self.forms if isinstance(form, RecordForm)]
+        of_records = {key for form in records for key in (*form.keys, *form.moved(mapping))}
         for form in self.forms:
             if (
                 isinstance(form, Listing)
