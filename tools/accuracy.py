@@ -173,9 +173,9 @@ Stiff and extreme machines go through the whole program, from the text of a file
 Some bounds are wide, because the value depends on the input so much: a volumetric efficiency of 1e-7, a coupling at
 order 99 of the torque with nothing to damp it, a crosshead just before it locks.
 
-Traces, mechanisms other than slider-cranks and Scotch yokes, rods by their centre of gravity, pins and
-yokes that rub and given efforts have no second calculation in this command: it says so for each. They are compared by
-the laws of the tests: free bodies, works, limits.
+Traces, journals in the bearings of a crankshaft, and an effort of which only the swing of energy is given have no second
+calculation in this command: it says so. All else is compared with free bodies of every member: a rod as a rigid body,
+friction in pins, yokes and rings, other mechanisms by where their joints are, events of a slide valve by searching.
 
 `python tools/accuracy.py` writes this page, `benchmarks/stiff_scenes.py` the references of the stiff scenes,
 `benchmarks/model_and_data.py` has the errors of data and model.

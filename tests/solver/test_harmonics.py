@@ -49,7 +49,7 @@ def gauss(torque: Callable[[float], Any], edges: list[float], orders: list[float
 def by_integrals(machine: Machine, orders: list[float]) -> list[complex]:
     """M_ν of one cylinder: its torque with 40 digits, written as the textbooks have it."""
     with mp.workdps(40):
-        book = TextbookMachine(machine, machine.cylinders)
+        book = TextbookMachine(machine, "ΔE")
         edges = sorted(
             {
                 *np.asarray(book.edges, dtype=float),

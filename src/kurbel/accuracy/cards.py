@@ -10,19 +10,19 @@ from typing import NamedTuple, Union
 
 from kurbel.accuracy.methods import Number, mp, mpf
 from kurbel.machine.ideal_cards import Compressor, Diesel, IdealCard, Otto, Steam
-from kurbel.machine.indicator import Card
+from kurbel.machine.indicator import Card, Rectangle
 
-KnownCard = Union[Card, Steam, Compressor, Otto, Diesel]
-KNOWN_CARDS = (Card, Steam, Compressor, Otto, Diesel)
+KnownCard = Union[Card, Rectangle, Steam, Compressor, Otto, Diesel]
+KNOWN_CARDS = (Card, Rectangle, Steam, Compressor, Otto, Diesel)
 
 
-def without_process(chamber: object) -> str:
-    """Return what keeps a chamber from having a process here; '' where it has one."""
-    if not isinstance(chamber, KNOWN_CARDS):
-        return "a trace or a card of a mean pressure"
-    if isinstance(chamber, Steam) and chamber.cut_off is None:
-        return "a card whose events a valve sets"
-    return ""
+class Fractions(NamedTuple):
+    """z of a steam card at the events that a valve sets, or that the card itself has."""
+
+    cut_off: Number
+    release: Number
+    compression: Number
+    lead: Number
 
 
 class Line(NamedTuple):
@@ -58,14 +58,40 @@ class Drawing(NamedTuple):
         return self.back + self.factor * (line.at(z) - self.back)
 
 
-def drawn(card: KnownCard, lift: Number, is_four_stroke: bool) -> Drawing:
-    """Return the process of a card; lift: in Pa, makes its pressures absolute."""
+def drawn(
+    card: KnownCard,
+    lift: Number,
+    is_four_stroke: bool,
+    ambient: Number = 0,
+    events: Fractions | None = None,
+) -> Drawing:
+    """Return the process of a card.
+
+    lift: in Pa, makes the pressures of the card absolute; ambient: absolute, in Pa; events: those of a valve.
+    """
     if isinstance(card, Card):
         return Drawing(tuple(_by_points(card, lift)))
-    lines = tuple(line for line in _ideal(card, lift, is_four_stroke) if line.begin != line.end)
+    if isinstance(card, Rectangle):
+        return Drawing(tuple(_rectangle(card, ambient, lift, is_four_stroke)))
+    lines = tuple(_ideal(card, lift, is_four_stroke, events))
+    lines = tuple(line for line in lines if line.begin != line.end)
     if isinstance(card, Compressor):
         return Drawing(lines)
     return Drawing(lines, mpf(card.diagram_factor), mpf(card.back_pressure) + lift)
+
+
+def _rectangle(
+    card: Rectangle, ambient: Number, lift: Number, is_four_stroke: bool
+) -> Iterator[Line]:
+    """Yield level lines: of the mean pressure the expansion of what drives, or the compression of what is driven."""
+    level = ambient if card.level is None else mpf(card.level) + lift
+    strokes = 4 if is_four_stroke else 2
+    mean = mpf(card.mean)
+    raised = 0 if mean > 0 else strokes - 1
+    for stroke in range(strokes):
+        pressure = level + abs(mean) if stroke == raised else level
+        begin = mpf(stroke % 2)
+        yield Line(stroke, begin, pressure, 1 - begin, pressure, None, mpf(0))
 
 
 def _by_points(card: Card, lift: Number) -> Iterator[Line]:
@@ -82,14 +108,16 @@ def _by_points(card: Card, lift: Number) -> Iterator[Line]:
             yield Line(stroke, z, p, next_z, next_p, exponent, clearance)
 
 
-def _ideal(card: IdealCard, lift: Number, is_four_stroke: bool) -> Iterator[Line]:
+def _ideal(
+    card: IdealCard, lift: Number, is_four_stroke: bool, events: Fractions | None
+) -> Iterator[Line]:
     """Yield the lines of an ideal card, stroke by stroke."""
     clearance = mpf(card.clearance)
 
-    def level(stroke: int, begin: float, pressure: Number, end: float) -> Line:
+    def level(stroke: int, begin: Number, pressure: Number, end: Number) -> Line:
         return Line(stroke, mpf(begin), pressure, mpf(end), pressure, None, clearance)
 
-    def curve(stroke: int, begin: float, pressure: Number, end: float, exponent: float) -> Line:
+    def curve(stroke: int, begin: Number, pressure: Number, end: Number, exponent: float) -> Line:
         n = mpf(exponent)
         begin, end = mpf(begin), mpf(end)
         end_pressure = pressure
@@ -98,15 +126,18 @@ def _ideal(card: IdealCard, lift: Number, is_four_stroke: bool) -> Iterator[Line
         return Line(stroke, begin, pressure, end, end_pressure, n, clearance)
 
     if isinstance(card, Steam):
-        assert card.cut_off is not None
+        if events is None:
+            assert card.cut_off is not None
+            of_card = card.cut_off, card.release, card.compression, card.lead
+            events = Fractions(*map(mpf, of_card))
         admission, exhaust = mpf(card.admission) + lift, mpf(card.exhaust) + lift
-        yield level(0, 0, admission, card.cut_off)
-        yield curve(0, card.cut_off, admission, card.release, card.exponent)
-        yield level(0, card.release, exhaust, 1)
-        yield level(1, 1, exhaust, card.compression)
-        compression = curve(1, card.compression, exhaust, card.lead, card.exponent)
+        yield level(0, 0, admission, events.cut_off)
+        yield curve(0, events.cut_off, admission, events.release, card.exponent)
+        yield level(0, events.release, exhaust, 1)
+        yield level(1, 1, exhaust, events.compression)
+        compression = curve(1, events.compression, exhaust, events.lead, card.exponent)
         yield compression
-        yield Line(1, mpf(card.lead), compression.end_pressure, mpf(0), admission, None, clearance)
+        yield Line(1, events.lead, compression.end_pressure, mpf(0), admission, None, clearance)
     elif isinstance(card, Compressor):
         yield from _compressor(card, lift)
     else:

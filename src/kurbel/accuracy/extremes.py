@@ -17,8 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurbel.accuracy.linkages import motion_of
 from kurbel.accuracy.methods import Number, largest_and_smallest, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMotion, reference
+from kurbel.accuracy.textbook import DIGITS, STEPS, reference
 from kurbel.errors import KurbelError
 from kurbel.machine import Machine
 
@@ -144,7 +145,7 @@ def exact(machine: Machine, asked: str) -> Number:
         )
         return found[("T_max", "T_min").index(name)] if isinstance(found, tuple) else found
     motion, omega = (
-        TextbookMotion(machine.cylinders[0].mechanism),
+        motion_of(machine.cylinders[0].mechanism),
         2 * mp.pi * mpf(machine.speed or 0.0),
     )
     if name == "stroke":

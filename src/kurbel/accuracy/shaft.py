@@ -21,9 +21,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from kurbel.accuracy.methods import Number, integrals, largest_and_smallest, merged, mp, mpf
-from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMachine, unknown
+from kurbel.accuracy.textbook import DIGITS, STEPS, TextbookMachine, needed, unknown
 from kurbel.arrays import Array
-from kurbel.machine import Cylinder, Machine
+from kurbel.machine import Machine
 
 EVERY = 30
 """Degrees between the crank angles at which ω is compared."""
@@ -198,12 +198,10 @@ class TextbookShaft:
         assert machine.speed is not None
         assert machine.flywheel is not None
         assert machine.load is not None
-        self._book = TextbookMachine(machine, machine.cylinders)
+        self._book = TextbookMachine(machine, "ΔE")
         self.cycle = 360 * machine.revolutions
         self.nominal = 2 * mp.pi * mpf(machine.speed)
-        self._rigid = mpf(machine.flywheel.inertia) + sum(
-            map(turning_inertia, machine.cylinders), mpf(0)
-        )
+        self._rigid = mpf(machine.flywheel.inertia)
         starts = [mpf(angle) for angle in range(0, self.cycle + 1, EVERY)]
         self.edges = merged(np.append(self._book.edges, starts))
 
@@ -225,16 +223,11 @@ class TextbookShaft:
 
     def _torque(self, phi: Number, within: Number) -> Number:
         """Return M in N m at an angle in degrees."""
-        return sum(
-            cylinder.at(phi - place, within - place).M for cylinder, place in self._book.cylinders
-        )
+        return needed("ΔE", self._book.addends, phi, within)
 
     def _inertia(self, phi: Number, within: Number) -> Number:
         """Return J(φ) in kg m²."""
-        moving = [
-            cylinder.mass * cylinder.motion.at(phi - place).slope ** 2
-            for cylinder, place in self._book.cylinders
-        ]
+        moving = [cylinder.inertia(phi - place) for cylinder, place in self._book.cylinders]
         return sum(moving, self._rigid)
 
     def energy(self, phi: Number, within: Number) -> Number:
@@ -255,14 +248,6 @@ class TextbookShaft:
         values = np.frompyfunc(self.at, 2, 2)(phi, np.broadcast_to(middles, phi.shape))
         series = [chebyshev.chebfit(nodes, part.astype(float).T, _FIT - 1) for part in values]
         return Fits(edges.astype(float), np.stack(series))
-
-
-def turning_inertia(cylinder: Cylinder) -> Number:
-    """Return what turns with the crank pin of a connecting rod, in kg m²."""
-    rod = cylinder.masses.connecting_rod if cylinder.masses else None
-    if rod is None:
-        return mpf(0)
-    return mpf(rod.mass) * (1 - mpf(rod.share)) * mpf(cylinder.mechanism.crank) ** 2
 
 
 # collocation

@@ -1,27 +1,45 @@
-"""References: the crank train as textbooks write it, in mpmath's numbers.
+"""References: cylinders and machines as textbooks write them, in mpmath's numbers.
 
-Nothing is shared with the solver: pressures are found and signs of friction chosen anew. Differences of nearly equal
-numbers are left as they are in the books; the digits pay for them. Angles are in degrees, all else in SI. `within` is
-any angle of a piece between corners: it selects the side of a corner.
+Nothing is shared with the solver: pressures are found and signs of friction chosen anew, and every member is a free
+body. Differences of nearly equal numbers are left as they are in the books; the digits pay for them. Angles are in
+degrees, all else in SI. `within` is any angle of a piece between corners: it selects the side of a corner.
+
+The cylinder is on the left, the shaft on the right, and the crank pin above the stroke line on the outstroke:
+
+    crosshead    Q − s f |N| − H_x = 0          N − G − H_y = 0
+    rod          Z = H + W − m_r a_G            L (sin ψ H_x − cos ψ H_y) + τ − C = I ψ̈    about the crank pin
+    crank        M = Z × R − friction in the crank pin and the journals
+
+Q has gas, inertia and weight of what slides, less the friction of rings; s is the sense of the stroke, H the force on
+the rod's crosshead pin, Z that on the crank pin, τ the moment of weight and inertia of the rod, C the friction of both
+pins. Friction in pins is that under the loads without it, as by the friction circles of the books.
 """
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy.cards import KNOWN_CARDS, Drawing, Line, drawn, without_process
-from kurbel.accuracy.methods import Found, Number, by_gauss, merged, mp, mpf, roots
+from kurbel.accuracy.cards import KNOWN_CARDS, Drawing, Fractions, Line, drawn
+from kurbel.accuracy.efforts import diagram_of, knees_of
+from kurbel.accuracy.jets import Jet
+from kurbel.accuracy.linkages import Motion, RodMotion, Stance, motion_of
+from kurbel.accuracy.methods import Found, Number, by_gauss, integrals, merged, mp, mpf, roots
+from kurbel.accuracy.valves import events_of
 from kurbel.arrays import Array
 from kurbel.machine import CYCLES, Cylinder, Machine
-from kurbel.machine.parts import GasOnRings
-from kurbel.mechanisms import Mechanism
+from kurbel.machine.ideal_cards import Steam
+from kurbel.machine.parts import Friction, GasOnRings, Piston
+from kurbel.machine.turning import Swing
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
 
 DIGITS = 40
 STEPS = 24
 """Equal steps of a piece, at which roots are looked for."""
+GRAVITY = "9.80665"
+IDLE = mpf("1e-9")
+"""Work over the stroke in N, below which a piston neither drives nor is driven."""
 
 
 # what has no reference
@@ -34,75 +52,21 @@ def taking_part(machine: Machine, quantity: str) -> tuple[Cylinder, ...]:
 
 def unknown(machine: Machine, quantity: str) -> Iterator[str]:
     """Yield what of a machine has no independent calculation of a quantity here."""
-    for one in taking_part(machine, quantity):
-        if one.mechanism.name not in ("slider-crank", "scotch-yoke", "yoke-frame"):
-            yield f"the {one.mechanism.name}"
-        if quantity in "xcb":
-            return
-        for piston in one.pistons:
-            for chamber in piston.chambers.values():
-                if what := without_process(chamber):
-                    yield what
-        if one.masses and one.masses.connecting_rod and one.masses.connecting_rod.exact:
-            yield "a rod given by its centre of gravity"
-        if one.ram_force:
-            yield "a ram force"
-        if friction := one.friction:
-            if friction.of_pins:
-                yield "pins that rub"
-            if friction.block is not None or friction.guides is not None:
-                yield "a yoke that rubs"
-            if friction.rings and isinstance(friction.rings.pressure, GasOnRings):
-                yield "rings that the gas presses"
-    if quantity == "ΔE":
-        if machine.effort is not None:
-            yield "a given turning effort"
-        if machine.efficiency != 1:
-            yield "an efficiency"
-        if machine.load is not None and machine.load.diagram is not None:
-            yield "a load given by points"
+    if quantity in "xcb":
+        return
+    for cylinder in taking_part(machine, quantity):
+        for piston in cylinder.pistons:
+            cards = piston.chambers.values()
+            if not all(isinstance(card, KNOWN_CARDS) for card in cards):
+                yield "a trace"
+        friction = cylinder.friction
+        if friction and friction.journals and machine.crankshaft is not None:
+            yield "journals that rub in the bearings of a crankshaft"
+    if quantity == "ΔE" and isinstance(machine.effort, Swing):
+        yield "an effort of which the swing of energy is given"
 
 
-# motion and forces
-
-
-class Stance(NamedTuple):
-    """A slider-crank: x, dx/dφ and d²x/dφ² in m, sine and cosine of the rod angle."""
-
-    x: Number
-    slope: Number
-    curvature: Number
-    sin_psi: Number
-    cos_psi: Number
-
-
-def stance(
-    r: Number, length: Number, e: Number, sin: Number, cos: Number, sqrt: Callable[[Number], Number]
-) -> Stance:
-    """Return the motion at a crank angle, R 285, 288, 291, of a crank r, a rod and an offset e in m."""
-    if math.isinf(length):
-        return Stance(r * (1 - cos), r * sin, r * cos, 0 * sin, 0 * sin + 1)
-    aside = r * sin - e
-    along = sqrt(length**2 - aside**2)
-    swing = r * cos * aside / along
-    x = sqrt((length + r) ** 2 - e**2) - r * cos - along
-    curvature = r * cos + (r**2 * cos**2 - aside * r * sin + swing**2) / along
-    return Stance(x, r * sin + swing, curvature, aside / length, along / length)
-
-
-class TextbookMotion:
-    """Motion of a slider-crank, or of a Scotch yoke, whose rod is infinite; ends: of the strokes of one turn."""
-
-    def __init__(self, mechanism: Mechanism) -> None:
-        self.r, rod, offset = mpf(mechanism.crank), mpf(mechanism.rod_length), mpf(mechanism.offset)
-        self.at_pin = partial(stance, self.r, rod, offset, sqrt=mp.sqrt)
-        inner, outer = mp.asin(offset / (rod + self.r)), mp.asin(offset / (rod - self.r))
-        self.ends = np.array([mp.degrees(inner), 180 + mp.degrees(outer), 360 + mp.degrees(inner)])
-        self.stroke = self.at(self.ends[1]).x
-
-    def at(self, phi: Number) -> Stance:
-        """Return the motion at a crank angle."""
-        return self.at_pin(sin=mp.sinpi(phi / 180), cos=mp.cospi(phi / 180))
+# chambers
 
 
 class Chamber(NamedTuple):
@@ -131,120 +95,383 @@ class Chamber(NamedTuple):
         """Return the absolute pressure at a share of the crosshead's stroke, on one of the lines."""
         return self.card.at(line, self.fraction(share))
 
+    @property
+    def work(self) -> Number:
+        """The work in J over the stroke in m, of one process: A ∮ p dz."""
+        areas = mpf(0)
+        for line in self.card.lines:
+            pressure = np.frompyfunc(lambda z, _, line=line: self.card.at(line, z), 2, 1)
+            low, high = sorted((line.begin, line.end))
+            area = integrals(pressure, np.array([low, high]), STEPS).sum()
+            areas += area if line.end > line.begin else -area
+        return self.area * areas
+
+
+class PistonProcess(NamedTuple):
+    """The chambers of a piston; is_own: whether it is the cylinder's own one; drives: by the work of its gas."""
+
+    chambers: tuple[Chamber, ...]
+    is_own: bool
+    work: Number
+
+
+# the forces
+
+
+class RodBody(NamedTuple):
+    """A rod as a rigid body: its mass in kg, its centre of gravity from the crosshead pin in m, its inertia in kg m².
+
+    One given by the share that reciprocates is a mass at the crosshead pin, and one that turns with the crank pin,
+    whose weight the books leave out: pin_mass.
+    """
+
+    mass: Number
+    place: Number
+    inertia: Number
+    pin_mass: Number
+
+
+class Gas(NamedTuple):
+    """Force of the gas in N, that on the driving pistons, and the pressure difference in Pa across the own piston."""
+
+    force: Number
+    driving: Number
+    difference: Number
+
+
+class Loads(NamedTuple):
+    """Friction in N along the stroke line; forces (x, y) in N on the crosshead pin and the crank pin.
+
+    kinks: what changes its sign where the friction turns round.
+    """
+
+    drag: Number
+    H: tuple[Number, Number]
+    Z: tuple[Number, Number]
+    kinks: tuple[Number, ...]
+
 
 class Forces(NamedTuple):
-    """dx/dφ in m; in N the gas force, the friction along x, what lifts the crosshead from its guide, and T; M in N m.
+    """dx/dφ in m; in N the gas force, that on driving pistons, friction along x and T; M in N m.
 
-    The names are those of the columns of the solver; inertia is that at uniform speed.
+    losses: in N m, in pins, journals and the block of a yoke. The names are those of the columns of the solver; inertia
+    is that at uniform speed. kinks: as of `Loads`.
     """
 
     slope: Number
     P_gas: Number
+    P_driving: Number
     F_friction: Number
-    lift: Number
+    losses: dict[str, Number]
     T: Number
     M: Number
+    kinks: tuple[Number, ...]
 
 
 class TextbookCylinder:
-    """Forces of one cylinder; edges: of the pieces of its cycle between the corners of its cards."""
+    """Forces of one cylinder; edges: of the pieces of its cycle between the corners of cards and of friction."""
 
     def __init__(self, machine: Machine, cylinder: Cylinder) -> None:
-        self.motion, self.turns = (
-            TextbookMotion(cylinder.mechanism),
-            CYCLES[machine.cycle_of(cylinder)],
-        )
+        self.motion: Motion = motion_of(cylinder.mechanism)
+        self.turns = CYCLES[machine.cycle_of(cylinder)]
         self.omega, self._ambient = 2 * mp.pi * mpf(machine.speed or 0.0), mpf(machine.ambient)
-        masses, friction, lean = (
-            cylinder.masses,
-            cylinder.friction,
-            machine.inclination_of(cylinder),
-        )
-        rod = masses.connecting_rod if masses else None
-        self.mass = mpf(masses.parts if masses else 0.0) + (
-            mpf(rod.mass) * mpf(rod.share) if rod else 0
-        )
-        weight, angle = (
-            self.mass * mpf(0 if lean is None else "9.80665"),
-            mp.radians(mpf(lean or 0.0)),
-        )
-        self._weight, self._side_weight = weight * mp.sin(angle), weight * mp.cos(angle)
+        self._cylinder, self._mechanism = cylinder, cylinder.mechanism
+        self._crankshaft = machine.crankshaft
+        self._set_masses(machine.inclination_of(cylinder))
+        self._set_friction(cylinder.friction)
+        resistance = cylinder.ram_force or cylinder.moment
+        self._resistance = [mpf(0), mpf(0)]
+        if resistance is not None:
+            self._resistance = [mpf(resistance.work), mpf(resistance.back)]
 
-        self._crosshead = mpf(
-            (friction and cylinder.mechanism.has_rod and friction.crosshead) or 0.0
-        )
-        self._rings = mpf((friction and friction.constant) or 0.0)
-        if friction and (rings := friction.rings):
-            surface = rings.count * mp.pi * mpf(cylinder.pistons[0].bore) * mpf(rings.height)
-            self._rings += surface * mpf(rings.pressure) * mpf(rings.coefficient)
-
-        self._chambers: list[Chamber] = []
-        for piston in cylinder.pistons:
-            lift = mpf(0) if piston.indicator and piston.indicator.absolute else self._ambient
-            for end, card in piston.chambers.items():
-                assert isinstance(card, KNOWN_CARDS)
-                head, ratio = end == "head_end", piston.lever_ratio
-                thickness = mpf(piston.head_end_rod if head else piston.crank_end_rod)
-                area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
-                drawing = drawn(card, lift, self.turns == 2)
-                sign = 1 if head == (ratio > 0) else -1
-                strokes = 1 + max(line.stroke for line in drawing.lines)
-                self._chambers.append(Chamber(drawing, sign, area, strokes))
-
+        self.pistons = [self._piston(machine, number) for number in range(len(cylinder.pistons))]
         self._piece = cache(self._piece_of)
         self.edges = merged(np.array(list(self._corners())))
-        if self._crosshead:
-            lifts = np.frompyfunc(lambda phi, within: self.at(phi, within).lift, 2, 1)
-            off, _ = roots(lifts, self.edges[:-1], self.edges[1:], STEPS)
-            self.edges = merged(np.append(self.edges, off))
+        if self._rubs:
+            self.edges = self._between_kinks()
+
+    def _set_masses(self, inclination: float | None) -> None:
+        """Set the mass of what slides, the rod, and the parts of gravity along and across the stroke line."""
+        masses = self._cylinder.masses
+        rod = masses.connecting_rod if masses else None
+        self._parts = mpf(masses.parts if masses else 0.0)
+        self._rod = RodBody(mpf(0), mpf(0), mpf(0), mpf(0))
+        if rod is not None and rod.center_of_gravity is not None:
+            place, inertia = mpf(rod.center_of_gravity), mpf(rod.inertia)
+            self._rod = RodBody(mpf(rod.mass), place, inertia, mpf(0))
+        elif rod is not None:
+            at_crosshead = mpf(rod.mass) * mpf(rod.share)
+            self._rod = RodBody(at_crosshead, mpf(0), mpf(0), mpf(rod.mass) - at_crosshead)
+        gravity = mpf(0) if inclination is None else mpf(GRAVITY)
+        angle = mp.radians(mpf(inclination or 0.0))
+        self._g = gravity * mp.sin(angle), -gravity * mp.cos(angle)
+
+    def _set_friction(self, friction: Friction | None) -> None:
+        """Set coefficients, and moments of friction over the loads: f r."""
+        self._crosshead = self._rings = self._ring_surface = mpf(0)
+        self._block = self._guides = mpf(0)
+        self._at_crank = self._at_crosshead = self._at_journals = mpf(0)
+        if friction is None:
+            self._rubs = False
+            return
+        self._crosshead = mpf((self._mechanism.has_rod and friction.crosshead) or 0.0)
+        self._rings = mpf(friction.constant or 0.0)
+        rings, mechanism = friction.rings, self._mechanism
+        if rings:
+            surface = rings.count * mp.pi * mpf(self._cylinder.pistons[0].bore) * mpf(rings.height)
+            pressed = surface * mpf(rings.coefficient)
+            if isinstance(rings.pressure, GasOnRings):
+                self._ring_surface = pressed * mpf(rings.pressure.gas)
+            else:
+                self._rings += pressed * mpf(rings.pressure)
+        if isinstance(mechanism, ScotchYoke):
+            self._block = mpf(friction.block or 0.0)
+            self._guides = mpf(friction.guides or 0.0) / mpf(mechanism.guide_length or 1.0)
+        self._at_crank = _radius(friction.crank_pin, self._pin_diameter(friction))
+        self._at_crosshead = _radius(friction.crosshead_pin, friction.crosshead_pin_diameter)
+        self._at_journals = _radius(friction.journals, friction.journal_diameter)
+        self._rubs = any(
+            (self._crosshead, self._ring_surface, self._block, self._guides, self._pins_rub)
+        )
+
+    def _pin_diameter(self, friction: Friction) -> float | None:
+        """Return the diameter of the crank pin in m, by the friction, a yoke or the crankshaft."""
+        if isinstance(self._mechanism, ScotchYoke) and self._mechanism.pin_diameter is not None:
+            return self._mechanism.pin_diameter
+        if friction.crank_pin_diameter is None and self._crankshaft is not None:
+            return self._crankshaft.pin_diameter
+        return friction.crank_pin_diameter
+
+    @property
+    def _pins_rub(self) -> bool:
+        """Whether pins or journals rub."""
+        return any((self._at_crank, self._at_crosshead, self._at_journals))
+
+    def _piston(self, machine: Machine, number: int) -> PistonProcess:
+        """Return a piston with its chambers; number: 0 for the cylinder's own one."""
+        piston: Piston = self._cylinder.pistons[number]
+        is_absolute = piston.indicator is not None and piston.indicator.absolute
+        lift = mpf(0) if is_absolute else self._ambient
+        turns = CYCLES[machine.cycle_of_piston(self._cylinder, number)]
+        valve = None if number else self._cylinder.valve
+        chambers = []
+        for end, card in piston.chambers.items():
+            assert isinstance(card, KNOWN_CARDS)
+            is_head, ratio = end == "head_end", piston.lever_ratio
+            thickness = mpf(piston.head_end_rod if is_head else piston.crank_end_rod)
+            area = mp.pi / 4 * (mpf(piston.bore) ** 2 - thickness**2) * abs(mpf(ratio))
+            sign = 1 if is_head == (ratio > 0) else -1
+            events = None
+            if valve is not None and isinstance(card, Steam):
+                places = [self._share(angle) for angle in events_of(valve, end)]
+                events = Fractions(*(place if is_head else 1 - place for place in places))
+            drawing = drawn(card, lift, turns == 2, self._ambient, events)
+            strokes = 1 + max(line.stroke for line in drawing.lines)
+            chambers.append(Chamber(drawing, sign, area, strokes))
+        work = sum((chamber.work for chamber in chambers), mpf(0))
+        return PistonProcess(tuple(chambers), number == 0, work)
+
+    # pieces of the cycle
+
+    def _share(self, phi: Number) -> Number:
+        """Return the share of the stroke that the output is past its inner dead centre."""
+        return (self.motion.at(phi).x - self.motion.start) / self.motion.stroke
 
     def _corners(self) -> Iterator[Number]:
         """Yield the angles from the first inner dead centre through one cycle at which a card bends or jumps."""
         yield self.motion.ends[0] + 360 * self.turns
         for stroke in range(2 * self.turns):
             turn, back = divmod(stroke, 2)
-            yield self.motion.ends[back] + 360 * turn
-            shares: set[Number] = set()
-            for chamber in self._chambers:
-                shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
-            for share in shares - {0, 1}:
-                beyond = np.frompyfunc(
-                    lambda phi, _, x=share * self.motion.stroke: self.motion.at(phi).x - x, 2, 1
-                )
-                (angle,), _ = roots(
-                    beyond,
-                    self.motion.ends[back : back + 1],
-                    self.motion.ends[back + 1 :][:1],
-                    STEPS,
-                )
+            begin, end = self.motion.ends[back], self.motion.ends[back + 1]
+            yield begin + 360 * turn
+            if self._block or self._pins_rub:
+                square = 90 + 180 * mp.ceil((begin - 90) / 180)
+                yield square + 360 * turn
+            for share in self._shares(stroke):
+                beyond = np.frompyfunc(lambda phi, _, at=share: self._share(phi) - at, 2, 1)
+                (angle,), _ = roots(beyond, np.array([begin]), np.array([end]), STEPS)
                 yield angle + 360 * turn
 
-    def _piece_of(self, within: Number) -> tuple[int, list[Line]]:
-        """Return the direction of the crosshead on a piece, and on which line of its card each chamber is."""
+    def _shares(self, stroke: int) -> set[Number]:
+        """Return the shares of the stroke inside it at which a card bends or jumps."""
+        shares: set[Number] = set()
+        for piston in self.pistons:
+            for chamber in piston.chambers:
+                shares |= {chamber.fraction(line.begin) for line in chamber.lines(stroke)}
+        return shares - {0, 1}
+
+    def _between_kinks(self) -> Array:
+        """Return the edges with the angles at which friction turns round."""
+        edges = [self.edges]
+        count = len(self.at(self.edges[0], (self.edges[0] + self.edges[1]) / 2).kinks)
+        for number in range(count):
+            kink = np.frompyfunc(
+                lambda phi, within, number=number: self.at(phi, within).kinks[number], 2, 1
+            )
+            turned, _ = roots(kink, self.edges[:-1], self.edges[1:], STEPS)
+            edges.append(turned)
+        return merged(np.concatenate(edges))
+
+    def _piece_of(self, within: Number) -> tuple[int, list[list[Line]]]:
+        """Return the sense of the stroke on a piece, and on which line of its card each chamber is."""
         inner, outer, _ = self.motion.ends
         since = (within - inner) % (360 * self.turns)
         turn = int(since / 360)
-        back, share = (
-            since - 360 * turn > outer - inner,
-            self.motion.at(within).x / self.motion.stroke,
-        )
-        lines = [chamber.line_at(2 * turn + back, share) for chamber in self._chambers]
-        return -1 if back else 1, lines
+        back = since - 360 * turn > outer - inner
+        share = self._share(within)
+        stroke = 2 * turn + back
+        lines = [
+            [chamber.line_at(stroke, share) for chamber in piston.chambers]
+            for piston in self.pistons
+        ]
+        return -1 if back and not self.motion.never_returns else 1, lines
+
+    # forces
 
     def at(self, phi: Number, within: Number) -> Forces:
         """Return the forces at a crank angle."""
-        motion, (direction, lines) = self.motion.at(phi), self._piece(within)
-        gas, share = mpf(0), motion.x / self.motion.stroke
-        for chamber, line in zip(self._chambers, lines):
-            gas += chamber.sign * chamber.area * (chamber.pressure(line, share) - self._ambient)
-        push = gas - self.mass * self.omega**2 * motion.curvature + self._weight
-        lift = (
-            push - direction * self._rings
-        ) * motion.sin_psi + self._side_weight * motion.cos_psi
-        leaning = motion.cos_psi + direction * mp.sign(lift) * self._crosshead * motion.sin_psi
-        friction = -direction * (self._crosshead * abs(lift / leaning) + self._rings)
-        torque = (push + friction) * motion.slope
-        return Forces(motion.slope, gas, friction, lift, torque / self.motion.r, torque)
+        pose, (sense, lines) = self.motion.at(phi), self._piece(within)
+        gas = self._gas(pose, lines)
+        resistance = self._resistance[0 if (sense > 0) == self.motion.works_out else 1]
+        steady = self._rings + self._ring_surface * abs(gas.difference)
+
+        # along the stroke line, without a rod
+        push = gas.force - sense * (resistance + steady)
+        push += self._parts * (self._g[0] - self.omega**2 * pose.curvature)
+        if not isinstance(self.motion, RodMotion):
+            M = self.motion.torque_of(push, phi)
+            friction, kinks = -sense * steady, (gas.difference,)
+            return Forces(
+                pose.slope, gas.force, gas.driving, friction, {}, M / self.motion.r, M, kinks
+            )
+
+        # on the crank pin
+        side = mp.sign(mp.cospi(within / 180))
+        if self._mechanism.has_rod:
+            loads, losses, on_crank = self._on_rod(phi, pose, sense, push, side)
+        else:
+            loads, losses, on_crank = self._on_yoke(phi, sense, push, side)
+        T = loads.Z[0] * mp.sinpi(phi / 180) + loads.Z[1] * mp.cospi(phi / 180)
+        M = T * self.motion.r - on_crank
+        friction = -sense * (loads.drag + steady)
+        kinks = (*loads.kinks, gas.difference)
+        return Forces(pose.slope, gas.force, gas.driving, friction, losses, T, M, kinks)
+
+    def _gas(self, pose: Stance, lines: list[list[Line]]) -> Gas:
+        """Return the forces of the gas on all pistons."""
+        force = driving = difference = mpf(0)
+        if not self.pistons:
+            return Gas(force, driving, difference)
+        share = (pose.x - self.motion.start) / self.motion.stroke
+        for piston, its_lines in zip(self.pistons, lines):
+            on_piston = mpf(0)
+            for chamber, line in zip(piston.chambers, its_lines):
+                above = chamber.pressure(line, share) - self._ambient
+                on_piston += chamber.sign * chamber.area * above
+                if piston.is_own:
+                    difference += chamber.sign * above
+            force += on_piston
+            if piston.work > IDLE:
+                driving += on_piston
+        return Gas(force, driving, difference)
+
+    def _on_rod(
+        self, phi: Number, pose: Stance, sense: int, push: Number, side: Number
+    ) -> tuple[Loads, dict[str, Number], Number]:
+        """Return the loads on the pins of a rod, the losses there, and what the shaft loses; side: sign of cos φ."""
+        swing = self._swing(phi, pose)
+        loads = self._loads(pose, swing, sense, push, mpf(0))
+        if not self._pins_rub:
+            return loads, {}, mpf(0)
+
+        # the loads of the pins, the crank pin's with what turns with it
+        outward = self._rod.pin_mass * self.motion.r * self.omega**2
+        x = loads.Z[0] - outward * mp.cospi(phi / 180)
+        y = loads.Z[1] + outward * mp.sinpi(phi / 180)
+        Z, H = mp.hypot(x, y), mp.hypot(*loads.H)
+        crank, crosshead, journals = (
+            self._at_crank * Z,
+            self._at_crosshead * H,
+            self._at_journals * Z,
+        )
+        losses = {
+            "crank_pin": crank * (1 + swing.rate),
+            "crosshead_pin": crosshead * side * swing.rate,
+            "journals": journals,
+        }
+        rubbed = self._loads(pose, swing, sense, push, crank + side * crosshead)
+        kinks = (*loads.kinks, *rubbed.kinks)
+        return rubbed._replace(kinks=kinks), losses, crank + journals
+
+    def _swing(self, phi: Number, pose: Stance) -> Jet:
+        """Return the angle of the rod with its derivatives, from L sin ψ = R sin φ − e."""
+        ratio = self.motion.r / mpf(self._mechanism.rod_length)
+        rate = ratio * mp.cospi(phi / 180) / pose.cos_psi
+        bend = (pose.sin_psi * rate**2 - ratio * mp.sinpi(phi / 180)) / pose.cos_psi
+        return Jet(mp.asin(pose.sin_psi), rate, bend)
+
+    def _loads(self, pose: Stance, swing: Jet, sense: int, push: Number, couple: Number) -> Loads:
+        """Return N and the forces on the pins of a rod; couple: by friction in the pins, in the sense of rotation."""
+        sin, cos = pose.sin_psi, pose.cos_psi
+        length, rod, omega = mpf(self._mechanism.rod_length), self._rod, self.omega
+
+        # weight and inertia of the rod
+        upward = cos * swing.bend - sin * swing.rate**2
+        forward = -sin * swing.bend - cos * swing.rate**2
+        x = rod.mass * (self._g[0] - omega**2 * (pose.curvature + rod.place * forward))
+        y = rod.mass * (self._g[1] - omega**2 * rod.place * upward)
+
+        # moments about the crank pin, over L
+        tilt = -(1 - rod.place / length) * (cos * y - sin * x)
+        turning = (couple + rod.inertia * omega**2 * swing.bend) / length
+        weight = -self._parts * self._g[1]
+        lift = push * sin + weight * cos + tilt - turning
+        N = lift / (cos + sense * mp.sign(lift) * self._crosshead * sin)
+        drag = self._crosshead * abs(N)
+        H = push - sense * drag, N - weight
+        return Loads(drag, H, (H[0] + x, H[1] + y), (lift,))
+
+    def _on_yoke(
+        self, phi: Number, sense: int, push: Number, side: Number
+    ) -> tuple[Loads, dict[str, Number], Number]:
+        """Return the loads of a yoke on the crank pin, the losses of its block and of the pin, and the shaft's."""
+        rise = self.motion.r * mp.sinpi(phi / 180)
+        drag = 2 * self._guides * abs(push * rise)
+        along = push - sense * drag
+        block = self._block * abs(along)
+        Z = along, -side * block
+        on_pin = mp.hypot(*Z)
+        crank, journals = self._at_crank * on_pin, self._at_journals * on_pin
+        slides = self.motion.r * abs(mp.cospi(phi / 180))
+        losses = {"block": block * slides, "crank_pin": crank, "journals": journals}
+        return Loads(drag, (along, mpf(0)), Z, (push, along)), losses, crank + journals
+
+    def inertia(self, phi: Number) -> Number:
+        """Return the inertia in kg m² that has the kinetic energy of all moving masses."""
+        pose, masses = self.motion.at(phi), self._cylinder.masses
+        inertia = self._parts * pose.slope**2
+        if masses is None or not isinstance(self.motion, RodMotion):
+            return inertia
+        inertia += (mpf(masses.rotating) + self._rod.pin_mass) * self.motion.r**2
+        swing = self._swing(phi, pose)
+        x = pose.slope - self._rod.place * pose.sin_psi * swing.rate
+        y = self._rod.place * pose.cos_psi * swing.rate
+        return inertia + self._rod.mass * (x**2 + y**2) + self._rod.inertia * swing.rate**2
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether a piston is driven, or the output works against a resistance."""
+        return any(piston.work < -IDLE for piston in self.pistons) or any(self._resistance)
+
+    @property
+    def drives(self) -> bool:
+        """Whether a piston drives."""
+        return any(piston.work > IDLE for piston in self.pistons)
+
+
+def _radius(coefficient: float | None, diameter: float | None) -> Number:
+    """Return the radius of a circle of friction in m, f d/2; 0 where nothing rubs."""
+    return mpf(coefficient or 0.0) * mpf(diameter or 0.0) / 2
 
 
 # quantities
@@ -253,41 +480,120 @@ class TextbookCylinder:
 NEEDED: dict[str, Callable[[Number], Number]] = {
     "A_i": lambda state: state.slope * state.P_gas,
     "T_max, T_min": lambda state: state.T,
-    "A_f": lambda state: -state.slope * state.F_friction,
+    "A_f": lambda state: sum(state.losses.values()) - state.slope * state.F_friction,
     "ΔE": lambda state: state.M,
 }
 """Quantity -> what it is the integral, the extremes or the swing of, from the columns of `Forces` or of the solver."""
 
-Cylinders = Sequence[tuple[Callable[[Number, Number], Number], Number]]
-"""Functions that return the columns of cylinders at angles of their own cranks, and where these are."""
+
+class Share(NamedTuple):
+    """What the torque of a cylinder counts for the losses (R p. 611-613), and the torque of its driving pistons."""
+
+    whole: float = 1.0
+    of_driving: float = 0.0
 
 
-def needed(quantity: str, cylinders: Cylinders, phi: Number, within: Number) -> Number:
+class Addends(NamedTuple):
+    """What a quantity is a sum of: cylinders with the places of their cranks and their shares; diagrams with factors.
+
+    A cylinder is a function that returns its columns at angles of its own crank.
+    """
+
+    cylinders: Sequence[tuple[Callable[[Number, Number], Number], Number, Share]]
+    diagrams: Sequence[tuple[Callable[[Number, Number], Number], float]] = ()
+
+
+def needed(quantity: str, addends: Addends, phi: Number, within: Number) -> Number:
     """Return what a quantity is computed from, at angles of crank 1."""
-    return sum(NEEDED[quantity](at(phi - place, within - place)) for at, place in cylinders)
+    total = 0 * phi
+    for at, place, share in addends.cylinders:
+        state = at(phi - place, within - place)
+        total = total + share.whole * NEEDED[quantity](state)
+        if share.of_driving:
+            total = total + share.of_driving * state.P_driving * state.slope
+    for diagram, factor in addends.diagrams:
+        total = total + factor * diagram(phi, within)
+    return total
 
 
 class TextbookMachine:
     """Cylinders with the places of their cranks; edges: of all pieces of the cycle, at the angles of crank 1."""
 
-    def __init__(self, machine: Machine, cylinders: Sequence[Cylinder]) -> None:
+    def __init__(self, machine: Machine, quantity: str) -> None:
+        members = taking_part(machine, quantity)
         self.cylinders = [
-            (TextbookCylinder(machine, one), mpf(one.crank_position)) for one in cylinders
+            (TextbookCylinder(machine, cylinder), mpf(cylinder.crank_position))
+            for cylinder in members
         ]
-        turns = max(one.turns for one, _ in self.cylinders)
-        found = [mpf(0), mpf(360 * turns)]
-        for one, place in self.cylinders:
-            starts = [place + 360 * turn for turn in range(0, turns, one.turns)]
-            found += [(edge + start) % found[1] for edge in one.edges[:-1] for start in starts]
-        self.edges = merged(np.array(found))
+        turns = machine.revolutions if quantity == "ΔE" else self.cylinders[0][0].turns
+        self.cycle = 360 * turns
+        edges = [mpf(0), mpf(self.cycle)]
+        for cylinder, place in self.cylinders:
+            for turn in range(0, turns, cylinder.turns):
+                edges += [(edge + place + 360 * turn) % self.cycle for edge in cylinder.edges]
+
+        self.diagrams: list[tuple[Callable[[Number, Number], Number], float]] = []
+        shares = [Share()] * len(members)
+        if quantity == "ΔE":
+            self._add_diagrams(machine)
+            edges += self._knees(machine)
+            shares = self._shares(mpf(machine.efficiency))
+        self.shares = shares
+        self.edges = merged(np.array(edges))
+
+    @property
+    def addends(self) -> Addends:
+        """What its quantity is a sum of."""
+        cylinders = [
+            (cylinder.at, place, share)
+            for (cylinder, place), share in zip(self.cylinders, self.shares)
+        ]
+        return Addends(cylinders, self.diagrams)
+
+    def _knees(self, machine: Machine) -> list[Number]:
+        """Return where given efforts and loads bend."""
+        load = machine.load.diagram if machine.load else None
+        diagrams = [diagram for diagram in (machine.effort, load) if diagram is not None]
+        knees: list[Number] = []
+        for diagram in diagrams:
+            assert not isinstance(diagram, Swing)
+            knees += knees_of(diagram, self.cycle)
+        return knees
+
+    def _add_diagrams(self, machine: Machine) -> None:
+        """Add a given effort with its losses, and a given load."""
+        effort, eta = machine.effort, machine.efficiency
+        if effort is not None:
+            assert not isinstance(effort, Swing)
+            torque = diagram_of(effort)
+            edges = merged(np.array([mpf(0), mpf(self.cycle), *knees_of(effort, self.cycle)]))
+            drives = integrals(np.frompyfunc(torque, 2, 1), edges, STEPS).sum() >= 0
+            self.diagrams.append((torque, eta if drives else 1 / eta))
+        if machine.load is not None and machine.load.diagram is not None:
+            self.diagrams.append((diagram_of(machine.load.diagram), -1.0))
+
+    def _shares(self, eta: Number) -> list[Share]:
+        """Return the shares of the cylinders: of a machine that drives, driven pistons count in full."""
+        cylinders = [cylinder for cylinder, _ in self.cylinders]
+        if not any(cylinder.drives for cylinder in cylinders):
+            is_driven = any(cylinder.is_driven for cylinder in cylinders)
+            return [Share(1 / eta if is_driven else mpf(1))] * len(cylinders)
+        shares = []
+        for cylinder in cylinders:
+            share = Share()
+            if cylinder.drives and cylinder.is_driven:
+                share = Share(1.0, eta - 1)
+            elif cylinder.drives:
+                share = Share(eta)
+            shares.append(share)
+        return shares
 
     def function(self, quantity: str) -> Callable[[Array, Array], Array]:
         """Return what a quantity is computed from."""
-        at = [(one.at, place) for one, place in self.cylinders]
-        return np.frompyfunc(partial(needed, quantity, at), 2, 1)
+        return np.frompyfunc(partial(needed, quantity, self.addends), 2, 1)
 
 
-def reference(machine: Machine, quantity: str) -> tuple[Found, Array]:
-    """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J; and the edges of its pieces."""
-    book = TextbookMachine(machine, taking_part(machine, quantity))
-    return by_gauss(quantity, book.function(quantity), book.edges, STEPS), book.edges
+def reference(machine: Machine, quantity: str) -> tuple[Found, TextbookMachine]:
+    """Return A_i and A_f in J, T_max and T_min in N, of the first cylinder, or ΔE in J; and the machine behind it."""
+    book = TextbookMachine(machine, quantity)
+    return by_gauss(quantity, book.function(quantity), book.edges, STEPS), book

@@ -12,8 +12,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from kurbel.accuracy.linkages import Stance, motion_of, stance
 from kurbel.accuracy.methods import (
     Found,
+    Number,
     by_fit,
     by_gauss,
     by_quad,
@@ -27,11 +29,11 @@ from kurbel.accuracy.methods import (
 from kurbel.accuracy.textbook import (
     DIGITS,
     NEEDED,
-    Stance,
-    TextbookMotion,
+    Addends,
+    Share,
+    TextbookMachine,
     needed,
     reference,
-    stance,
     taking_part,
     unknown,
 )
@@ -39,6 +41,9 @@ from kurbel.arrays import Array
 from kurbel.crank_angle import CrankAngle
 from kurbel.errors import KurbelError
 from kurbel.machine import Cylinder, Machine
+from kurbel.mechanisms import Mechanism
+from kurbel.mechanisms.scotch_yoke import ScotchYoke
+from kurbel.mechanisms.slider_crank import SliderCrank
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
@@ -112,80 +117,96 @@ def examined(
 def compared(machine: Machine, quantity: str, degrees: Array) -> tuple[Array, Iterator[Method]]:
     """Return the exact values (n,) of a quantity, in mpmath's numbers, and the methods for it."""
     if quantity in "xcb":
-        book, order = TextbookMotion(machine.cylinders[0].mechanism), "xcb".index(quantity)
-        truth = [book.at(mpf(float(one)))[order] for one in degrees]
+        motion, order = motion_of(machine.cylinders[0].mechanism), "xcb".index(quantity)
+        truth = [motion.at(mpf(float(angle)))[order] for angle in degrees]
         return np.array(truth), motion_methods(machine, degrees, order)
-    found, edges = reference(machine, quantity)
-    return np.atleast_1d(np.array(found, dtype=object)), force_methods(
-        machine, quantity, edges.astype(float)
-    )
+    exact, book = reference(machine, quantity)
+    values = np.atleast_1d(np.array(exact, dtype=object))
+    return values, force_methods(machine, quantity, book)
 
 
 def motion_methods(machine: Machine, degrees: Array, order: int) -> Iterator[Method]:
     """Yield methods for x, c or b at crank angles, order 0 to 2, as derivatives by φ in m."""
     mechanism = machine.cylinders[0].mechanism
-
-    def book(at: Array) -> Stance:
-        phi = np.radians(at)
-        return stance(
-            mechanism.crank,
-            mechanism.rod_length,
-            mechanism.offset,
-            np.sin(phi),
-            np.cos(phi),
-            np.sqrt,
-        )
-
-    def fit(count: int) -> Array:
-        series = np.polynomial.Chebyshev.interpolate(lambda at: book(at).x, count, (0, 360)).deriv(
-            order
-        )
-        return series(degrees % 360) * math.degrees(1) ** order
-
     own = (mechanism.coordinate, mechanism.slope, mechanism.curvature)[order]
     yield OWN, "closed", lambda: own(CrankAngle.of(degrees))
-    yield "textbook, radians", "closed", lambda: book(degrees)[order]
+    if isinstance(mechanism, (SliderCrank, ScotchYoke)):
+        yield "textbook, radians", "closed", lambda: in_radians(mechanism, degrees)[order]
     for count in (16, 32, 64):
-        yield "Chebyshev fit", str(count), partial(fit, count)
+        yield "Chebyshev fit", str(count), partial(fitted_motion, mechanism, degrees, order, count)
+
+
+def in_radians(mechanism: Mechanism, degrees: Array) -> Stance:
+    """Return the motion of a slider-crank by the formulas of the books, in floats."""
+    phi = np.radians(degrees)
+    lengths = mechanism.crank, mechanism.rod_length, mechanism.offset
+    return stance(*lengths, np.sin(phi), np.cos(phi), np.sqrt)
+
+
+def fitted_motion(mechanism: Mechanism, degrees: Array, order: int, count: int) -> Array:
+    """Return x, c or b of the polynomial of this degree through x of one turn."""
+
+    def x(at: Array) -> Array:
+        if isinstance(mechanism, (SliderCrank, ScotchYoke)):
+            return np.asarray(in_radians(mechanism, at).x)
+        return np.asarray(mechanism.coordinate(CrankAngle.of(at)))
+
+    nodes = np.polynomial.chebyshev.chebpts1(count + 1)
+    series = np.polynomial.Chebyshev.fit(180 + 180 * nodes, x(180 + 180 * nodes), count, (0, 360))
+    return np.asarray(series.deriv(order)(degrees % 360)) * math.degrees(1) ** order
 
 
 def own_answer(machine: Machine, quantity: str) -> object:
     """Return A_i, A_f, T_max and T_min of the first cylinder, or ΔE, by kurbel; None where a machine has none."""
     case = Case(machine)
-    if not any(one.pistons or one.masses for one in machine.cylinders):
-        return machine.effort if quantity == "ΔE" else None
+    has_force = any(forces.drive.has_force for forces in case.cylinders)
     if quantity == "ΔE":
-        return case.flywheel.dE
+        return case.flywheel.dE if has_force or machine.effort is not None else None
+    if not has_force:
+        return None
     forces = case.cylinders[0]
     if quantity[0] == "T":
-        found = forces.extremes_of("T")
-        return found and (found.largest.value, found.smallest.value)
+        extremes = forces.extremes_of("T")
+        return extremes and (extremes.largest.value, extremes.smallest.value)
     return forces.work if quantity == "A_i" else forces.friction_work
 
 
-def force_methods(machine: Machine, quantity: str, edges: Array) -> Iterator[Method]:
-    """Yield methods for what is computed from forces; edges: of smooth pieces in degrees, unknown to kurbel."""
-
-    def rival(method: Callable[..., Found], count: int) -> Found:
-        cylinders = [
-            (CylinderForces(machine, one).at, one.crank_position)
-            for one in taking_part(machine, quantity)
-        ]
-        return method(quantity, partial(needed, quantity, cylinders), edges, count)
-
+def force_methods(machine: Machine, quantity: str, book: TextbookMachine) -> Iterator[Method]:
+    """Yield methods for what is computed from forces; book: has the edges of smooth pieces, unknown to kurbel."""
+    edges = book.edges.astype(float)
     points = {"A_i": "closed", "A_f": "Lobatto 16", "ΔE": "closed", "T_max, T_min": "roots of T′"}
     yield OWN, points[quantity], partial(own_answer, machine, quantity)
     for name, method, counts in methods_for(quantity):
         for count in counts:
-            yield name, str(count or "default"), partial(rival, method, count)
+            yield (
+                name,
+                str(count or "default"),
+                partial(rival, machine, quantity, book, method, count),
+            )
     if quantity[0] == "A":
         turns = round((edges[-1] - edges[0]) / 360)
         for count in (36, 360):
-            yield (
-                "spreadsheet",
-                f"{count} rows",
-                partial(spreadsheet, machine, quantity, turns, count),
-            )
+            rows = partial(spreadsheet, machine, quantity, turns, count)
+            yield "spreadsheet", f"{count} rows", rows
+
+
+def rival(
+    machine: Machine, quantity: str, book: TextbookMachine, method: Callable[..., Found], count: int
+) -> Found:
+    """Return a quantity by a method that is given the forces of kurbel, and what else the machine file gives."""
+    cylinders = []
+    for cylinder, share in zip(taking_part(machine, quantity), book.shares):
+        floats = Share(float(share.whole), float(share.of_driving))
+        cylinders.append((CylinderForces(machine, cylinder).at, cylinder.crank_position, floats))
+    diagrams = [(in_floats(torque), factor) for torque, factor in book.diagrams]
+    function = partial(needed, quantity, Addends(cylinders, diagrams))
+    return method(quantity, function, book.edges.astype(float), count)
+
+
+def in_floats(torque: Callable[[Number, Number], Number]) -> Callable[[Array, Array], Array]:
+    """Return a torque over the angle that takes floats (n,)."""
+    at = np.frompyfunc(torque, 2, 1)
+    return lambda phi, within: np.asarray(at(phi, within), dtype=float)
 
 
 def methods_for(quantity: str) -> Iterator[tuple[str, Callable[..., Found], tuple[int, ...]]]:
@@ -211,6 +232,9 @@ def spreadsheet(machine: Machine, quantity: str, turns: int, rows: int) -> float
         state = CylinderForces(machine, cylinder).at(degrees + 360 * turn, degrees + 360 * turn)
         force = state.P_gas if quantity == "A_i" else -state.F_friction
         work += float((force[1:] + force[:-1]) @ np.diff(x)) / 2
+        if quantity == "A_f":
+            lost = np.zeros(len(degrees)) + sum(state.losses.values(), start=0.0)
+            work += float((lost[1:] + lost[:-1]).sum()) * math.pi / rows
     return work
 
 

@@ -1,0 +1,181 @@
+"""The references of `kurbel accuracy` keep the laws of mechanics, and kurbel agrees with them for every machine."""
+
+from collections.abc import Iterator
+
+import mpmath
+import numpy as np
+import pytest
+
+from kurbel import loads
+from kurbel.accuracy.jets import Jet, turned
+from kurbel.accuracy.linkages import RodMotion, motion_of
+from kurbel.accuracy.methods import mp
+from kurbel.accuracy.textbook import DIGITS, NEEDED, TextbookCylinder, reference, unknown
+from kurbel.accuracy.trials import errors, own_answer
+from kurbel.accuracy.valves import events_of
+from kurbel.machine import Machine
+from kurbel.shipped import shipped
+
+mpf = mpmath.mpf
+
+
+@pytest.fixture(autouse=True)
+def digits() -> Iterator[None]:
+    with mp.workdps(DIGITS):
+        yield
+
+
+MECHANISMS = {
+    "fork head": "mechanism: slotted-lever, crank: 300 mm, frame: 800 mm, lever: 1300 mm",
+    "tilt": "mechanism: slotted-lever, crank: 300 mm, frame: 800 mm",
+    "link": "mechanism: slotted-lever, crank: 300 mm, frame: 800 mm, lever: 1300 mm, link: 500 mm",
+    "Whitworth": "mechanism: slotted-lever, crank: 300 mm, frame: 100 mm",
+    "Whitworth with a link": (
+        "mechanism: slotted-lever, crank: 300 mm, frame: 100 mm, lever: 400 mm, link: 900 mm"
+    ),
+    "crank-rocker": (
+        "mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm"
+    ),
+    "drag link": (
+        "mechanism: four-bar, crank: 100 mm, coupler: 120 mm, rocker: 110 mm, frame: 40 mm"
+    ),
+    "coupled axle": "mechanism: parallel-crank, crank: 305 mm, frame: 2100 mm",
+}
+
+
+@pytest.mark.parametrize("keys", MECHANISMS.values(), ids=list(MECHANISMS))
+def test_statics_of_a_linkage_keep_virtual_work(keys: str) -> None:
+    """M dφ = P dx: forces from the lines of the members agree with speeds by differentiation, to 35 digits."""
+    motion = motion_of(loads(f"{{{keys}}}").cylinders[0].mechanism)
+    assert not isinstance(motion, RodMotion)
+    for degrees in (-50, 13, 100, 211, 333):
+        work = 7 * motion.at(mpf(degrees)).slope
+        assert abs(motion.torque_of(mpf(7), mpf(degrees)) - work) < 1e-35
+
+
+def test_jets_differentiate() -> None:
+    """Of √(e^(iφ) + 2) and of its bearing: as by differences of 40 digits."""
+
+    def function(phi: mpmath.mpf) -> Jet:
+        return (turned(phi) + Jet(mpf(2))).root().bearing() / Jet(mpf(3))
+
+    step = mpf("1e-10")
+    degrees = mp.degrees(step)
+    before, here, after = (function(70 + sign * degrees) for sign in (-1, 0, 1))
+    assert here.rate == pytest.approx((after.value - before.value) / (2 * step), rel=1e-15)
+    bend = (after.value - 2 * here.value + before.value) / step**2
+    assert here.bend == pytest.approx(bend, rel=1e-15)
+
+
+EXACT = """
+{speed: 600 rpm, crank: 60 mm, rod: 220 mm, bore: 100 mm, offset: 8 mm, inclination: 70 deg,
+ indicator: {head_end: {unit: bar, expansion: [[0, 30], [1, 2]], compression: [[1, 1], [0, 30]]}},
+ masses: {piston: 2 kg, connecting_rod: {mass: 3 kg, center_of_gravity: 150 mm, inertia: 0.02 kg m2}}}
+"""
+
+
+def test_energy_of_an_exact_rod() -> None:
+    """What the gas and gravity put in and the torque takes out is the change of the kinetic energy, ½ J ω²."""
+    machine = loads(EXACT)
+    cylinder = TextbookCylinder(machine, machine.cylinders[0])
+    low, high = mpf(20), mpf(80)
+    within = mpf(50)
+
+    # heights: the piston moves down by x sin i, the rod's centre of gravity with it and by its swing
+    def heights(phi: mpmath.mpf) -> mpmath.mpf:
+        pose, lean = cylinder.motion.at(phi), mp.radians(70)
+        piston = -pose.x * mp.sin(lean)
+        along = pose.x + mpf("0.15") * pose.cos_psi
+        rod = -along * mp.sin(lean) + mpf("0.15") * pose.sin_psi * mp.cos(lean)
+        return 2 * piston + 3 * rod
+
+    def power(phi: mpmath.mpf) -> mpmath.mpf:
+        forces = cylinder.at(mp.degrees(phi), within)
+        return forces.P_gas * forces.slope - forces.M
+
+    work = mp.quad(power, [mp.radians(low), mp.radians(high)])
+    work -= mpf("9.80665") * (heights(high) - heights(low))
+    energy = cylinder.omega**2 / 2 * (cylinder.inertia(high) - cylinder.inertia(low))
+    assert work == pytest.approx(energy, rel=1e-14)
+
+
+def test_events_of_a_valve_without_rod_by_zeuner() -> None:
+    """sin(φ + δ) = ±S/r and −E/r: S = r sin δ closes at 180° − 2δ, and so on."""
+    text = (
+        "{stroke: 600 mm, rod: 1500 mm, bore: 350 mm, valve: {travel: 90 mm, steam_lap: 22.5 mm, "
+        "angle_of_advance: 45 deg}, indicator: {head_end: {steam: {admission: 9 at, exhaust: 0.1 at, "
+        "clearance: 0.06}}, crank_end: mirrored}}"
+    )
+    valve = loads(text).cylinders[0].valve
+    assert valve is not None
+    # 150° − 45°, 180° − 45°, 360° − 45°, 390° − 45°
+    expected = [105, 135, 315, 345]
+    assert [float(angle) for angle in events_of(valve, "head_end")] == pytest.approx(expected)
+    turned_half = [float(angle) - 180 for angle in events_of(valve, "crank_end")]
+    assert turned_half == pytest.approx(expected)
+
+
+RUBBING = """
+{speed: 90 rpm, crank: 300 mm, rod: 1200 mm, bore: 350 mm, inclination: 0 deg,
+ indicator: {head_end: {unit: bar, expansion: [[0, 8], [0.4, 8], [1, 2]], compression: [[1, 0.2], [0, 1]]}},
+ masses: {piston: 120 kg, connecting_rod: 80 kg}, friction: {crosshead: 0.05, crank_pin: 0.04,
+ crank_pin_diameter: 120 mm, crosshead_pin: 0.06, crosshead_pin_diameter: 90 mm, journals: 0.03,
+ journal_diameter: 150 mm, rings: {count: 3, height: 12 mm, pressure: gas, coefficient: 0.1}}}
+"""
+YOKE = """
+{speed: 80 rpm, mechanism: scotch-yoke, stroke: 120 mm, guide_length: 260 mm, bore: 90 mm,
+ indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 3 bar}}}, masses: {piston: 30 kg},
+ friction: {block: 0.1, guides: 0.1}}
+"""
+LOSSES = """
+{speed: 60 rpm, crank: 400 mm, rod: 2 m, bore: 450 mm, efficiency: 0.9,
+ indicator: {head_end: {unit: bar, expansion: [[0, 8], [0.4, 8], [1, 2]], compression: [[1, 0.2], [0, 1]]}},
+ tandem: [{bore: 200 mm, indicator: {head_end: {constant: {expansion: -0.4 bar, compression: 8 bar}}}}],
+ flywheel: {inertia: 900 kg m2}}
+"""
+DRIVEN = """
+{mechanism: four-bar, crank: 40 mm, coupler: 150 mm, rocker: 80 mm, frame: 150 mm, speed: 120 rpm,
+ moment: {work: 40 N m, return: 10 N m}, efficiency: 0.8,
+ load: {unit: N m, mean: -8, harmonics: [[2, 3, 4]]}}
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(EXACT, id="exact rod"),
+        pytest.param(RUBBING, id="pins and rings by gas"),
+        pytest.param(YOKE, id="yoke"),
+        pytest.param(LOSSES, id="efficiency"),
+        pytest.param(DRIVEN, id="driven rocker and a load by harmonics"),
+    ],
+)
+def test_kurbel_agrees_with_free_bodies(text: str) -> None:
+    """To 1e-13; where friction turns round the solver finds the angle itself."""
+    assert max(agreement(loads(text)).values()) < 1e-13
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(shipped()))
+def test_every_shipped_machine_but_traces_compares_its_forces(name: str) -> None:
+    machine = loads(shipped()[name])
+    missed = agreement(machine)
+    left_out = [what for quantity in NEEDED for what in unknown(machine, quantity)]
+    assert missed or "trace" in name
+    assert not left_out or set(left_out) == {"a trace"}
+    assert max(missed.values(), default=0.0) < 1e-13
+
+
+def agreement(machine: Machine) -> dict[str, float]:
+    """Return the errors of kurbel by the references, of every quantity that has one and is not zero."""
+    missed: dict[str, float] = {}
+    for quantity in NEEDED:
+        answer = own_answer(machine, quantity)
+        if answer is None or list(unknown(machine, quantity)):
+            continue
+        exact = np.atleast_1d(np.array(reference(machine, quantity)[0], dtype=object))
+        if np.abs(exact).max() > 1e-30:
+            error, _ = errors(np.atleast_1d(np.asarray(answer, dtype=float)), exact)
+            assert error is not None
+            missed[quantity] = error
+    return missed
