@@ -6,18 +6,16 @@ the stroke volume. Exponents are those of p V^n.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, ClassVar, Union
 
 import numpy as np
 
-from kurbel.arrays import Number
-from kurbel.declared.forms.values import NumberForm
+from kurbel.arrays import Number, Truth
+from kurbel.declared.forms.values import CLEARANCE, CLEARANCE_OR_NONE
 from kurbel.declared.record import FieldValue, Record, Rule, alternative, field
+from kurbel.machine.chamber import ChamberCard
 
-CLEARANCE = NumberForm(share_of="the stroke", least=1e-6, most=1e5)
-"""A clearance volume over the stroke volume, within bounds for which p V^n can be computed."""
-CLEARANCE_OR_NONE = NumberForm(share_of="the stroke", least=1e-6, most=1e5, zero=True)
-"""The same if it may also be 0, which leaves the clearance out of the theory."""
 _CLEARANCE = "Clearance volume over stroke volume"
 AIR_EXPONENT = 1.4
 """Exponent of the adiabatic line of air."""
@@ -82,7 +80,7 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
     return Rule((), cycle != "two-stroke", two)
 
 
-class Steam(Record):
+class Steam(ChamberCard, Record):
     """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
 
     cut_off: None where a valve sets this and the other events (`kurbel.machine.valve`).
@@ -127,12 +125,31 @@ class Steam(Record):
     diagram_factor: float = _diagram_factor()
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    by_steam: ClassVar[bool] = True
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """That of expansion and compression."""
+        return (self.exponent,)
 
     @property
     def events(self) -> list[str]:
         """The keys of the events that are given."""
         given = self._given()
         return [key for key in ("cut_off", "release", "compression", "lead") if key in given]
+
+    def rules_of_events(self, valve_compresses: Truth | None) -> Iterator[Rule]:
+        """Yield events that are missing without a valve, or given beside one; of the clearance the rule of the card."""
+        if valve_compresses is None:
+            missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+            yield Rule("steam", self.cut_off is None, missing)
+            return
+        twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
+        for key in self.events:
+            yield Rule(("steam", key), True, twice, at_key=True)
+        message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
+        no_volume = (self.clearance == 0) & valve_compresses
+        yield Rule(("steam", "clearance"), no_volume, f"{message}; give 'clearance'")
 
     @property
     def back_pressure(self) -> float:
@@ -159,7 +176,7 @@ class Steam(Record):
         yield from _above_vacuum(lift, admission=self.admission, exhaust=self.exhaust)
 
 
-class Compressor(Record):
+class Compressor(ChamberCard, Record):
     """A compressor: suction, compression, delivery, and expansion of what is left in the clearance."""
 
     suction: float = _pressure("Pressure while the chamber fills")
@@ -176,6 +193,17 @@ class Compressor(Record):
     )
 
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
+    notes: ClassVar[tuple[str, ...]] = ()
+    compresses: ClassVar[bool] = True
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """Those of compression and expansion."""
+        return (self.exponent, self.of_expansion)
+
+    def loaded(self) -> "Compressor":
+        """Return the card with its valves at work."""
+        return replace(self, unloaded=False) if self.unloaded else self
 
     def rules(self) -> Iterator[Rule]:
         yield _order("delivery", self.delivery, "suction", self.suction)
@@ -200,12 +228,14 @@ class Compressor(Record):
         yield Rule((), (self.delivery < top) & (self.delivery >= left), full)
 
 
-class _Engine(Record):
+class _Engine(ChamberCard, Record):
     """The common part of the cards of combustion engines.
 
     exhaust: pressure of the exhaust stroke of a four-stroke cycle, None for that of the intake; a two-stroke engine
     changes its gas at the outer dead centre.
     """
+
+    burns: ClassVar[bool] = True
 
     intake: float = _pressure(
         "Pressure in the cylinder when compression begins, and while it fills"
@@ -248,6 +278,11 @@ class _Engine(Record):
     def rules(self) -> Iterator[Rule]:
         if self.peak is not None:
             yield _order("peak", self.peak, "intake", self.intake)
+
+    @property
+    def exponents(self) -> tuple[Number, ...]:
+        """Those of compression and expansion."""
+        return (self.exponent, self.expansion_exponent)
 
     @property
     def cycles(self) -> tuple[str, ...]:

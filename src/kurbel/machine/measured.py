@@ -9,6 +9,7 @@ import numpy as np
 from kurbel.arrays import Array
 from kurbel.declared.forms.structures import OneOf, RecordForm
 from kurbel.declared.forms.values import (
+    CLEARANCE,
     COLUMN_RANGE,
     FILE_PATH,
     Choice,
@@ -19,7 +20,6 @@ from kurbel.declared.forms.values import (
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field
 from kurbel.declared.units import DiagramPoint, UnitFactor
 from kurbel.errors import Fault, RuleError, refused
-from kurbel.machine.ideal_cards import CLEARANCE
 from kurbel.traces.correct import KnownLevel, Trace, motored_peak
 from kurbel.traces.cycles import samples_of_file, whole_cycles
 from kurbel.traces.read import DECIMALS, DELIMITERS, SECONDS, Layout

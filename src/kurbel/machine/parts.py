@@ -1,5 +1,7 @@
 """The parts of a cylinder: moving masses, friction, resistance, a point of the rod, the piston."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -12,12 +14,12 @@ from kurbel.declared.forms.values import Choice, NumberForm
 from kurbel.declared.keys import Key
 from kurbel.declared.record import Record, Rule, ValuesByKey, alternative, field, first_of
 from kurbel.machine.indicator import Chamber, Indicator
-from kurbel.machine.pumped import Gas
 from kurbel.mechanisms import Mechanism
 from kurbel.numerics.arithmetic import total
 
 if TYPE_CHECKING:
     from kurbel.machine.crankshaft import Crankshaft
+    from kurbel.machine.pumped import Gas
 
 
 class ConnectingRod(Record):
@@ -134,7 +136,7 @@ class Masses(Record):
         connecting_rod: float | ConnectingRod | None = None,
         rotating: float = 0.0,
         **parts: Any,
-    ) -> "Masses":
+    ) -> Masses:
         """Return the masses of these keys; each part is a mass or a tuple of masses."""
         sums = {name: total(*one) if isinstance(one, tuple) else one for name, one in parts.items()}
         if connecting_rod is not None and not isinstance(connecting_rod, ConnectingRod):
@@ -292,7 +294,7 @@ class Friction(Record):
         given = (self.crank_pin, self.crosshead_pin, self.journals)
         return tuple(name for name, coefficient in zip(_PINS, given) if coefficient is not None)
 
-    def rules_beside(self, shaft: "Crankshaft | None", pin_of_yoke: float | None) -> Iterator[Rule]:
+    def rules_beside(self, shaft: Crankshaft | None, pin_of_yoke: float | None) -> Iterator[Rule]:
         """Yield a diameter that is needed and given nowhere, or given here and in the crankshaft.
 
         pin_of_yoke: diameter in m of the crank pin that a Scotch yoke gives.
@@ -393,6 +395,12 @@ class RodPoint(Record):
         )
 
 
+def _gas() -> type[Gas]:
+    from kurbel.machine.pumped import Gas
+
+    return Gas
+
+
 class Piston(Record):
     """A piston: bore and rods, and what the indicator shows on its two sides.
 
@@ -419,7 +427,7 @@ class Piston(Record):
         also=("pressure", "card", "trace"),
     )
     name: str = field(str, "Name of the piston", default="piston", absent="piston")
-    gas: Gas | None = field(Gas, "Gas that the piston draws in", absent="that of the machine")
+    gas: Gas | None = field(_gas, "Gas that the piston draws in", absent="that of the machine")
     lever_ratio: float = 1.0
 
     def rules(self) -> Iterator[Rule]:
@@ -440,7 +448,7 @@ class Piston(Record):
         return math.pi / 4 * (self.bore - self.crank_end_rod) * (self.bore + self.crank_end_rod)
 
     @property
-    def chambers(self) -> "dict[str, Chamber]":
+    def chambers(self) -> dict[str, Chamber]:
         """What the indicator shows, by the key of the end."""
         if self.indicator is None:
             return {}

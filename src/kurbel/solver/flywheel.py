@@ -13,25 +13,18 @@ from __future__ import annotations
 
 import math
 from functools import cache, cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from kurbel.arrays import Array, Indices, Number
 from kurbel.declared.unit_systems import show
 from kurbel.errors import NoSolutionError, UsageError
-from kurbel.machine.turning import Swing
 from kurbel.numerics.arithmetic import every, some, total, where
 from kurbel.numerics.collocation import Unsettled
 from kurbel.numerics.extreme import Extreme, Extremes
 from kurbel.numerics.pieces import Pieces, refined
 from kurbel.quantity import Computed, Heading, key_value, value
-from kurbel.solver.chapters.coupling import (
-    CouplingTorque,
-    ElasticCoupling,
-    StiffCoupling,
-    natural_order,
-)
 from kurbel.solver.cycle import Where, where_is
 from kurbel.solver.effort import TurningEffort
 from kurbel.solver.figures import AtAngles, ExtremesOfColumns, Results, part
@@ -39,6 +32,9 @@ from kurbel.solver.forces import Brake, CylinderForces
 from kurbel.solver.motion import every_dead_centre
 from kurbel.solver.speed import RigidLine, SpeedLaw, SpeedLine, SwingLine
 from kurbel.solver.state import State
+
+if TYPE_CHECKING:
+    from kurbel.solver.chapters.coupling import CouplingTorque, ElasticCoupling
 
 RIGID_ABOVE = 100.0
 """Natural order above which a coupling counts as rigid: it amplifies the first harmonics by no more than 1 in 10⁴."""
@@ -50,6 +46,18 @@ _DOUBLINGS, _TRIALS = 30, 20
 """Largest numbers of doublings in the search for a flywheel that turns, and of secant steps for one with a given δ."""
 _CLOSE = 1e-13
 """Relative tolerance of δ in the search for the flywheel that gives it."""
+
+
+def _coupling_torque() -> type[CouplingTorque]:
+    from kurbel.solver.chapters.coupling import CouplingTorque
+
+    return CouplingTorque
+
+
+def _elastic_coupling() -> type[ElasticCoupling]:
+    from kurbel.solver.chapters.coupling import ElasticCoupling
+
+    return ElasticCoupling
 
 
 def _over_the_angle(
@@ -331,7 +339,10 @@ class MachineTurning(Results):
     @property
     def knows_mean(self) -> bool:
         """Whether the mean torque is known: of an effort given by its fluctuation of energy alone it is not."""
-        return not isinstance(self.machine.effort, Swing) or self.machine.effort.mean is not None
+        return (
+            not (self.machine.effort and self.machine.effort.alone)
+            or self.machine.effort.mean is not None
+        )
 
     @property
     def deficit(self) -> Any:
@@ -518,6 +529,8 @@ class MachineTurning(Results):
         if effort.swing is not None:
             return SwingLine(effort, self.excess.dE, flywheel)
         if coupling and not self._needs_no_inertia:
+            from kurbel.solver.chapters.coupling import ElasticCoupling, natural_order
+
             own = np.asarray(flywheel + effort.pieces.mean(effort.J_moving))
             if effort.count is None and not own[0]:
                 raise UsageError(
@@ -596,6 +609,8 @@ class MachineTurning(Results):
         own = np.asarray(needed + self.effort.pieces.mean(self.effort.J_moving))
         if not every(own != 0):
             return None
+        from kurbel.solver.chapters.coupling import natural_order
+
         found = natural_order(self.machine.coupling, own, self.omega)
         if not every(found > RIGID_ABOVE):  # in a batch machines with a rigid coupling are left out
             self.effort.refused |= found > RIGID_ABOVE
@@ -606,7 +621,7 @@ class MachineTurning(Results):
         """Whether the coupling counts as rigid, n_e > 100; of many machines, whether all do."""
         return self.natural_order is not None and not some(self.natural_order <= RIGID_ABOVE)
 
-    @part(CouplingTorque)
+    @part(_coupling_torque, there=lambda turning: turning.machine.coupling is not None)
     def coupled(self) -> CouplingTorque | None:
         """The torque in the coupling; None without one, and without a speed line.
 
@@ -614,10 +629,12 @@ class MachineTurning(Results):
         """
         coupling, line = self.machine.coupling, self.speed
         if coupling and self.rigid and isinstance(line, RigidLine):
+            from kurbel.solver.chapters.coupling import StiffCoupling
+
             return StiffCoupling(line, coupling.inertia)
         return self.elastic
 
-    @part(ElasticCoupling)
+    @part(_elastic_coupling, there=lambda turning: turning.machine.coupling is not None)
     def elastic(self) -> ElasticCoupling | None:
         """The elastic coupling; None for a rigid one, and without a speed line.
 
@@ -625,7 +642,7 @@ class MachineTurning(Results):
         """
         if self.machine.coupling is None or self.rigid:
             return None
-        return self.speed if isinstance(self.speed, ElasticCoupling) else None
+        return self.speed if isinstance(self.speed, _elastic_coupling()) else None
 
     # the required δ, compared with the speed line
 

@@ -43,8 +43,9 @@ from kurbel.numerics.pieces import Pieces, highest, resolved
 from kurbel.quantity import Heading, ValuesById, value, values_for
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
-from kurbel.solver.shaft import Force, FreeBody, flywheel_weight
+from kurbel.solver.shaft import FreeBody, flywheel_weight
 from kurbel.solver.state import State, on_pin
+from kurbel.solver.vector import Force
 
 PARTS = {
     "pin": ("pin", "the crank pin"),
