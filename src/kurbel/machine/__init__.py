@@ -357,12 +357,10 @@ class Machine(Record):
             return f"no 'crankshaft' is given; {lengths}"
         if not self.cylinders:
             return "no cylinder loads the crankshaft; 'effort' gives a torque and no force on the pin"
-        if len(self.cylinders) > 1:
-            return f"{len(self.cylinders)} cylinders; the crankshaft that is examined has one throw, for one cylinder"
-        cylinder = self.cylinders[0]
-        if cylinder.mechanism.quick_return or cylinder.mechanism.radial(CrankAngle.of(0.0)) is None:
-            return f"the force on the crank pin of a {cylinder.mechanism.name} is not known; give a slider-crank"
-        if not any(piston.indicator for piston in cylinder.pistons):
+        for mechanism in (cylinder.mechanism for cylinder in self.cylinders):
+            if mechanism.quick_return or mechanism.radial(CrankAngle.of(0.0)) is None:
+                return f"the force on the crank pin of a {mechanism.name} is not known; give a slider-crank"
+        if not any(piston.indicator for cylinder in self.cylinders for piston in cylinder.pistons):
             return "no pressure loads the crankshaft; give 'bore' and 'indicator'"
         return ""
 

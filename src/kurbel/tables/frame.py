@@ -134,6 +134,10 @@ class Frame(NamedTuple):
     table: bool = True
 
 
+_PARTS = {"bearings": "bearings", "stress": "throws"}
+"""What the parts of a report are called where they are no cylinders."""
+
+
 @np.errstate(all="ignore")
 def report_on(
     frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject], notes: Iterable[str] = ()
@@ -179,7 +183,7 @@ def report_on(
         f"{machine.name}. {title}",
         frame.command,
         machine.name,
-        "bearings" if frame.command == "bearings" else "cylinders",
+        _PARTS.get(frame.command, "cylinders"),
         whole=parts.pop() if having and having[-1][0].whole else None,
         parts=tuple(parts),
         notes=(*notes, *added) if frame.prose else (),

@@ -66,7 +66,7 @@ def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
     return State.at(forces.drive, degrees - late, within - late)
 
 
-def carried(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
+def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
     """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
     source = forces.pieces
     parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
@@ -223,14 +223,14 @@ class RodPin(Bearing):
 
     def _samples(self) -> Sequence[ComplexArray]:
         frames = self._seen(self._own.samples, self._own.pieces.of(self._bank))
-        return [*carried(self._common, self._own, frames[self.journal], frames[self.shell])]
+        return [*resampled(self._common, self._own, frames[self.journal], frames[self.shell])]
 
     def turning(self) -> tuple[Extreme, Number]:
         """The rod turns on the crank pin with 1 + dψ/dφ, on the crosshead pin with dψ/dφ; see `Bearing`."""
         state, pieces = self._own.samples, self._common
         _, cos_psi = state.rod_angle or (0.0, 1.0)
         slope = formulas.rod_slope(state.angle.cos, cos_psi, state.drive.mechanism.lam)
-        rate = carried(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
+        rate = resampled(pieces, self._own, 1 + slope if self._pin == "crank_pin" else slope).real
         fastest = pieces.extremes(rate).each(self._result)[0].peak
         return fastest, self._result(pieces.mean(np.abs(rate[0])))
 
@@ -264,15 +264,16 @@ class MainBearing(Bearing):
         force = np.zeros(degrees.shape, complex)
         for throw in line.throws:
             if self._number in (throw.A, throw.B):
-                own, pin = line.machine.cylinders[throw.cylinders[0]], sum(pins[index] for index in throw.cylinders)
+                cylinder, rods = line.machine.cylinders[throw.cylinders[0]], [pins[index] for index in throw.cylinders]
                 # whole turns are taken off, which is exact: next to a large position an angle would lose its digits
-                angle = CrankAngle.of(degrees - np.fmod(own.crank_position, 360.0))
-                on_bearing = line.carried(throw, pin, own, angle)[0 if self._number == throw.A else 1]
+                angle = CrankAngle.of(degrees - np.fmod(cylinder.crank_position, 360.0))
+                on_A, on_B = line.reactions(throw, rods, cylinder, angle)
+                on_bearing = on_A if self._number == throw.A else on_B
                 force -= np.conj(on_bearing) * unit_vector(throw.angle)
         return force
 
     def _frames(self, degrees: Array, within: Array) -> Frames:
-        pins = {number: _pin_load(state_at(own, degrees, within)) for number, own in self._members.items()}
+        pins = {number: pin_load(state_at(own, degrees, within)) for number, own in self._members.items()}
         throw = self._force(self._line, pins, degrees)
         return {"throw": throw, "engine": throw * unit_vector(degrees)}
 
@@ -281,7 +282,7 @@ class MainBearing(Bearing):
         pieces, pins = self._common, {}
         for number, own in self._members.items():
             state = own.samples if rubbed else own.samples.without_pin_friction
-            (pins[number],) = carried(pieces, own, _pin_load(state))
+            (pins[number],) = resampled(pieces, own, pin_load(state))
         line = self._line if self.count is None else SupportedShaft(taken(self.machine, pieces.machine))
         return self._force(line, pins, pieces.degrees)
 
@@ -299,7 +300,8 @@ class MainBearing(Bearing):
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def _pin_load(state: State) -> Force:
+def pin_load(state: State) -> Force:
+    """Return the force of a rod on the crank pin in N, D + iT; 0 where no force acts in the cylinder."""
     return on_pin(state).complex if state.drive.has_force else 0j
 
 
