@@ -31,8 +31,10 @@ TEACHING = {
     "gas-engine-double-acting": "effort",
     "generator-coupling": "modes",
     "locomotive": "forces",
+    "locomotive-link": "valve-ellipse",
     "locomotive-two-cylinders": "free-angle",
     "marine-diesel": "modes",
+    "mill-engine": "zeuner",
     "offset-engine": "mechanism",
     "punch": "effort",
     "radial-three": "free-vectors",
@@ -58,7 +60,10 @@ BEST = {
     "free-orders": "v8-cross-plane",
     "modes": "marine-diesel",
     "orders": "marine-diesel",
+    "reuleaux": "mill-engine",
     "throw-stress": "gas-engine",
+    "valve-ellipse": "mill-engine",
+    "zeuner": "mill-engine",
 }
 """Picture -> the shipped machine that shows it best; the others are of the waterworks engine."""
 USUAL = "waterworks"

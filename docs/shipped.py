@@ -19,7 +19,7 @@ from kurbel.tables.tables import grouped, together
 
 _CONFIGS = Path(__file__).parent.parent / "configs"
 _SHOWN = {
-    "motion": ("stroke", "swing", "time_ratio", "c_m", "c_max", "b_max"),
+    "motion": ("stroke", "swing", "time_ratio", "c_m", "c_max", "b_max", "cut_off_head", "cut_off_crank"),
     "forces": ("P_peak", "N_peak", "T_max", "work", "power", "mean_pressure", "loss_crosshead"),
     "flywheel": ("M_mean", "dE", "J", "delta"),
     "stress": ("safety_pin_min", "safety_web_A_min"),

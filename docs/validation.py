@@ -14,6 +14,7 @@ from typing import Any
 import kurbel
 from kurbel.crank_angle import CrankAngle
 from kurbel.crank_formulas import first_order_acceleration, first_order_displacement
+from valve_prints import PRINTS, Print
 from worked_examples import FOLDER, SI, TABLE, told
 
 _ROOT = Path(__file__).parent.parent
@@ -52,7 +53,17 @@ _COMPANIONS = ("Theory of Machines", "Gupta, Fund", "Tayal", "Bhandari", "Keswan
 
 def page() -> str:
     """Return the page."""
-    blocks = [_HEAD, _roetscher(), _zusammenstellung(), _blau(), _tredgold(), _redtenbacher(), _counts(), *_books()]
+    blocks = [
+        _HEAD,
+        _roetscher(),
+        _zusammenstellung(),
+        _blau(),
+        _tredgold(),
+        _redtenbacher(),
+        _valves(),
+        _counts(),
+        *_books(),
+    ]
     return "\n\n".join(block.strip() for block in blocks) + "\n"
 
 
@@ -172,19 +183,19 @@ def _roetscher() -> str:
     pump = cylinder.columns([90, 270])["P_driven"] / _KGF
     inertia = "826 kg rounded to 830 kg, v to 2.095 m/s"
     rows: list[tuple[str, str, str, float, str, str]] = [
-        ("606", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
-        ("606", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
-        ("606", "speed of the crank pin", "2.094", case["v"].value, "m/s", ""),
-        ("606", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
-        ("606", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
+        ("607", "area of the steam piston, head end", "1546.3", case["A_head"].value / _CM2, "cm²", ""),
+        ("607", "area of the steam piston, crank end", "1511.9", case["A_crank"].value / _CM2, "cm²", ""),
+        ("604", "c_max/v for L/R = 5", "1.02", case["c_max"].value / case["v"].value, "", ""),
+        ("604", "c_max/v for L/R = 4", "1.03", fourth.c_max.value, "", ""),
         (
-            "606",
+            "605",
             "b at the dead centre, relative to the infinite rod",
             "1.20",
             case["b_max"].value / _infinite(case),
             "",
             "",
         ),
+        ("608", "speed of the crank pin", "2.095", case["v"].value, "m/s", "rounded up"),
         (
             "608",
             "largest inertia force, high-pressure side",
@@ -269,6 +280,7 @@ def _blau() -> str:
     """Return the examples 31 to 35, first-order formulas on purpose."""
     roots = {ratio: math.degrees(math.acos((math.sqrt(ratio**2 + 8) - ratio) / 4)) for ratio in (5, 4)}
     sixth = math.degrees(math.acos((math.sqrt(41) - 5) / 4))
+    minus_sixth = _where_minus_a_sixth()
     rows: list[tuple[str, str, str, float, str]] = [
         ("31", "x/R at 45°, L/R = 5", "0.343", _displacement(5, 45), ""),
         ("31", "x/R at 90°", "1.1", _displacement(5, 90), ""),
@@ -277,9 +289,12 @@ def _blau() -> str:
         ("32", "x/R at 90°", "1.125", _displacement(4, 90), ""),
         ("32", "x/R at 135°", "1.77", _displacement(4, 135), ""),
         ("33", "b = 0, L/R = 5 (79°20′)", "79.333", roots[5], "°"),
+        ("33", "x/R there", "0.911", _displacement(5, roots[5]), ""),
         ("33", "b = 0, L/R = 4", "77", roots[4], "°"),
+        ("33", "x/R there", "0.895", _displacement(4, roots[4]), ""),
         ("34", "b is a sixth of b at 0° (69°30′)", "69.5", sixth, "°"),
         ("34", "x/R there", "0.737", _displacement(5, sixth), ""),
+        ("35", "b is minus a sixth of b at 0°", "90", minus_sixth, "°"),
     ]
     shown = (
         (
@@ -293,8 +308,15 @@ def _blau() -> str:
         )
         for n, of, printed, value, unit in rows
     )
-    text = "The first-order formulas of the book, which `--compare` prints beside the exact columns."
+    text = "The first-order formulas of the book, which `--compare` prints next to the exact columns."
     return _own_book("E. Blau (1905)", shown).replace("\n\n", f"\n\n{text}\n\n", 1)
+
+
+def _where_minus_a_sixth() -> float:
+    """Return the first angle at which the b of first order is minus a sixth of the largest; L/R = 5."""
+    case = kurbel.solve("{crank: 1 m, rod_ratio: 5, speed: 1 rad/s}")
+    found = case.cylinders[0].angles_where("b_book", -case["b_max"].value / 6)
+    return float(found.angles[0])
 
 
 def _displacement(ratio: float, degrees: float) -> float:
@@ -335,6 +357,30 @@ def _redtenbacher() -> str:
         for place, of, printed, value, why in rows
     )
     return _own_book("F. Redtenbacher, Der Maschinenbau (1862): friction loss of the crosshead", shown)
+
+
+def _valves() -> str:
+    rows = (
+        (one.source, one.of, one.printed, _shown(one.computed), one.unit, _of_print(one), _judged_print(one))
+        for one in PRINTS
+    )
+    text = (
+        "Dingler's Polytechnisches Journal and Bourne's Catechism of the Steam Engine. Infinite rods, except for the "
+        "last engine of 1859 and that of 1891, whose connecting rods are given. No printed example with a finite "
+        "eccentric rod is known: there the tests hold kurbel against a bisection in 40 digits, and against the "
+        "eccentric as a slider-crank."
+    )
+    return _own_book("Valve gears in print, 1859 to 1892", rows).replace("\n\n", f"\n\n{text}\n\n", 1)
+
+
+def _of_print(one: Print) -> str:
+    return _relative(float(one.printed), one.computed)
+
+
+def _judged_print(one: Print) -> str:
+    if one.agrees and not one.why:
+        return "both"
+    return f"kurbel; {one.why}"
 
 
 def _table(*heads: str, rows: Iterable[Sequence[str]]) -> str:

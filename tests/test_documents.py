@@ -2,6 +2,7 @@
 
 A block of another language with a title is a file of that name for the commands of its page:
 ```yaml title="engine.yaml"
+A line `…` in an output stands for lines that the page leaves out.
 """
 
 import doctest
@@ -106,6 +107,39 @@ def output_of(command: str, folder: Path) -> str:
     return heard + done.stdout.decode()
 
 
+LEFT_OUT = "…\n"
+
+
+def shortened(real: str, printed: str) -> str:
+    """Return an output with the lines left out that the page leaves out; all of it where what the page shows is gone.
+
+    Each passage that the page shows begins at a line that differs from its first one in figures alone, and has as
+    many lines; the last one goes on to the end.
+
+    >>> shortened("a 1\\nb\\nc 3\\nd\\n", "…\\nc 2\\n…\\n")
+    '…\\nc 3\\n…\\n'
+    """
+    lines, done = real.splitlines(keepends=True), 0
+    wordings = [wording(line) for line in lines]
+    *passages, last = printed.split(LEFT_OUT)
+    if not passages:
+        return real
+    kept = list[str]()
+    for passage in [*passages, last]:
+        begun = passage.splitlines(keepends=True)
+        if begun and wording(begun[0]) not in wordings[done:]:
+            return real
+        start = wordings.index(wording(begun[0]), done) if begun else done
+        done = len(lines) if begun and passage is last else start + len(begun)
+        kept.append("".join(lines[start:done]))
+    return LEFT_OUT.join(kept)
+
+
+def wording(line: str) -> str:
+    """Return a line without its figures and blanks."""
+    return re.sub(r"[-\d.\s]+", " ", line)
+
+
 @pytest.mark.skipif(NO_SHELL, reason="the pages speak to a shell")
 @pytest.mark.parametrize("page", PAGES_WITH_COMMANDS)
 def test_commands_of_a_page(page: Path, workshop: Callable[[Path], Path], kept: Callable[[Path, str], str]) -> None:
@@ -113,7 +147,7 @@ def test_commands_of_a_page(page: Path, workshop: Callable[[Path], Path], kept: 
     text = now = text_of(page)
     for command, printed in COMMAND.findall(text):
         if "| jq " not in command or shutil.which("jq"):
-            real = output_of(command, workshop(page))
+            real = shortened(output_of(command, workshop(page)), printed)
             now = now.replace(f"{command}\n{printed}```", f"{command}\n{real}```")
     assert now == kept(page, now)
 

@@ -23,8 +23,10 @@ def forces(found: dict[str, Any]) -> dict[str, list[float | None]]:
 
 
 def test_level_force_is_the_tangent_of_both_angles() -> None:
-    """D 3: P = Q tan(α ± ρ), tan ρ = f; along the plane sin α ± f cos α."""
+    """D 3: P = Q tan(α + ρ) moves it up, P_1 = Q tan(α − ρ) holds it, tan ρ = f; along the plane sin α ± f cos α."""
     rho = math.atan(0.1)
+    (table,) = answer(30, 0.1)["machine_place_tables"]
+    assert [column["symbol"] for column in table["columns"]] == ["P/Q", "P_1/Q"]
     found = forces(answer(30, 0.1))
     alpha = math.radians(30)
     assert found["P_up"] == pytest.approx([0.5 + 0.1 * math.cos(alpha), math.tan(alpha + rho)], rel=1e-14)
@@ -49,5 +51,5 @@ def test_limits() -> None:
     assert at_rest["P_held"] == pytest.approx([0, 0], abs=1e-15)
     locked = answer(60, 0.7)
     assert forces(locked)["P_up"][1] is None
-    assert locked["machine_left_out"][0]["what"] == "P_1/Q horizontal"
+    assert locked["machine_left_out"][0]["what"] == "P/Q horizontal"
     assert forces(answer(20, 0.0))["P_up"] == forces(answer(20, 0.0))["P_held"]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from command import answer
+from command import answer, run
 from kurbel.report.zusammenstellung import ROWS, zusammenstellung
 from kurbel.tables.tables import Report
 
@@ -70,3 +70,50 @@ def test_extreme_ratios_stay_finite(ratio: str) -> None:
     content = answer("table", "--ratio", ratio, "--rows", "b,c,x,psi,S,N,D,T_b,x/s")
     for column in content["ratios"][0]["columns"]:
         assert all(math.isfinite(value) for value in column["values"])
+
+
+@pytest.mark.parametrize(
+    ("ratio", "c_max", "at", "square"),
+    [
+        (5, 1.0198331, 79.10014, 78.69007),
+        (4.5, 1.0244, 78.02, 77.47),
+        (4, 1.0308827, 76.72098, 75.96376),
+        (3.2, None, None, None),
+    ],
+)
+def test_where_c_is_largest(ratio: float, c_max: float, at: float, square: float) -> None:
+    """c_max of L/R = 5 and 4 is about 1.02 v and 1.03 v in the book (R p. 604), the rod about square to the crank."""
+    (table,) = answer("table", "--ratio", str(ratio))["machine_place_tables"]
+    figures = {column["id"]: column["values"][0] for column in table["columns"]}
+    with mpmath.workdps(40):
+        root = mpmath.findroot(lambda phi: textbook(ratio, phi)["b"], 78)
+        there = textbook(ratio, root)
+        assert figures["phi_b_zero"] == pytest.approx(float(root), rel=1e-13)
+        assert figures["c_max_factor"] == pytest.approx(float(there["c"]), rel=1e-13)
+        assert figures["x_b_zero"] == pytest.approx(float(there["x"]), rel=1e-13)
+    # at the angle of R the crank is square to the rod: their directions are perpendicular
+    crank = complex(math.cos(math.radians(figures["phi_square"])), math.sin(math.radians(figures["phi_square"])))
+    psi = math.asin(crank.imag / ratio)
+    rod = complex(math.cos(psi), -math.sin(psi))
+    assert (crank * rod.conjugate()).real == pytest.approx(0, abs=1e-15)
+    if c_max:
+        assert figures["c_max_factor"] == pytest.approx(c_max, abs=5e-5)
+        assert figures["phi_b_zero"] == pytest.approx(at, abs=5e-3)
+        assert figures["phi_square"] == pytest.approx(square, abs=5e-3)
+
+
+def test_ratio_written_as_the_books_write_it() -> None:
+    """R/L = 1/5 is L/R = 5: the same table, and a note."""
+    by_rod, by_crank = (answer("table", "--ratio", text) for text in ("4.5", "1/4.5"))
+    assert by_crank["ratios"] == by_rod["ratios"]
+    assert by_crank["notes"][0] == "--ratio 1/4.5 is below 1 and was read as R/L: L/R = 4.5."
+    assert "notes" not in by_rod
+
+
+def test_comparison_has_three_decimals_as_the_book() -> None:
+    printed = run("table", "--compare", "--digits", "7").stdout
+    factors = [line.split() for line in printed.splitlines() if line.startswith("L/R = 5 ")]
+    decimals = {len(word.rstrip("*").partition(".")[2]) for line in factors for word in line if "." in word}
+    assert decimals == {3, 5}  # those of angles at seven digits
+    assert "cos φ ± R/L cos 2φ" in printed
+    assert "sin(φ±ψ)/cos ψ" in printed

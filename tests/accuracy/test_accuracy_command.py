@@ -28,6 +28,7 @@ def impatient() -> Iterator[None]:
     """Every method is timed once: how long it takes is nothing to these tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "timed", once)
+        patch.setattr(trials, "scipy_integrate", lambda: None)  # whose quad takes seconds
         yield
 
 

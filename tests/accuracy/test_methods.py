@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from kurbel.accuracy import trials
-from kurbel.accuracy.trials import Trial, better, errors, examined, savings
+from kurbel.accuracy.methods import by_quad, by_simpson, over_the_turn
+from kurbel.accuracy.trials import Trial, errors, examined, savings, with_corners, without_corners
 from kurbel.machine_file import loads
 from kurbel.solver.case import Case
 
@@ -25,6 +26,7 @@ def rows() -> list[Trial]:
     """All rows of a machine without corners but at the dead centres, and with friction."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(trials, "timed", lambda run, quick: (1.0, 1.0))
+        patch.setattr(trials, "scipy_integrate", lambda: None)  # whose quad takes seconds
         machine = loads(SMOOTH.replace("flywheel", f"friction: {{crosshead: 0.05, {RINGS}}}, flywheel"))
         return examined(machine, np.arange(0.0, 361.0, 10.0), True)[0]
 
@@ -41,10 +43,16 @@ def test_methods_converge(rows: list[Trial], quantity: str) -> None:
         assert found["Chebyshev fit", "64"] < 1e-8
         return
     by_tops = quantity[0] == "T"
+    fit = "Chebyshev fit between the corners"
     simple = "largest ordinate" if by_tops else "trapezium rule"
     assert found[simple, "36"] > 10 * found[simple, "360"] >= 10 * found[simple, "3600"]
-    assert found["Chebyshev fit", "8"] > found["Chebyshev fit", "16"]
-    assert found["Chebyshev fit", "32"] < 1e-13
+    assert found[fit, "8"] > found[fit, "16"]
+    assert found[fit, "32"] < 1e-13
+    if not by_tops:
+        assert found["Simpson's rule", "36"] > 3 * found["Simpson's rule", "360"] >= 3 * found["Simpson's rule", "3600"]
+        assert found["Gauss over the turn", "36"] > 3 * found["Gauss over the turn", "360"] > 1e-9
+    if quantity[0] == "A":
+        assert found["spreadsheet", "36 rows"] > 10 * found["spreadsheet", "360 rows"] > 1e-9
     assert found["roots between the corners" if by_tops else "Gauss between the corners", "32"] < 1e-13
 
 
@@ -68,14 +76,27 @@ def test_errors_of_arrays() -> None:
     assert errors(np.array([math.nan]), of(1)) == (None, None)
 
 
-def row(method: str, error: float | None, time: float) -> Trial:
-    return Trial("x", method, "1", "ok", 1, error, None, time, time, 1.0)
+def row(method: str, error: float | None, time: float, quantity: str = "A_i") -> Trial:
+    return Trial(quantity, method, "1", "ok", 1, error, None, time, time, 1.0)
 
 
-def test_better_needs_both_error_and_time() -> None:
-    own, both = row("kurbel", 1e-12, 1.0), row("a", 1e-14, 0.5)
-    others = [row("b", 1e-14, 1.5), row("c", 1e-10, 0.1), row("d", 1e-12 - 1e-15, 0.1), row("e", None, 0.1)]
-    assert better([own, both, *others]) == [both]
+def test_the_fastest_rival_with_corners_has_all_digits() -> None:
+    """16 roundings are all digits; where kurbel has fewer, its own error is the measure."""
+    own = row("kurbel", 1e-17, 2.0)
+    slow, fast = row("Gauss between the corners", 1e-16, 1.0), row("Chebyshev fit between the corners", 1e-15, 0.5)
+    rough, lost = row("Gauss between the corners", 1e-14, 0.1), row("Gauss between the corners", None, 0.1)
+    blind = row("trapezium rule", 1e-17, 0.1)
+    assert with_corners([own, slow, fast, rough, lost, blind]) == [(fast, 0.25)]
+    assert with_corners([own._replace(error=1e-13), rough]) == [(rough, 0.05)]
+    assert with_corners([own, lost, blind]) == []
+
+
+def test_rivals_without_corners_are_compared_at_the_time_of_kurbel() -> None:
+    own, slow = row("kurbel", 1e-16, 1.0), row("Simpson's rule", 1e-9, 1.5)
+    rough, better = row("trapezium rule", 1e-4, 0.1), row("trapezium rule", 1e-6, 0.9)
+    told = row("Gauss between the corners", 1e-16, 0.5)
+    assert without_corners([own, slow, rough, better, told]) == [(better, 0.9)]
+    assert without_corners([own, slow]) == []
 
 
 @pytest.mark.parametrize(
@@ -131,3 +152,17 @@ def test_every_thing_left_out_saves_functions() -> None:
     assert found[0].ratio == 1.0
     bare = [one.machine for one in savings(loads(BARE), lambda one: Case(one).cylinders[0].at([0.0]), True)]
     assert bare == ["everything", "no speed either: positions alone"]
+
+
+def test_quad_of_scipy_over_a_corner() -> None:
+    """|sin φ| over a turn has the area 4; Gauss's rule without its corner misses it by far more than quad."""
+    pytest.importorskip("scipy")
+
+    def function(phi: np.ndarray, within: np.ndarray) -> np.ndarray:
+        return np.abs(np.sin(np.radians(phi - 40)))
+
+    whole = np.array([0.0, 360.0])
+    assert by_quad("A_i", function, whole, 0) == pytest.approx(4, rel=1e-7)
+    assert over_the_turn("A_i", function, whole, 36) == pytest.approx(4, rel=1e-2)
+    assert over_the_turn("A_i", function, whole, 36) != pytest.approx(4, rel=1e-5)
+    assert by_simpson("A_i", function, whole, 360) == pytest.approx(4, rel=1e-3)

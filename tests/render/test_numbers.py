@@ -6,7 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurbel.render.text import angle_scale, cell, rounded, scale_of, single
+from kurbel.render import Look
+from kurbel.render.text import angle_scale, cell, head_scale, rounded, scale_of, single
+from kurbel.render.text_tables import place_table
+from kurbel.tables.tables import Column, PlaceTable
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 ROW = st.lists(FINITE, min_size=1, max_size=8)
@@ -62,6 +65,44 @@ def test_a_value_that_stands_alone(value: float, shown: tuple[str, int]) -> None
     assert single(value) == shown
 
 
-@pytest.mark.parametrize(("angles", "decimals"), [([0, 10.0], 0), ([0, 7.5], 1), ([1 / 3], 6), ([], 0), ([None], 0)])
-def test_angles_have_the_decimals_they_need(angles: list[float], decimals: int) -> None:
-    assert angle_scale(angles).decimals == decimals
+WRITTEN = [([0, 10.0], 0), ([0, 7.5], 1), ([0.000001], 6), ([], 0), ([None], 0)]
+COMPUTED = [([1 / 3], 2), ([100 / 3, 200 / 3, 360.0], 2), ([1 / 3, 1 / 3 + 1e-4], 4)]
+
+
+@pytest.mark.parametrize(("angles", "decimals"), [*WRITTEN, *COMPUTED])
+def test_crank_angles_have_the_decimals_they_need(angles: list[float], decimals: int) -> None:
+    """Written ones keep their decimals; computed ones have two, more only to be told apart."""
+    assert head_scale(angles).decimals == decimals
+
+
+def test_angles_have_the_digits_that_are_wanted() -> None:
+    assert head_scale([100 / 3, 200 / 3], 5).decimals == 3
+    assert head_scale([22.5], 6).decimals == 1
+    assert angle_scale([79.100135, 180.0]).decimals == 1
+    assert angle_scale([79.100135, 180.0], 6).decimals == 3
+    assert angle_scale([180.0], 1).decimals == 0
+
+
+def rows(*values: float | None) -> PlaceTable:
+    names = tuple((f"row {number}",) for number in range(len(values)))
+    torque = Column("M", "M", "M", "kN m", values)
+    reference = Column("W", "W", "W", "kN m", (64.07,) * len(values))
+    return PlaceTable("torques", "Torques", ("row",), names, (torque, reference))
+
+
+@pytest.mark.parametrize(
+    ("values", "cells"),
+    [
+        ((17.34, -4.6), ["17.34", "-4.60"]),
+        ((17.34, 0.004), ["17.340", "0.004"]),
+        ((17.34, -0.00032), ["17.3400", "-0.0003"]),
+        ((17.34, 2e-7), ["17.34", "2.000·10⁻⁷"]),
+        ((17.34, 0.0, None), ["17.34", "0", "–"]),
+        ((17.34, 1e-14), ["17.34", "0"]),  # a rounding error
+        ((0.0, 0.0), ["0", "0"]),
+    ],
+)
+def test_no_value_of_a_table_of_places_is_printed_as_zero(values: tuple[float | None, ...], cells: list[str]) -> None:
+    _, torque, reference = place_table(rows(*values), Look()).columns
+    assert torque.cells == cells
+    assert set(reference.cells) == {"64.07"}

@@ -1,4 +1,4 @@
-"""Efficiency as the book uses it (R p. 610–613, Abb. 1062, 1064, 1065): driving pistons pay for the losses."""
+"""Efficiency as the book uses it (R p. 611–613, Abb. 1062, 1064, 1065): driving pistons pay for the losses."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Methods that know no crank: Gauss's rule, root searches and Chebyshev fits between corners; equal divisions.
+"""Methods that know no crank: Gauss's rule, root searches and Chebyshev fits between corners; and without corners.
 
 Each takes the name of a quantity, the function that it is the integral, the extremes or the swing of, the edges
 (n + 1,) in degrees of the pieces on which that is smooth, and how finely. In numbers of mpmath `by_gauss` gives the
@@ -130,13 +130,62 @@ def by_fit(quantity: str, function: Function, edges: Array, count: int) -> Found
     return by_gauss(quantity, fitted, edges, count)
 
 
+# without the corners
+
+
 def equidistant(quantity: str, function: Function, edges: Array, count: int) -> Found:
     """Return a quantity from so many equal divisions of each turn: by the trapezium rule, or the largest ordinates."""
-    phi = np.arange(round((edges[-1] - edges[0]) * count / 360)) * (360 / count)
-    values, step = function(phi, phi), 2 * math.pi / count
+    values, step = _divided(function, edges, count)
     if quantity[0] == "T":
         return values.max(), values.min()
     if quantity[0] == "A":
         return values.sum() * step
     above = values - values.mean()
     return float(np.ptp(np.cumsum(above + np.roll(above, -1)))) / 2 * step
+
+
+def by_simpson(quantity: str, function: Function, edges: Array, count: int) -> Found:
+    """Return a work or a swing of energy from so many equal divisions of each turn by Simpson's rule."""
+    values, step = _divided(function, edges, count)
+    even, odd, next_even = values[::2], values[1::2], np.roll(values[::2], -1)
+    works = (even + 4 * odd + next_even) * step / 3
+    if quantity[0] == "A":
+        return works.sum()
+    return float(np.ptp(np.cumsum(works - works.mean())))
+
+
+def _divided(function: Function, edges: Array, count: int) -> tuple[Array, float]:
+    """Return values at equal divisions of the cycle, so many a turn, and their step in radians."""
+    divisions = round((edges[-1] - edges[0]) * count / 360)
+    phi = np.arange(divisions) * (360 / count)
+    return function(phi, phi), 2 * math.pi / count
+
+
+def over_the_turn(quantity: str, function: Function, edges: Array, count: int) -> Found:
+    """Return a quantity by Gauss's rule with so many points on the whole cycle, as if it had no corner."""
+    whole = edges[[0, -1]]
+
+    def smooth(phi: Array, within: Array) -> Array:
+        return function(phi, phi)
+
+    return by_gauss(quantity, smooth, whole, count)
+
+
+def by_quad(quantity: str, function: Function, edges: Array, _: int) -> Found:
+    """Return a work by scipy's quad over the cycle, without further options."""
+    integrate = scipy_integrate()
+
+    def at(phi: float) -> float:
+        angle = np.array([phi])
+        return float(function(angle, angle)[0])
+
+    return math.radians(integrate.quad(at, edges[0], edges[-1], full_output=1)[0])
+
+
+def scipy_integrate() -> Any:
+    """Return scipy's integrators, or None where scipy is not installed."""
+    try:
+        from scipy import integrate
+    except ImportError:
+        return None
+    return integrate

@@ -4,7 +4,7 @@ import math
 import statistics
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from types import FrameType
@@ -12,7 +12,18 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from kurbel.accuracy.methods import Found, by_fit, by_gauss, equidistant, mp, mpf
+from kurbel.accuracy.methods import (
+    Found,
+    by_fit,
+    by_gauss,
+    by_quad,
+    by_simpson,
+    equidistant,
+    mp,
+    mpf,
+    over_the_turn,
+    scipy_integrate,
+)
 from kurbel.accuracy.textbook import (
     DIGITS,
     NEEDED,
@@ -32,6 +43,8 @@ from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
 
 OWN = "kurbel"
+CORNERS = "between the corners"
+ROUNDING = 2.0**-53
 Method = tuple[str, str, Callable[[], object]]
 """Name, how finely, and what computes one value, the largest and the smallest, or (n,)."""
 T = TypeVar("T")
@@ -146,14 +159,39 @@ def force_methods(machine: Machine, quantity: str, edges: Array) -> Iterator[Met
 
     points = {"A_i": "closed", "A_f": "Lobatto 16", "ΔE": "closed", "T_max, T_min": "roots of T′"}
     yield OWN, points[quantity], partial(own_answer, machine, quantity)
-    rule, between = ("largest ordinate", "roots") if quantity[0] == "T" else ("trapezium rule", "Gauss")
-    for name, method, counts in (
-        (rule, equidistant, (36, 360, 3600)),
-        (f"{between} between the corners", by_gauss, (8, 16, 32)),
-        ("Chebyshev fit", by_fit, (8, 16, 32)),
-    ):
+    for name, method, counts in methods_for(quantity):
         for count in counts:
-            yield name, str(count), partial(rival, method, count)
+            yield name, str(count or "default"), partial(rival, method, count)
+    if quantity[0] == "A":
+        turns = round((edges[-1] - edges[0]) / 360)
+        for count in (36, 360):
+            yield "spreadsheet", f"{count} rows", partial(spreadsheet, machine, quantity, turns, count)
+
+
+def methods_for(quantity: str) -> Iterator[tuple[str, Callable[..., Found], tuple[int, ...]]]:
+    """Yield the rivals for a quantity and their numbers of points: between the corners, then without the corners."""
+    is_extreme = quantity[0] == "T"
+    yield f"{'roots' if is_extreme else 'Gauss'} {CORNERS}", by_gauss, (8, 16, 32)
+    yield f"Chebyshev fit {CORNERS}", by_fit, (8, 16, 32)
+    yield "largest ordinate" if is_extreme else "trapezium rule", equidistant, (36, 360, 3600)
+    if not is_extreme:
+        yield "Simpson's rule", by_simpson, (36, 360, 3600)
+        yield "Gauss over the turn", over_the_turn, (36, 360)
+    if quantity == "A_i" and scipy_integrate():  # two thousand calls, one angle each, take a second
+        yield "scipy quad", by_quad, (0,)
+
+
+def spreadsheet(machine: Machine, quantity: str, turns: int, rows: int) -> float:
+    """Return the work of the first cylinder as one has it of so many rows a turn: mean forces times displacements."""
+    cylinder = machine.cylinders[0]
+    degrees = np.linspace(0.0, 360.0, rows + 1)
+    x = cylinder.mechanism.coordinate(CrankAngle.of(degrees))
+    work = 0.0
+    for turn in range(turns):
+        state = CylinderForces(machine, cylinder).at(degrees + 360 * turn, degrees + 360 * turn)
+        force = state.P_gas if quantity == "A_i" else -state.F_friction
+        work += float((force[1:] + force[:-1]) @ np.diff(x)) / 2
+    return work
 
 
 # rows, and their times
@@ -186,9 +224,10 @@ def errors(values: Array, truth: Array) -> tuple[float | None, float | None]:
 
 
 def timed(run: Callable[[], object], quick: bool) -> tuple[float, float]:
-    """Return the median and the least time in ms of 20 runs, or those of half a second (quick: 5, a tenth)."""
+    """Return the median and the least time in ms of 15 runs, or those of 0.1 s (quick: of 5, or of 0.05 s)."""
+    most, limit = (5, 50) if quick else (15, 100)
     times: list[float] = []
-    while not times or (len(times) < (5 if quick else 20) and sum(times) < (100 if quick else 500)):
+    while not times or (len(times) < most and sum(times) < limit):
         begin = time.perf_counter()
         run()
         times.append(1e3 * (time.perf_counter() - begin))
@@ -214,16 +253,47 @@ def watched(run: Callable[[], T]) -> tuple[T, int, int]:
         sys.setprofile(before)
 
 
-def better(found: list[Trial]) -> list[Trial]:
-    """Return the rows more exact and faster than kurbel's own, by more than 16 roundings and a fifth of the time."""
-    own = {row.quantity: row for row in found if row.method == OWN}
-    return [
-        row
-        for row in found
-        if row.error is not None
-        and row.error < (own[row.quantity].error or 0.0) - 16 * 2.0**-53
-        and row.least < 0.8 * own[row.quantity].least
-    ]
+# what the rows show
+
+
+class Rival(NamedTuple):
+    """A rival of kurbel's own method in one scene: ratio of the least times."""
+
+    row: Trial
+    ratio: float
+
+
+def with_corners(rows: Sequence[Trial]) -> list[Rival]:
+    """Return for each quantity the fastest rival between the corners with all digits of kurbel.
+
+    These are an error of 16 roundings, or that of kurbel's own where it is larger.
+    """
+    best = []
+    for own, others in _by_quantity(rows):
+        enough = max(own.error or 0.0, 16 * ROUNDING)
+        equal = [row for row in others if CORNERS in row.method and row.error is not None and row.error <= enough]
+        if equal:
+            row = min(equal, key=lambda row: row.least)
+            best.append(Rival(row, row.least / own.least))
+    return best
+
+
+def without_corners(rows: Sequence[Trial]) -> list[Rival]:
+    """Return for each quantity of forces the most exact rival without the corners that takes no longer than kurbel."""
+    best = []
+    for own, others in _by_quantity(rows):
+        as_fast = [row for row in others if CORNERS not in row.method and row.error and row.least <= own.least]
+        if own.quantity in NEEDED and as_fast:
+            row = min(as_fast, key=lambda row: row.error or 0.0)
+            best.append(Rival(row, row.least / own.least))
+    return best
+
+
+def _by_quantity(rows: Sequence[Trial]) -> Iterator[tuple[Trial, list[Trial]]]:
+    """Yield kurbel's own row of each quantity, and the others."""
+    for own in rows:
+        if own.method == OWN:
+            yield own, [row for row in rows if row.quantity == own.quantity and row.method != OWN]
 
 
 # what leaving out saves

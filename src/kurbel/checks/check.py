@@ -52,7 +52,7 @@ def checked(case: Case, cases: Sequence[Case] = ()) -> Checked:
     """Return the check of a machine, and of its limits in its load cases; only what this needs is computed."""
     machine, notes, every = case.machine, machine_notes(case), compared(case, cases)
     figures = [one for one in every if not one.error]
-    of_whole = (Entry("note", text, "warning") for name, text in notes if name is None)
+    of_whole = (Entry("note", note.text, "warning") for note in notes if note.cylinder is None)
     topics: dict[str, Iterable[Entry]] = {
         "Cranks": _crank_entries(machine),
         "Whole machine": (*_turning_entries(machine), *of_whole),
@@ -107,8 +107,8 @@ def _cylinder_entries(machine: Machine, number: int, notes: Sequence[Note]) -> I
     for piston in cylinder.pistons:
         yield Entry(piston.name, f"bore {show(piston.bore, 'length')}")
     yield from _stages(stages(machine, cylinder), path)
-    yield from (Entry("note", text, "warning", path) for name, text in notes if name == cylinder.name)
-    yield from (Entry("note", note, "info", path) for note in mechanism.notes)
+    yield from (Entry("note", note.text, "warning", path) for note in notes if note.cylinder == cylinder.name)
+    yield from (Entry("note", text, "info", path) for text in mechanism.notes)
 
 
 def _stages(stages: dict[str, str], path: Path = ()) -> Iterator[Entry]:

@@ -6,10 +6,13 @@ import click
 
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
+    KEY_VALUES,
+    CommandWithKeyValues,
     complete_ids,
     complete_override,
     format_option,
     key_value_option,
+    key_values,
     machine_file,
     number_options,
     output_option,
@@ -37,7 +40,9 @@ _what_varies = stacked(
 _what_is_printed = stacked(
     key_value_option(
         "--columns",
-        type=words,
+        KEY_VALUES,
+        "columns",
+        type=key_values,
         metavar="ID,ID,...",
         help="Key values of any command, by id or symbol; those of forces if not given.",
     ),
@@ -88,7 +93,7 @@ _who_computes = stacked(
 )
 
 
-@kurbel.command()
+@kurbel.command(cls=CommandWithKeyValues)
 @machine_file
 @_what_varies
 @_what_is_printed

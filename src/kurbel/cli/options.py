@@ -1,7 +1,7 @@
 """Options shared by the commands: how their texts are read, what a shell completes, what they mean."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -100,6 +100,17 @@ def columns(text: str) -> tuple[str, ...]:
     return tuple(ids)
 
 
+def key_values(text: str) -> tuple[str, ...]:
+    """Return names of key values separated by commas or blanks, in the order given; a name may have blanks itself."""
+    known = _quantities().all_key_values
+    names = list[str]()
+    for piece in words(text):
+        parts = piece.split()
+        are_names = all(called(part.rpartition(".")[2], known) for part in parts)  # without their scopes
+        names += parts if are_names else [piece]
+    return tuple(names)
+
+
 def _quantities() -> Lists:
     from kurbel.quantities import every_quantity
 
@@ -139,6 +150,13 @@ def _ids(ctx: click.Context, begun: str) -> Iterable[str]:
     return [before + comma + one for one in ids if one not in before.split(",")]
 
 
+def _key_values(ctx: click.Context, begun: str) -> Iterable[str]:
+    """Return the key values of a command that are not in the list yet."""
+    before, comma, _ = begun.rpartition(",")
+    ids = _quantities().key_values(ctx.info_name or "")
+    return [before + comma + id for id in ids if id not in before.split(",")]
+
+
 def _keys(ctx: click.Context, begun: str) -> Iterable[str]:
     from kurbel.report.keys import every_place
 
@@ -159,6 +177,7 @@ def _pictures(ctx: click.Context, begun: str) -> Iterable[str]:
 
 
 complete_ids = completing(_ids)
+complete_key_values = completing(_key_values)
 complete_key = completing(_keys)
 complete_override = completing(lambda ctx, text: () if "=" in text else [f"{key}=" for key in _keys(ctx, text)])
 complete_cylinder = completing(lambda ctx, _: [one.name for one in _machine(ctx).cylinders])
@@ -167,6 +186,47 @@ complete_picture = completing(_pictures)
 
 
 # --- the options
+
+KEY_VALUES = "--key-values"
+_FILES = (".yaml", ".yml", ".json")
+"""Suffixes of machine files."""
+
+
+class CommandWithKeyValues(click.Command):
+    """A command with `--key-values [NAMES]`: names may follow it, as one word or as several, or none."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse the words of the command line, those behind the option as its value."""
+        return super().parse_args(ctx, list(_with_names(args)))
+
+
+def _with_names(words: Sequence[str]) -> Iterator[str]:
+    """Yield the words of a command line, names behind `--key-values` as the value of the option.
+
+    The names end where another option or the machine file begins.
+
+    >>> list(_with_names(["--key-values", "c_max", "b_max", "engine.yaml", "--case", "full"]))
+    ['--key-values=c_max b_max', 'engine.yaml', '--case', 'full']
+    """
+    index = 0
+    while index < len(words):
+        word = words[index]
+        index += 1
+        if word == "--":
+            yield from words[index - 1 :]
+            return
+        if word != KEY_VALUES:
+            yield word
+            continue
+        first = index
+        while index < len(words) and not _ends_names(words[index]):
+            index += 1
+        yield f"{KEY_VALUES}={' '.join(words[first:index])}"
+
+
+def _ends_names(word: str) -> bool:
+    """Return whether a word is another option, or a machine file."""
+    return word.startswith("-") or word.lower().endswith(_FILES) or os.path.isfile(word)
 
 
 def stacked(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
@@ -241,7 +301,13 @@ cylinder_option = click.option(
 )
 part_options = stacked(
     cylinder_option,
-    click.option("--key-values", "key_values_only", is_flag=True, help="Only the key values, no table."),
+    click.option(
+        KEY_VALUES,
+        "names",
+        metavar="[NAMES]",
+        help="Only the key values, no table; of these names only, such as 'c_max N_i' or LP.T_max, in this order.",
+        shell_complete=complete_key_values,
+    ),
     click.option(
         "--all",
         "everything",

@@ -1,6 +1,7 @@
 """Commands that need no machine: tables of the books, shipped machines, and what a machine file may hold."""
 
 import math
+from typing import NamedTuple
 
 import click
 
@@ -24,8 +25,23 @@ from kurbel.shipped import shipped
 from kurbel.tables.tables import crank_angles
 
 
-def _ratio(text: str) -> float:
-    return math.inf if text in ("inf", "infinite") else number(text)
+class _Ratio(NamedTuple):
+    """An L/R, and the note for one that was written as R/L."""
+
+    value: float
+    note: str = ""
+
+
+def _ratio(text: str) -> _Ratio:
+    """Return L/R; a fraction below 1, as 1/5, can only be R/L."""
+    if text in ("inf", "infinite"):
+        return _Ratio(math.inf)
+    value = number(text)
+    over, slash, under = text.partition("/")
+    if not (slash and 0 < value < 1):
+        return _Ratio(value)
+    inverse = number(f"{under}/{over}")
+    return _Ratio(inverse, f"--ratio {text} is below 1 and was read as R/L: L/R = {inverse:g}.")
 
 
 @kurbel.command(context_settings={"allow_extra_args": True})
@@ -35,7 +51,8 @@ def _ratio(text: str) -> float:
     type=_ratio,
     multiple=True,
     metavar="L/R",
-    help="Rod length over crank radius, such as 5, or inf; may be repeated. 5, 4.5 and 4 if not given.",
+    help="Rod length over crank radius, such as 5, or inf; R/L as a fraction, such as 1/5. May be repeated; 5, 4.5 "
+    "and 4 if not given.",
 )
 @click.option(
     "--rows",
@@ -59,7 +76,7 @@ def _ratio(text: str) -> float:
 @units_option
 @output_options
 def table(
-    ratios: tuple[float, ...],
+    ratios: tuple[_Ratio, ...],
     rows: tuple[str, ...],
     formula: str,
     compare: bool,
@@ -81,16 +98,18 @@ def table(
       T_b  tangential inertia force over m R omega^2  -b c
       x/s  share of the stroke
 
-    v is the crank-pin speed, R the crank radius, L the rod length. Below b: where it is zero, exactly and by first
-    order.
+    v is the crank-pin speed, R the crank radius, L the rod length. Below b and c: where b is zero and c largest,
+    exactly, by first order, and by the rule that the rod is square to the crank (R p. 604).
     """
     from kurbel.report.zusammenstellung import RATIOS, zusammenstellung
 
     if extra := click.get_current_context().args:
         raise click.UsageError(f"'{extra[0]}' is no option; write 'kurbel table --ratio {extra[0]}' for this L/R")
-    ratios = ratios or RATIOS
-    printed = crank_angles(step, angles, 180, len(ratios))
-    output.write(zusammenstellung(ratios, rows, printed, formula, compare))
+    values = tuple(ratio.value for ratio in ratios) or RATIOS
+    printed = crank_angles(step, angles, 180, len(values))
+    report = zusammenstellung(values, rows, printed, formula, compare)
+    notes = tuple(ratio.note for ratio in ratios if ratio.note)
+    output.write(report._replace(notes=(*notes, *report.notes)))
 
 
 @kurbel.command()

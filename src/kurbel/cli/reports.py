@@ -8,6 +8,7 @@ import click
 from kurbel.cli.group import kurbel
 from kurbel.cli.options import (
     Command,
+    CommandWithKeyValues,
     angle_options,
     columns_option,
     frequency,
@@ -88,7 +89,8 @@ def _command(row: Row) -> click.Command:
     shared = [_SHARED[word] for word in row.options]
     own = (_OWN[row.word],) if row.word in _OWN else ()
     with_options = stacked(machine_file, *rows, part_options, units_option, output_options, *cases, *shared, *own)
-    return click.command(row.word, help=f"{row.of.__doc__}\n\n    {_OF_EVERY}")(with_options(run))
+    text = f"{row.of.__doc__}\n\n    {_OF_EVERY}"
+    return click.command(row.word, cls=CommandWithKeyValues, help=text)(with_options(run))
 
 
 for _row in REPORTS:

@@ -17,6 +17,7 @@ from kurbel.render.output import refuse_overwriting
 from kurbel.report.commands import COMMANDS
 from kurbel.solver.case import Case
 from kurbel.tables.frame import Frame, Subject, over_stroke, rows_where
+from kurbel.tables.named_values import choices_in
 from kurbel.tables.tables import crank_angles
 
 _OF_ANY_SELECTION = {"file", "overrides", "case_name", "cylinder", "units", "comma", "digits", "width"}
@@ -49,7 +50,7 @@ def print_report(
     overrides: tuple[str, ...],
     units: str,
     cylinder: str | None,
-    key_values_only: bool,
+    names: str | None,
     step: float = 10.0,
     angles: tuple[float, ...] | None = None,
     columns: tuple[str, ...] | None = None,
@@ -64,10 +65,11 @@ def print_report(
 ) -> None:
     """Print the report of a command on the machine, called with the names of the options.
 
-    units: of the figures; where, over: what has a value, or the stroke, over which the rows are instead of the angle;
-    cases: a row for each load case instead of all else; cycle: number of one of a measured trace; spreads:
-    uncertainties of inputs in addition to those of the file, None for a command without any; instead: the option that
-    asks for other tables instead of that over the crank angle; own: what only the report of this command takes.
+    units: of the figures; names: of key values, which are printed alone, '' for all, None with tables; where, over:
+    what has a value, or the stroke, over which the rows are instead of the angle; cases: a row for each load case
+    instead of all else; cycle: number of one of a measured trace; spreads: uncertainties of inputs in addition to
+    those of the file, None for a command without any; instead: the option that asks for other tables instead of that
+    over the crank angle; own: what only the report of this command takes.
     """
     rows = [way for way, value in (("--where", where), ("--over", over), ("--angles", angles)) if value is not None]
     not_of_cases = [*rows, *(["--case"] if case_name else [])]
@@ -76,8 +78,8 @@ def print_report(
         (cases and not_of_cases, f"--cases has a row for every load case; leave {' and '.join(not_of_cases)} out."),
         (instead and of_table, f"{instead} has no table over the angle; leave out {' and '.join(of_table)}."),
         (
-            key_values_only and columns and not cases,
-            "--columns names columns of the table that --key-values leaves out; a key value is a line, grep 'p_i '",
+            columns and (names or (names is not None and not cases)),
+            "--columns names columns of the table that --key-values leaves out; name key values in --key-values NAMES.",
         ),
         (len(rows) > 1, f"{' and '.join(rows)} both give crank angles; give only one of them."),
     ):
@@ -86,7 +88,8 @@ def print_report(
 
     case = case_of(file, case_name, overrides, output.file_name)
     if cases:
-        report = cases_report(case.machine, cases_of(case.machine), command, units, columns)
+        chosen = [one.id for one in choices_in(names, command, ())] if names else columns
+        report = cases_report(case.machine, cases_of(case.machine), command, units, chosen)
     else:
         if cycle is not None:
             case = Case(of_cycle(case.machine, cycle))
@@ -99,19 +102,19 @@ def print_report(
             rows_at = over_stroke(step, end)
         else:
             rows_at = crank_angles(step, angles, end, max(len(case.cylinders), 1))
-        prose = output.look.format != "csv" or key_values_only
-        frame = Frame(command, rows_at, columns, units, "z" if over else "", compare, prose, not instead)
+        prose = output.look.format != "csv" or names is not None
+        frame = Frame(command, rows_at, columns, units, "z" if over else "", compare, prose, not instead, names or "")
         report = functions.report(case, frame, **own)
     report = report if cylinder is None else report.of_cylinder(cylinder)
-    report = report.key_values_alone() if key_values_only else report
+    report = report if names is None or cases else report.key_values_alone()
     if not cases and not instead and spreads is not None and (spreads or case.machine.uncertainty):
         from kurbel.designs.uncertainty import with_uncertainty
 
         progress = Progress(command)
         report = with_uncertainty(
-            report, case, spreads, units, lambda items: progress.counted(items, "machines", len(items))
+            report, case, spreads, units, lambda items: progress.counted(items, "machines", len(items)), bool(names)
         )
     context = click.get_current_context()
-    names = {one.name or "" for one in context.command.params} - _OF_ANY_SELECTION
-    selected = any(context.get_parameter_source(one) is ParameterSource.COMMANDLINE for one in names)
+    options = {option.name or "" for option in context.command.params} - _OF_ANY_SELECTION
+    selected = any(context.get_parameter_source(option) is ParameterSource.COMMANDLINE for option in options)
     output.write(report, None if selected else COMMANDS[command].first.split())

@@ -163,15 +163,22 @@ def _answers(inputs: Inputs, shifts: Array, requested: Sequence[Answer]) -> tupl
     return np.array(values, dtype=float), [one for one in every if isinstance(one, str)]
 
 
-def with_uncertainty(report: Report, case: Case, more: Spreads, system: str, counted: Counted = iter) -> Report:
+def with_uncertainty(
+    report: Report, case: Case, more: Spreads, system: str, counted: Counted = iter, named: bool = False
+) -> Report:
     """Return a report with a table of the uncertainties of its key values; more: those given outside the file.
 
-    counted: see `uncertainties`; errors: see `given_uncertainty`.
+    named: the report has key values chosen by name, and no others are wanted. counted: see `uncertainties`; errors: see
+    `given_uncertainty`.
     """
     inputs = given_uncertainty(case.machine, more)
     if inputs is None:
         return report
-    found = uncertainties(inputs, _numeric_answers(case, report.command), counted)
+    requested = list(_numeric_answers(case, report.command))
+    if named:
+        printed = {(part.name, key_value.id) for part in report.all_parts for key_value in part.key_values}
+        requested = [answer for answer in requested if (answer.subject, answer.quantity.id) in printed]
+    found = uncertainties(inputs, requested, counted)
     notes = ["Uncertainties are of first order: u² = Σ (∂y/∂x u_x)², inputs independent."]
     if any(one.sample for one in found):
         notes.append(

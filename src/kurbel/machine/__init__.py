@@ -100,7 +100,7 @@ class Machine(Record):
     efficiency: float = field(
         "ratio",
         "Mechanical efficiency: multiplies the torque of driving cylinders, or only the gas force of the driving "
-        "pistons if others on the rod are driven (R p. 610–613); divides the whole torque if no piston drives",
+        "pistons if others on the rod are driven (R p. 611–613); divides the whole torque if no piston drives",
         "η",
         default=1.0,
         above=0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from kurbel.crank_angle import CrankAngle
 from kurbel.declared.forms.structures import Inline, Listing, OneOf, RecordForm, Variant
 from kurbel.declared.record import Entry, Record, Rule, Values, alternative, field, first_of
 from kurbel.machine.crankshaft import Counterweight, SharedCounterweights
+from kurbel.machine.ideal_cards import Steam
 from kurbel.machine.parts import (
     ConnectingRod,
     Friction,
@@ -24,6 +26,7 @@ from kurbel.machine.parts import (
     RodPoint,
     TandemPiston,
 )
+from kurbel.machine.valve import Valve
 from kurbel.mechanisms import Mechanism
 from kurbel.mechanisms.kinds import MECHANISMS
 from kurbel.mechanisms.scotch_yoke import ScotchYoke
@@ -126,6 +129,11 @@ class Cylinder(Record):
         "A point of the connecting rod or coupler, whose position, velocity and acceleration are printed",
         absent="none",
     )
+    valve: Valve | None = field(
+        Valve,
+        "Slide or piston valve driven by an eccentric, which sets the events of `steam` cards",
+        absent="none",
+    )
 
     @classmethod
     def rules_of_keys(cls, given: Values) -> Iterator[Rule]:
@@ -142,8 +150,19 @@ class Cylinder(Record):
         pistons = () if piston is None else (piston, *tandem)
         return cls(pistons=pistons, **{"name": "", "crank_position": None, **keys})
 
+    @cached_property
+    def timed_pistons(self) -> tuple[Piston, ...]:
+        """Its pistons, with the events of the valve in the steam cards of its own one."""
+        if self.valve is None or not self.pistons:
+            return self.pistons
+        timed = self.valve.timed(self.pistons[0], self.mechanism)
+        return timed, *self.pistons[1:]
+
     def rules(self) -> Iterator[Rule]:
-        """Yield which parts do not fit the mechanism."""
+        """Yield which parts do not fit the mechanism, and steam cards whose events are missing, or set twice."""
+        if self.valve:
+            yield from (rule.below("valve") for rule in self.valve.rules_on(self.mechanism))
+        yield from _of_events(self)
         at_point = [rule.below("point") for rule in self.point.rules_on(self.mechanism)] if self.point else []
         yield from at_point
         if not any(rule.broken for rule in at_point):
@@ -227,6 +246,32 @@ def _of_friction(friction: Friction, cylinder: Cylinder) -> Iterator[Rule]:
         locks = apart is not None and 2 * friction.guides * yoke.crank >= apart
         message = "with this coefficient the guides lock the yoke: 2 f R must be less than 'guide_length'"
         yield Rule("guides", locks, message)
+
+
+def _of_events(cylinder: Cylinder) -> Iterator[Rule]:
+    """A steam card has its events from the valve, or its own; the valve is that of the cylinder's own piston."""
+    for number, piston in enumerate(cylinder.pistons):
+        place = ("tandem", number - 1, "indicator") if number else ("indicator",)
+        chambers = piston.chambers
+        if chambers.get("crank_end") is chambers.get("head_end"):  # mirrored
+            chambers.pop("crank_end", None)
+        for end, card in chambers.items():
+            if isinstance(card, Steam):
+                valve = None if number else cylinder.valve
+                yield from (rule.below(*place, end, "steam") for rule in _of_card(card, valve))
+
+
+def _of_card(card: Steam, valve: Valve | None) -> Iterator[Rule]:
+    """Of the clearance the rule of the card itself, for events that it does not have yet."""
+    if valve is None:
+        missing = "'cut_off' is missing; give it here, or the cylinder a 'valve', which sets all events"
+        yield Rule((), card.cut_off is None, missing)
+        return
+    twice = "the 'valve' sets cut_off, release, compression and lead; leave them out"
+    for key in card.events:
+        yield Rule(key, True, twice, at_key=True)
+    message = "the valve shuts the exhaust before the dead centre, and compression needs a final volume"
+    yield Rule("clearance", (card.clearance == 0) & valve.compresses, f"{message}; give 'clearance'")
 
 
 def _of_rod(rod: ConnectingRod, mechanism: Mechanism) -> Iterator[Rule]:

@@ -79,11 +79,16 @@ def _only_two_stroke(card: Record, cycle: str) -> Rule:
 
 
 class Steam(Record):
-    """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression."""
+    """A steam engine: admission to the cut-off, expansion to the release, exhaust to the start of the compression.
+
+    cut_off: None where a valve sets this and the other events (`kurbel.machine.valve`).
+    """
 
     admission: float = _pressure("Pressure while steam is admitted")
     exhaust: float = _pressure("Pressure while steam leaves")
-    cut_off: float = field("ratio", "Fraction of the stroke at which admission ends", above=0, most=1)
+    cut_off: float | None = field(
+        "ratio", "Fraction of the stroke at which admission ends", above=0, most=1, absent="the `valve` sets all events"
+    )
     clearance: float = field(CLEARANCE_OR_NONE, _CLEARANCE, "c")
     release: float = field("ratio", "Fraction of the stroke at which the exhaust opens", default=1.0, above=0, most=1)
     compression: float = field(
@@ -102,6 +107,12 @@ class Steam(Record):
     cycles: ClassVar[tuple[str, ...]] = ("two-stroke",)
 
     @property
+    def events(self) -> list[str]:
+        """The keys of the events that are given."""
+        given = self._given()
+        return [key for key in ("cut_off", "release", "compression", "lead") if key in given]
+
+    @property
     def back_pressure(self) -> float:
         """Pressure in Pa about which a diagram factor lowers the card."""
         return self.exhaust
@@ -116,7 +127,7 @@ class Steam(Record):
         yield Rule("lead", (self.lead > 0) & (self.lead >= self.compression), early)
         yield _order("admission", self.admission, "exhaust", self.exhaust)
         late = "the exhaust opens at {release}, before the cut-off at {cut_off}"
-        yield Rule("release", self.release < self.cut_off, late)
+        yield Rule("release", self.cut_off is not None and self.release < self.cut_off, late)
         message = "compression needs a final volume; give 'clearance', or leave 'compression' out"
         yield Rule("clearance", (self.clearance == 0) & (self.compression != 0), message)
 

@@ -29,24 +29,29 @@ from kurbel.traces.pressure import TracePressure
 
 
 class Note(NamedTuple):
-    """A sentence, and the name of the cylinder that it is about; None for the whole machine."""
+    """A sentence, and the name of the cylinder that it is about; None for the whole machine.
+
+    command: whose results alone it concerns, '' for those of every command.
+    """
 
     cylinder: str | None
     text: str
+    command: str = ""
 
 
 def machine_notes(case: Case) -> tuple[Note, ...]:
     """Return all warnings on a machine, each once: on what was given, on measurements, and on results."""
     machine, found = case.machine, list[Note]()
 
-    def add(texts: Iterable[str], cylinder: str | None = None) -> None:
-        found.extend(Note(cylinder, text) for text in texts)
+    def add(texts: Iterable[str], cylinder: str | None = None, command: str = "") -> None:
+        found.extend(Note(cylinder, text, command) for text in texts)
 
     for cylinder in machine.cylinders:
         add(_card_warnings(cylinder), cylinder.name)
     if isinstance(machine.effort, Effort):
         add(f"effort: {text}" for text in machine.effort.notes)
     add(_speed_warnings(machine))
+    add(_fluctuation_warnings(machine), command="flywheel")
     for cylinder in machine.cylinders:
         add(_size_warnings(cylinder), cylinder.name)
     add(pin_warnings(machine))
@@ -57,8 +62,8 @@ def machine_notes(case: Case) -> tuple[Note, ...]:
             add(_brake_warnings(case))
             for forces in case.cylinders:
                 add(as_far_as_solved(cylinder_warnings(forces), "forces"), forces.drive.name)
-            add(as_far_as_solved(_turning_warnings(case), "flywheel"))
-            add(as_far_as_solved(_strength_warnings(case), "stress"))
+            add(as_far_as_solved(_turning_warnings(case), "flywheel"), command="flywheel")
+            add(as_far_as_solved(_strength_warnings(case), "stress"), command="stress")
     return tuple(dict.fromkeys(found))
 
 
@@ -73,17 +78,20 @@ def as_far_as_solved(found: Iterable[str], command: str) -> list[str]:
 
 
 def by_cylinder(case: Case) -> dict[str, list[str]]:
-    """Return the warnings on each cylinder by its name; those on the whole machine are with the last one."""
-    found: dict[str, list[str]] = {one.name: [] for one in case.machine.cylinders}
-    for name, text in machine_notes(case):
-        found[name or case.machine.cylinders[-1].name].append(text)
+    """Return the warnings on the forces of each cylinder by its name; those on all of them are with the last one."""
+    found: dict[str, list[str]] = {cylinder.name: [] for cylinder in case.machine.cylinders}
+    last = case.machine.cylinders[-1].name
+    for note in machine_notes(case):
+        if note.command in ("", "forces"):
+            found[note.cylinder or last].append(note.text)
     return found
 
 
 def of_machine(case: Case) -> Iterator[str]:
     """Yield all warnings on a machine, each after the names of its cylinders if there are several."""
     for notes in grouped(machine_notes(case), itemgetter(1)):
-        names, text = [name for name, _ in notes if name is not None], notes[0][1]
+        names = [note.cylinder for note in notes if note.cylinder is not None]
+        text = notes[0].text
         yield f"{together(names)}: {text}" if names and len(case.machine.cylinders) > 1 else text
 
 
@@ -97,9 +105,13 @@ _LARGEST_FLUCTUATION = 0.25  # the largest that the books permit is 1/5, for cru
 
 
 def _speed_warnings(machine: Machine) -> Iterator[str]:
-    """Yield warnings on a speed that no crank has reached, and on a required δ that is hardly a limit."""
+    """Yield a warning on a speed that no crank has reached."""
     if machine.speed is not None and machine.speed > _HIGHEST_SPEED:
         yield f"a speed of {show(machine.speed, 'speed')} {_ASK}"
+
+
+def _fluctuation_warnings(machine: Machine) -> Iterator[str]:
+    """Yield a warning on a required δ that is hardly a limit."""
     wanted = machine.flywheel.fluctuation if machine.flywheel else None
     if wanted is not None and wanted > _LARGEST_FLUCTUATION:
         yield (
@@ -234,9 +246,16 @@ _LEAST_REVERSAL = 15.0, 0.03
 """Degrees of crank angle, and share of the larger load, that API 618 requires of the reversed rod load."""
 
 
+def valve_warnings(forces: CylinderForces) -> Iterator[str]:
+    """Yield what a reader should know about the valve of a cylinder."""
+    if forces.valve_gear:
+        yield from forces.valve_gear.notes
+
+
 def cylinder_warnings(forces: CylinderForces) -> Iterator[str]:
     """Yield what looks wrong in the forces of a cylinder; raises NoSolutionError if its friction locks it."""
     forces.refuse_locking()  # first, with an angle that does not depend on the step
+    yield from valve_warnings(forces)
     residual, traced = forces.energy_residual or 0.0, any(gas.traced for gas in forces.drive.gas)
     if traced and abs(residual) > _COARSE:  # it shows the spacing of the samples
         yield (

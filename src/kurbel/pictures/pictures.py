@@ -43,6 +43,7 @@ from kurbel.pictures.picture_source import (
     level,
 )
 from kurbel.pictures.section import mechanism
+from kurbel.pictures.valve import reuleaux, valve_ellipse, zeuner
 from kurbel.report.commands import subjects_of
 from kurbel.solver.case import Case
 from kurbel.solver.gas import PistonGas, Pressure
@@ -260,6 +261,9 @@ PICTURES = (
     PictureKind("free-vectors", "Unbalanced force and moment", "balance", unbalanced_vectors),
     PictureKind("free-angle", "Unbalanced force and moment over the crank angle", "balance", unbalanced_over_angle),
     PictureKind("free-orders", "Unbalanced force and moment by order", "balance", unbalanced_orders),
+    PictureKind("zeuner", "Valve diagram of Zeuner", "motion", zeuner, across=2),
+    PictureKind("reuleaux", "Valve diagram of Reuleaux", "motion", reuleaux, across=2),
+    PictureKind("valve-ellipse", "Valve over the piston", "motion", valve_ellipse),
     PictureKind("motion", "Displacement, velocity, acceleration", "motion", motion),
     PictureKind("motion-way", "Velocity and acceleration over the stroke", "motion", motion_over_stroke),
     PictureKind("mechanism", "Mechanism", "", mechanism),

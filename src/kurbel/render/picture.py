@@ -9,7 +9,7 @@ import numpy as np
 from kurbel.arrays import Array, ComplexArray, Number
 from kurbel.pictures.picture import Axis, Curve, PageFigure, Panel, Picture, Words
 from kurbel.render import Look
-from kurbel.render.text import angle_scale, cell, folded, width
+from kurbel.render.text import cell, folded, head_scale, width
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 _DEGREES = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
@@ -118,7 +118,7 @@ def ticks(scale: AxisScale, most: int, look: Look) -> list[tuple[float, str]]:
         values = [float(f"{number * step:.12g}") for number in range(first, last + 1)]
         small = len(values) > 1 and values[-1] - values[0] < 1e-4
         short = small or max(map(abs, values), default=0.0) >= 1e6
-        texts = [look.fine(f"{value:.4g}" if short else cell(value, angle_scale(values))) for value in values]
+        texts = [look.fine(f"{value:.4g}" if short else cell(value, head_scale(values))) for value in values]
     return [(float(scale.place(value)), text) for value, text in zip(values, texts)]
 
 

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from textwrap import wrap
 from typing import NamedTuple
@@ -47,10 +47,47 @@ def scale_of(values: Iterable[Value], digits: int | None = None) -> Scale:
     return Scale(decimals if digits else max(0, decimals), exponent)
 
 
-def angle_scale(values: Iterable[Value]) -> Scale:
-    """Return the fewest decimals that distinguish all these angles, at most six."""
-    texts = (angle(value, decimals=6) for value in values if value is not None)
-    return Scale(max((len(text.partition(".")[2]) for text in texts), default=0))
+def angle_scale(values: Iterable[Value], digits: int | None = None) -> Scale:
+    """Return the scale of angles in degrees: two decimals, fewer if no angle has them; or so many digits.
+
+    >>> angle_scale([79.27236, 90.0]), angle_scale([79.27236, 90.0], 6), angle_scale([0.0, 90.0])
+    (Scale(decimals=2, exponent=0), Scale(decimals=4, exponent=0), Scale(decimals=0, exponent=0))
+    """
+    angles = [value for value in values if value is not None]
+    if digits:
+        return Scale(max(0, scale_of(angles, digits).decimals))
+    return Scale(_most_decimals(angles, 2))
+
+
+def head_scale(values: Sequence[Value], digits: int | None = None) -> Scale:
+    """Return the scale of the crank angles of a table, which distinguishes them all, with six decimals at most.
+
+    Angles that were written keep their decimals; computed ones have as many digits as other angles.
+
+    >>> head_scale([0.0, 22.5]), head_scale([79.272357282, 280.727642718])
+    (Scale(decimals=1, exponent=0), Scale(decimals=2, exponent=0))
+    >>> head_scale([10.0011111111, 10.0022222222]), head_scale([79.100135299], 5)
+    (Scale(decimals=3, exponent=0), Scale(decimals=3, exponent=0))
+    """
+    angles = [value for value in values if value is not None]
+    are_written = all(abs(value - round(value, _MOST_DECIMALS)) <= 1e-12 * abs(value) for value in angles)
+    if are_written:
+        return Scale(_most_decimals(angles, _MOST_DECIMALS))
+    decimals = angle_scale(angles, digits).decimals
+    different = len({round(value, _MOST_DECIMALS) for value in angles})
+    while decimals < _MOST_DECIMALS and len({round(value, decimals) for value in angles}) < different:
+        decimals += 1
+    return Scale(decimals)
+
+
+_MOST_DECIMALS = 6
+"""Of the crank angles of a table."""
+
+
+def _most_decimals(angles: Iterable[float], limit: int) -> int:
+    """Return how many decimals the angles need, at most `limit`, without zeros at the end."""
+    texts = (angle(value, limit) for value in angles)
+    return max((len(text.partition(".")[2]) for text in texts), default=0)
 
 
 def _power(value: float, digits: int) -> int:
@@ -226,9 +263,13 @@ class Look(NamedTuple):
         number, printed = self.value(value, digits), self.unit(unit)
         return (number + printed, "") if printed == "°" else (number, printed)
 
+    def angle(self, value: float) -> str:
+        """Return an angle in degrees, with two decimals at most if no digits are wanted."""
+        return self.value(value) if self.digits else self.number(angle(value))
+
     def degrees(self, value: float) -> str:
         """Return an angle with its unit."""
-        return self.number(angle(value)) + self.text("°")
+        return self.angle(value) + self.text("°")
 
     def symbol(self, symbol: str, ascii_symbol: str) -> str:
         """Return the textbook symbol, or its ASCII name."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from kurbel.quantity import NOISE_POWER
 from kurbel.render import Look
-from kurbel.render.text import Scale, angle, angle_scale, cell, scale_of, single, whole_if_integral
+from kurbel.render.text import DIGITS, Scale, angle_scale, cell, head_scale, scale_of, single, whole_if_integral
 from kurbel.tables.tables import Column, KeyValue, Part, PlaceTable, Report, Value, grouped
 
 MARK = "*"
@@ -54,7 +54,7 @@ def sheets(report: Report, look: Look) -> Iterator[tuple[list[TextColumn], list[
             values = tuple(None if value is None else 360 - value for value in phi.values)
             symbol, ascii_symbol = f"360° − {phi.symbol}", f"360 - {phi.ascii_symbol}"
             angles.append(phi._replace(symbol=symbol, ascii_symbol=ascii_symbol, values=values))
-        heads = [_scaled(one, angle_scale(one.values), look, pad) for one in angles]
+        heads = [_scaled(one, head_scale(one.values, look.digits), look, pad) for one in angles]
         bands = []
         for part in alike:
             scaled = [(one, scale_of((one.size,) if one.size else one.values, look.digits)) for one in part.columns[1:]]
@@ -87,29 +87,60 @@ def part_name(report: Report, part: Part, look: Look) -> str:
 def place_table(table: PlaceTable, look: Look) -> TextTable:
     """Return a table of named places; columns of one unit share their scale, to be compared by eye.
 
-    Those with decimals or digits of their own do not.
+    A column has a scale of its own if it has angles, decimals or digits of its own, or a value so small that the shared
+    scale would print it as 0.0.
     """
     blank = "_" if table.headed else " "
     columns = [
-        TextColumn(head, "", [look.number(look.text(name.replace("_", blank))) for name in column], "name")
-        for head, column in zip(table.heads, zip(*table.names))
+        TextColumn(head, "", [look.number(look.text(name.replace("_", blank))) for name in names], "name")
+        for head, names in zip(table.heads, zip(*table.names))
     ]
     sharing: dict[str, list[Value]] = {}
-    for one in table.columns:
-        if one.decimals is None and not one.alone:
-            sharing.setdefault(one.unit, []).extend(one.values)
+    for column in table.columns:
+        if column.decimals is None and not column.alone:
+            sharing.setdefault(column.unit, []).extend(column.values)
     missing = look.text("–")
-    for one in table.columns:
-        if one.decimals is None and (one.alone or one.unit == "deg"):
-            own = [None if value is None else _alone(value, one, look) for value in one.values]
-            columns.append(_headed(one, [missing if text is None else look.number(text) for text in own], look))
+    for column in table.columns:
+        if column.decimals is not None:
+            text_column = _scaled(column, Scale(column.decimals), look, missing=missing)
+        elif column.alone:
+            text_column = _each_scaled(column, column.alone, look, missing)
+        elif column.unit == "deg":
+            text_column = _scaled(column, angle_scale(column.values, look.digits), look, missing=missing)
         else:
-            columns.append(_scaled(one, scale_of(sharing.get(one.unit, []), look.digits), look, missing=missing))
+            text_column = _visible(column, sharing[column.unit], look, missing)
+        columns.append(text_column)
     return TextTable(look.text(table.title), columns, len(table.heads))
 
 
-def _alone(value: float, column: Column, look: Look) -> str:
-    return look.counted(*single(value, look.digits, column.alone)) if column.alone else angle(value)
+_ROUNDING = 1e-12
+"""Values below this, relative to the largest of their unit, are rounding errors of a zero."""
+_MORE_DECIMALS = 2
+"""So many more than the shared scale has are printed for a small value, before values get powers of ten."""
+
+
+def _visible(column: Column, sharing: Sequence[Value], look: Look, missing: str) -> TextColumn:
+    """Return a column at the scale of all values that share its unit, or finer, so that none is printed as 0.0."""
+    shared = scale_of(sharing, look.digits)
+    largest = max((abs(value) for value in sharing if value is not None), default=0.0)
+    values = [0.0 if value and abs(value) <= _ROUNDING * largest else value for value in column.values]
+    column = column._replace(values=values)
+    smallest = min((abs(value) for value in values if value), default=largest)
+    for more in range(_MORE_DECIMALS + 1):
+        scale = shared._replace(decimals=shared.decimals + more)
+        is_visible = not smallest or float(cell(smallest, scale)) > 0
+        if is_visible:
+            return _scaled(column, scale, look, missing=missing)
+    return _each_scaled(column, DIGITS, look, missing)
+
+
+def _each_scaled(column: Column, digits: int, look: Look, missing: str) -> TextColumn:
+    """Return a column in which each value has its own scale, with so many digits if no others are wanted."""
+    cells = [
+        missing if value is None else look.number(look.counted(*single(value, look.digits, digits)))
+        for value in column.values
+    ]
+    return _headed(column, cells, look)
 
 
 def key_value_table(caption: str, found: Collection[KeyValue], look: Look) -> TextTable:
@@ -139,12 +170,9 @@ def _value(one: KeyValue, look: Look) -> str:
         power = look.counted("1", NOISE_POWER)
         return f"< {power.removeprefix('1·')}"
 
-    values, listed = (one.value, True) if isinstance(one.value, tuple) else ((one.value,), False)
+    values = one.value if isinstance(one.value, tuple) else (one.value,)
 
-    def text(value: float) -> str:
-        plain = one.unit == "deg" and (listed or look.digits is None)
-        return look.number(angle(value)) if plain else look.value(value)
-
+    text = look.angle if one.unit == "deg" else look.value
     if len(values) > _MOST_LISTED:
         return f"{len(values)} from {text(min(values))} to {text(max(values))}"
     return ("; " if look.comma else ", ").join(map(text, values))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurbel.accuracy import trials
+from kurbel.accuracy import stiff, trials
 from kurbel.accuracy.extremes import all_cases, table, verdicts
 from kurbel.machine import Machine
 from kurbel.report.commands import report_of
@@ -22,69 +22,157 @@ Loads = Callable[[str], Machine]
 """Reads the text of a machine file; passed in by the command line, since reports do not import the reader."""
 Progress = Callable[[str, float], None]
 """Called with what is computed, and the completed share."""
-NUMERICAL = "numerical_error"
-"""Id of the table that the picture is drawn from."""
+NUMERICAL, SPEED = "numerical_error", "speed_error"
+"""Ids of the tables that the picture is drawn from."""
 _NOTES = (
     "Error: the largest relative error against a reference of 40 digits by another method; where the exact value is "
     "zero, relative to the largest value. ulp: the same in units of the last place, below 1e-12.",
     "Ratio: median time over that of kurbel's own method, or of the whole machine. Points: divisions of a turn, or "
-    "points on each piece between corners, which the methods between corners are given. Evaluations: crank angles of "
-    "which the motion is computed. Stages: functions of the solver that run for all that `kurbel forces` prints.",
+    "points on each piece between corners, which the methods between the corners are given; the others have the same "
+    "forces and no corners. Of T and ΔE a spreadsheet has the largest ordinate and the trapezium rule. Evaluations: "
+    "crank angles of which the motion is computed. Stages: functions of the solver that run for all that "
+    "`kurbel forces` prints.",
+)
+_SPEED_NOTE = (
+    "Speed: errors relative to a collocation in 40 digits, of ω the largest every 30°. Rivals are given the torque of "
+    "the textbook as polynomials, which costs them no time, and no corners. RK4: so many steps a cycle; others: "
+    "scipy's methods with a relative tolerance, where scipy is installed. State: what became of a march of 20 cycles, "
+    "or of a search for the cycle that repeats."
 )
 
 
 def accuracy_report(machine: Machine | None, quick: bool, loads: Loads, progress: Progress | None = None) -> Report:
     """Return error against run time for a machine, or for the built-in scenes; quick: fewer scenes and repeats.
 
-    progress: called with the name of each scene and the share of them that is done. A line of `scenes.tsv` is a scene:
-    `quick` if it is also in the quick run, from which turn on its motion is compared (-1 if an earlier one has done
-    so), and the text of its machine file.
+    progress: called with the name of each scene and the share of them that is done.
     """
-    built_in = [] if machine else [line for line in table("scenes.tsv") if line[0] or not quick]
-    scenes = [(machine, 0)] if machine else [(loads(text), int(turns)) for _, turns, text in built_in]
+    scenes = [Scene(machine, 0.0, ())] if machine else built_in_scenes(quick, loads)
     parts: list[Part] = []
-    found: list[str] = []
-    for number, (one, turns) in enumerate(scenes):
+    sentences: list[str] = []
+    for number, scene in enumerate(scenes):
         if progress:
-            progress(one.name, number / len(scenes))
-        degrees = 360.0 * turns + np.arange(361.0 if turns >= 0 else 0.0)
-        with np.errstate(all="ignore"):
-            rows, left_out = trials.examined(one, degrees, quick)
-        heavy = any(cylinder.masses or cylinder.pistons for cylinder in one.cylinders)
-        saved = [*trials.savings(one, _everything, quick)] if heavy else []
-        tables = (
-            _table(NUMERICAL, f"{one.name}: numerical error", rows, 4),
-            _table("leaving_out", f"{one.name}: what leaving out saves", saved, 1),
-        )
-        lacking = tuple(LeftOut(", ".join(quantities), why) for why, quantities in left_out.items())
-        parts.append(Part(one.name, (), left_out=lacking, place_tables=tuple(t for t in tables if t.names)))
-        found += [
-            f"{one.name}, {row.quantity}: {row.method} ({row.points}) is more exact and faster than kurbel's own"
-            for row in trials.better(rows)
-        ]
-    if not found and parts[0].place_tables:
-        found = ["No method listed is both more exact and faster than kurbel's own, beyond noise (20 %, 16 u)."]
+            progress(scene.machine.name, number / len(scenes))
+        part, shown = _part_of(scene, machine is not None, quick)
+        parts.append(part)
+        sentences += shown
+    has_speed = any(table.id == SPEED for part in parts for table in part.place_tables)
     return Report(
         f"{machine.name if machine else 'built-in scenes'}. Accuracy and run time",
         "accuracy",
         machine.name if machine else None,
         "scenes",
         tuple(parts),
-        notes=(*_NOTES, *found),
+        notes=(*_NOTES, *((_SPEED_NOTE,) if has_speed else ()), *sentences),
         head=(environment(), "Times are of this machine and this run; compare them only with one another."),
         provenance=partial(provenance, machine) if machine else None,
     )
 
 
+class Scene(NamedTuple):
+    """A machine; first: the angle in degrees from which its motion is compared, None for the speed of the shaft alone.
+
+    speed: columns of the reference of its speed, if that is known.
+    """
+
+    machine: Machine
+    first: float | None
+    speed: tuple[str, ...]
+
+
+def built_in_scenes(quick: bool, loads: Loads) -> list[Scene]:
+    """Return the scenes of `scenes.tsv` (quick, turn, machine) and of `stiff.tsv` (quick, machine, reference)."""
+    scenes = []
+    for is_quick, turns, text in table("scenes.tsv"):
+        if is_quick or not quick:
+            scenes.append(Scene(loads(text), 360.0 * int(turns), ()))
+    for is_quick, text, *reference in table("stiff.tsv"):
+        if is_quick or not quick:
+            scenes.append(Scene(loads(text), None, tuple(reference)))
+    return scenes
+
+
+def _part_of(scene: Scene, is_file: bool, quick: bool) -> tuple[Part, list[str]]:
+    """Return the tables of a scene, and what they show in sentences."""
+    machine = scene.machine
+    tables: list[PlaceTable] = []
+    lacking: list[LeftOut] = []
+    sentences: list[str] = []
+
+    # motion, forces and energy
+    if scene.first is not None:
+        with np.errstate(all="ignore"):
+            rows, left_out = trials.examined(machine, scene.first + np.arange(361.0), quick)
+        tables.append(_table(NUMERICAL, f"{machine.name}: numerical error", rows, 4))
+        lacking += [LeftOut(", ".join(quantities), why) for why, quantities in left_out.items()]
+        sentences += _of_rivals(machine.name, rows)
+
+    # the speed of the shaft
+    if is_file or scene.first is None:
+        with np.errstate(all="ignore"):
+            speeds, why = stiff.examined_speed(machine, scene.speed, quick)
+        tables.append(_table(SPEED, f"{machine.name}: speed of the shaft", speeds, 3))
+        sentences += _of_speed(machine.name, speeds)
+        if why and machine.flywheel is not None:
+            lacking.append(LeftOut("ω, δ", why))
+
+    # what leaving out saves
+    is_heavy = any(cylinder.masses or cylinder.pistons for cylinder in machine.cylinders)
+    if scene.first is not None and is_heavy:
+        saved = [*trials.savings(machine, _everything, quick)]
+        tables.append(_table("leaving_out", f"{machine.name}: what leaving out saves", saved, 1))
+    filled = tuple(table for table in tables if table.names)
+    return Part(machine.name, (), left_out=tuple(lacking), place_tables=filled), sentences
+
+
+def _of_rivals(name: str, rows: Sequence[trials.Trial]) -> list[str]:
+    """Return what the rows of a scene show of methods with the corners and without them."""
+    sentences = []
+    equal = trials.with_corners(rows)
+    if equal:
+        shown = "; ".join(f"{row.quantity} {ratio:.2g} ({row.method}, {row.points})" for row, ratio in equal)
+        sentences.append(
+            f"{name}: given the corners and enough points, the fastest methods with the digits of kurbel take of its "
+            f"time {shown}. kurbel finds corners and points itself."
+        )
+    rough = trials.without_corners(rows)
+    if rough:
+        shown = "; ".join(f"{row.quantity} {row.error:.0e} ({row.method}, {row.points})" for row, _ in rough)
+        sentences.append(f"{name}: without the corners, in no more time than kurbel's, the least errors are {shown}.")
+    return sentences
+
+
+def _of_speed(name: str, rows: Sequence[stiff.SpeedTrial]) -> list[str]:
+    """Return what the rows show of the speed: the most exact rival, and how many fail."""
+    if not rows:
+        return []
+    own, others = rows[0], [row for row in rows if not row.method.startswith(trials.OWN)]
+    failed = sum(row.omega is None for row in others)
+    ends = sum(row.omega is not None and row.state != "periodic" for row in others)
+    begin = f"{name}: the error of ω is {own.omega:.0e} by kurbel"
+    count = f"of {len(others)} runs by other methods {failed} fail and {ends} end without a periodic speed"
+    best = min((row for row in others if row.omega is not None), key=lambda row: row.omega or 0.0, default=None)
+    if best is None:
+        return [f"{begin}; {count}."]
+    nearest = f"{best.omega:.0e} by {best.method} ({best.points}) in {best.ratio:.2g} of its time"
+    return [f"{begin}, and at least {nearest}; {count}."]
+
+
 def _table(id: str, title: str, rows: Sequence[NamedTuple], heads: int) -> PlaceTable:
     """Return a table of records, whose first fields are the names of a row and whose others are its columns."""
     fields = rows[0]._fields if rows else ()
-    columns = [
-        Column(name, name, name, "ms" if name in ("median", "least") else "", [row[place] for row in rows], alone=2)
-        for place, name in enumerate(fields)
-    ]
+    columns: list[Column] = []
+    for place, name in enumerate(fields):
+        values = [row[place] for row in rows]
+        has_values = any(value is not None for value in values)
+        if place >= heads and has_values:
+            unit = "ms" if name in ("median", "least") else ""
+            columns.append(Column(name, _SYMBOLS.get(name, name), name, unit, values, alone=2))
     names = tuple(tuple(map(str, row[:heads])) for row in rows)
-    return PlaceTable(id, title, fields[:heads], names, tuple(columns[heads:]), headed=True)
+    return PlaceTable(id, title, fields[:heads], names, tuple(columns), headed=True)
+
+
+_SYMBOLS = {"omega": "ω", "delta": "δ", "omega_max": "ω_max", "M_K": "M_K"}
+"""Symbols of columns of errors."""
 
 
 def _everything(machine: Machine) -> None:

@@ -11,6 +11,7 @@ from kurbel.notes.warnings import (
     by_cylinder,
     guide_notes,
     rod_ratio_notes,
+    valve_warnings,
 )
 from kurbel.solver.case import Case
 from kurbel.solver.forces import CylinderForces
@@ -26,7 +27,13 @@ def mechanism_notes(case: Case) -> Iterable[str]:
 
 def _with_motion(case: Case) -> list[Subject]:
     return [
-        Subject(one.drive.name, one, one.at, left_out=motion_left_out(case.machine, one.drive.cylinder))
+        Subject(
+            one.drive.name,
+            one,
+            one.at,
+            left_out=motion_left_out(case.machine, one.drive.cylinder),
+            warnings=valve_warnings(one),
+        )
         for one in case.cylinders
     ]
 

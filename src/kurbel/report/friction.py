@@ -8,8 +8,8 @@ from kurbel.solver.friction import holding_force
 from kurbel.tables.frame import Places, Row, shown_key_values
 from kurbel.tables.tables import LeftOut, Part, Report
 
-_UP = Quantity("P_up", "P_1/Q", "ratio", "Force over the weight that moves the body up")
-_HELD = Quantity("P_held", "P_2/Q", "ratio", "Force over the weight that keeps the body from sliding down")
+_UP = Quantity("P_up", "P/Q", "ratio", "Force over the weight that moves the body up")
+_HELD = Quantity("P_held", "P_1/Q", "ratio", "Force over the weight that keeps the body from sliding down")
 _RHO = Quantity("rho", "ρ", "angle", "Angle of friction: at a smaller incline the body rests by itself", "rho")
 
 
@@ -37,9 +37,9 @@ def inclined_plane(incline: float, coefficient: float, direction: float = 0.0) -
     whole = Part("inclined plane", (), (rho,), tuple(left), place_tables=(table,))
     head = (
         f"Incline {incline:g} deg, coefficient {coefficient:g} (Redtenbacher 1862)",
-        "P_1 moves the body up, P_2 keeps it from sliding down; negative, it must push: friction alone holds the body.",
+        "P moves the body up, P_1 keeps it from sliding down; a negative P_1 must push: friction alone holds the body.",
     )
-    return Report("Reibung auf der schiefen Ebene", "friction", None, "cylinders", (), whole, head=head)
+    return Report("Friction on an inclined plane", "friction", None, "cylinders", (), whole, head=head)
 
 
 def _check(incline: float, coefficient: float, direction: float) -> None:

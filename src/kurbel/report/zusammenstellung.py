@@ -5,15 +5,16 @@ The printed figures are those of F. Rötscher, Die Maschinenelemente (1927), p. 
 
 import math
 from array import array
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from kurbel import crank_formulas as formulas
 from kurbel.crank_angle import CrankAngle
+from kurbel.declared.unit_systems import shown_unit
 from kurbel.errors import UsageError
 from kurbel.near_words import did_you_mean
 from kurbel.quantity import PHI, Quantity, by_id, called
-from kurbel.tables.tables import Column, Part, PlaceTable, Report
+from kurbel.tables.tables import Column, Part, PlaceTable, Report, Value
 
 _EACH = (
     ("b", Quantity("acceleration_factor", "cos φ + R/L cos 2φ", "ratio", "b over v²/R")),
@@ -44,17 +45,29 @@ _ODD = "velocity_factor", "psi", "guide_force_factor", "inertia_torque_factor"
 
 
 ROOTS = by_id(
-    Quantity("phi_b_zero", "φ_b=0", "angle", "Crank angle at which the acceleration is zero, on the outstroke"),
-    Quantity("phi_b_zero_book", "φ_b0=0", "angle", "The same by the acceleration of first order (R 291)"),
+    Quantity("phi_b_zero", "φ_b=0", "angle", "Crank angle of b = 0 and of the largest c, on the outstroke"),
+    Quantity("x_b_zero", "x/R", "ratio", "x over R there"),
+    Quantity("c_max_factor", "c_max/v", "ratio", "Largest c over v"),
+    Quantity("phi_b_zero_book", "φ_b0=0", "angle", "Crank angle of b = 0 by first order (R 291)"),
+    Quantity("x_b_zero_book", "x_0/R", "ratio", "x over R there, by first order (B 22, example 33)"),
+    Quantity("phi_square", "φ_⊥", "angle", "Crank angle at which the rod is square to the crank", "phi_square"),
 )
 """Of one L/R, by id."""
 
 _OTHER_SYMBOLS = {
     ("exact", "acceleration_factor"): ("b R/v²", "b R/v^2"),
     ("first-order", "velocity_factor"): ("sin φ + ½ R/L sin 2φ", "sin phi + 1/2 R/L sin 2phi"),
-    ("first-order", "displacement_factor"): ("1 − cos φ + ½ R/L sin² φ", "1 - cos phi + 1/2 R/L sin^2 phi"),
+    ("first-order", "displacement_factor"): (
+        "1 − cos φ + ½ R/L sin² φ",
+        "1 - cos phi + 1/2 R/L sin^2 phi",
+    ),
 }
 """Symbols of rows whose formula is not the book's."""
+_PRINTED_SYMBOLS = {
+    "acceleration_factor": ("cos φ ± R/L cos 2φ", "cos phi +- R/L cos 2phi"),
+    "velocity_factor": ("sin(φ±ψ)/cos ψ", "sin(phi+-psi)/cos psi"),
+}
+"""Symbols as the book prints them, with one sign for each stroke."""
 
 
 def zusammenstellung(
@@ -70,38 +83,62 @@ def zusammenstellung(
     (R 286, B 25, R 291), while ψ and the forces have no such form and stay exact. `compare` sets the printed figures
     below the computed ones and marks the misprints. Raises UsageError for L/R that do not turn and unknown rows.
     """
+    ids = _ids_of(rows)
+    ratios = tuple(dict.fromkeys(ratios))
+    symbols = {id: (FACTORS[id].symbol, FACTORS[id].ascii_symbol) for id in ids}
+    symbols |= {id: _OTHER_SYMBOLS[formula, id] for id in ids if (formula, id) in _OTHER_SYMBOLS}
+    if compare:
+        symbols |= {id: _PRINTED_SYMBOLS[id] for id in ids if id in _PRINTED_SYMBOLS}
+    parts = tuple(_part(ratio, symbols, angles, formula) for ratio in ratios)
+
+    names = " und ".join(symbol for symbol, _ in symbols.values())
+    title = f"Zusammenstellung 112. Werte für {names} am geraden Kurbeltrieb."
+    has_return_stroke = min(angles) >= 0 and max(angles) <= 180
+    mirrored = _on_return_stroke(symbols) if has_return_stroke else ""
+    has_motion = "acceleration_factor" in ids or "velocity_factor" in ids
+    whole = Part("", (), place_tables=(_roots(ratios),)) if has_motion else None
+    report = Report(title, "table", None, "ratios", parts, whole, mirrored)
+    return _with_printed(report, formula) if compare else report
+
+
+def _ids_of(rows: Iterable[str]) -> list[str]:
+    """Return the ids of rows, each once. Raises UsageError for an unknown row."""
     ids: list[str] = []
     for row in rows:
-        found = (ROWS[row],) if row in ROWS else called(row, FACTORS.values())
-        if len(found) != 1:
+        called_so = (ROWS[row],) if row in ROWS else called(row, FACTORS.values())
+        if len(called_so) != 1:
             near = did_you_mean(row, (*ROWS, *ROWS.values()))
             raise UsageError(f"--rows: no row '{row}'{near} (known: {', '.join(ROWS)})")
-        ids += found
-    ratios, parts = tuple(dict.fromkeys(ratios)), list[Part]()
-    for ratio in ratios:
-        if not ratio > 1:
-            raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
-        every = {id: array("d") for id in dict.fromkeys(ids)}
-        for degrees in angles:
-            factors = _factors(CrankAngle.of(degrees), ratio, formula)
-            for id, values in every.items():
-                values.append(factors[id])
-        columns = [Column("phi", PHI.symbol, PHI.ascii_symbol, "deg", angles, PHI.text)]
-        for id, values in every.items():
-            symbols = _OTHER_SYMBOLS.get((formula, id), (FACTORS[id].symbol, FACTORS[id].ascii_symbol))
-            columns.append(Column(id, *symbols, "deg" if id == "psi" else "", values, FACTORS[id].text))
-        parts.append(Part(ratio, tuple(columns)))
+        ids += called_so
+    return [*dict.fromkeys(ids)]
 
-    shown = [column.symbol for column in parts[0].columns[1:]]
-    title = f"Zusammenstellung 112. Werte für {' und '.join(shown)} am geraden Kurbeltrieb."
-    mirrored = ""
-    if min(angles) >= 0 and max(angles) <= 180:
-        odd = [column.symbol for column in parts[0].columns if column.id in _ODD]
-        changes = f"{' and '.join(odd)} {'has' if len(odd) == 1 else 'have'} the opposite sign" if odd else ""
-        mirrored = f"On the return stroke (360° − φ) {changes or 'the values are the same'}."
-    whole = Part("", (), place_tables=(_roots(ratios),)) if "acceleration_factor" in ids else None
-    report = Report(title, "table", None, "ratios", tuple(parts), whole, mirrored)
-    return _with_printed(report, formula) if compare else report
+
+def _part(ratio: float, symbols: Mapping[str, tuple[str, str]], angles: Sequence[float], formula: str) -> Part:
+    """Return the rows of one L/R; symbols: of the rows by their ids, in Greek letters and in ASCII.
+
+    Raises UsageError if the crank cannot turn.
+    """
+    if not ratio > 1:
+        raise UsageError(f"--ratio: L/R must be larger than 1 for the crank to turn, got {ratio:g}")
+    values_of = {id: array("d") for id in symbols}
+    for degrees in angles:
+        factors = _factors(CrankAngle.of(degrees), ratio, formula)
+        for id, values in values_of.items():
+            values.append(factors[id])
+    columns = [Column("phi", PHI.symbol, PHI.ascii_symbol, "deg", angles, PHI.text)]
+    for id, values in values_of.items():
+        unit = shown_unit(FACTORS[id].kind, "si")
+        columns.append(Column(id, *symbols[id], unit, values, FACTORS[id].text))
+    return Part(ratio, tuple(columns))
+
+
+def _on_return_stroke(symbols: Mapping[str, tuple[str, str]]) -> str:
+    """Return the sentence on the angles 360° − φ; symbols: of the rows by their ids."""
+    odd = [symbol for id, (symbol, _) in symbols.items() if id in _ODD]
+    if not odd:
+        return "On the return stroke (360° − φ) the values are the same."
+    verb = "has" if len(odd) == 1 else "have"
+    return f"On the return stroke (360° − φ) {' and '.join(odd)} {verb} the opposite sign."
 
 
 def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
@@ -131,21 +168,49 @@ def _factors(angle: CrankAngle, ratio: float, formula: str) -> dict[str, float]:
 
 
 def _roots(ratios: tuple[float, ...]) -> PlaceTable:
-    """Return where b is zero on the outstroke, exactly and by the acceleration of first order, B example 33."""
-    exact, first_order = array("d"), array("d")
+    """Return where b is zero and c is largest on the outstroke, exactly and by first order (B example 33).
+
+    The rod is square to the crank, tan φ = L/R, near the largest c (R p. 604).
+    """
+    values_of = {id: array("d") for id in ROOTS}
     for ratio in ratios:
-        lam, low, high = 1 / ratio, 0.0, 90.0
-        first_order.append(math.degrees(math.acos(2 * lam / (1 + math.sqrt(1 + 8 * lam * lam)))))
-        while low < (middle := (low + high) / 2) < high:
-            behind = _factors(CrankAngle.of(middle), ratio, "exact")["acceleration_factor"] < 0
-            low, high = (low, middle) if behind else (middle, high)
-        exact.append(high)
-    columns = [
-        Column(one.id, one.symbol, one.ascii_symbol, "deg", values, one.text)
-        for one, values in zip(ROOTS.values(), (exact, first_order))
-    ]
+        lam = 1 / ratio
+        exact = _angle_of_zero_acceleration(ratio)
+        first_order = math.degrees(math.acos(2 * lam / (1 + math.sqrt(1 + 8 * lam * lam))))
+        there = _factors(CrankAngle.of(exact), ratio, "exact")
+        by_book = _factors(CrankAngle.of(first_order), ratio, "first-order")
+        values_of["phi_b_zero"].append(exact)
+        values_of["x_b_zero"].append(there["displacement_factor"])
+        values_of["c_max_factor"].append(there["velocity_factor"])
+        values_of["phi_b_zero_book"].append(first_order)
+        values_of["x_b_zero_book"].append(by_book["displacement_factor"])
+        values_of["phi_square"].append(math.degrees(math.atan(ratio)))
+    columns = []
+    for quantity in ROOTS.values():
+        unit = shown_unit(quantity.kind, "si")
+        symbols = quantity.symbol, quantity.ascii_symbol
+        values = values_of[quantity.id]
+        alone = _DIGITS.get(quantity.id, 0)
+        columns.append(Column(quantity.id, *symbols, unit, values, quantity.text, alone=alone))
     names = tuple((f"L/R_=_{ratio:g}",) for ratio in ratios)
-    return PlaceTable("roots", "Where b = 0: exactly, and by first order", ("ratio",), names, tuple(columns))
+    title = "Where b = 0 and c is largest: exactly, by first order, and by the rod square to the crank"
+    return PlaceTable("roots", title, ("ratio",), names, tuple(columns))
+
+
+_DIGITS = {"x_b_zero": 4, "c_max_factor": 5, "x_b_zero_book": 4}
+"""Significant digits of the factors where b is zero; four would leave c_max/v but three decimals."""
+
+
+def _angle_of_zero_acceleration(ratio: float) -> float:
+    """Return the angle in degrees at which the exact b passes zero on the outstroke, by bisection."""
+    low, high = 0.0, 90.0
+    while low < (middle := (low + high) / 2) < high:
+        is_behind = _factors(CrankAngle.of(middle), ratio, "exact")["acceleration_factor"] < 0
+        if is_behind:
+            high = middle
+        else:
+            low = middle
+    return high
 
 
 # the printed figures
@@ -160,35 +225,63 @@ def _printed() -> dict[tuple[str, float], list[float | None]]:
 
     None is illegible: 70° and 80° lie in the fold between the two pages.
     """
+    figures: dict[tuple[str, float], list[float | None]] = {}
     with open(Path(__file__).parent / "zusammenstellung.tsv", encoding="utf-8") as file:
-        rows = [line.split() for line in file]
-    return {(id, float(ratio)): [None if one == "-" else float(one) for one in of] for id, ratio, *of in rows}
+        for line in file:
+            id, ratio, *texts = line.split()
+            figures[id, float(ratio)] = [None if text == "-" else float(text) for text in texts]
+    return figures
 
 
 def _with_printed(report: Report, formula: str) -> Report:
     """Return the table with the printed figures below the computed ones, those marked that rounding cannot explain.
 
-    Raises UsageError if the book prints no such table.
+    All factors have the three decimals of the book. Raises UsageError if the book prints no such table.
     """
     printed = _printed()
     wanted = {(column.id, part.name) for part in report.parts for column in part.columns[1:]}
-    if wanted - {*printed} or formula != "book" or [*report.parts[0].columns[0].values] != [*range(0, 181, 10)]:
+    has_book_angles = [*report.parts[0].columns[0].values] == [*range(0, 181, 10)]
+    if wanted - {*printed} or formula != "book" or not has_book_angles:
         only = "only b and c by --formula book, for L/R = 5, 4.5 and 4, every 10 degrees"
         raise UsageError(f"--compare: the book prints {only}")
-    parts = []
-    notes = ["* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."]
+
+    parts: list[Part] = []
+    notes = [_SIGNS, _MISPRINTS]
     for part in report.parts:
         phi, *columns = part.columns
-        shown = [phi]
+        rows = [phi]
         for column in columns:
-            figures, misprints = printed[column.id, float(part.name)], []
-            for index, (angle, value, figure) in enumerate(zip(phi.values, column.values, figures)):
-                # the small margin keeps a figure that rounds a tie the other way
-                if value is not None and figure is not None and abs(value - figure) > _HALF_UNIT * (1 + 1e-9):
-                    misprints.append(index)
-                    where = f"L/R = {part.name:g}, φ = {angle:g}°"
-                    notes.append(f"{where}: {column.symbol} is {value:.3f}, printed {figure:.3f}")
-            id, text, name = f"{column.id}_printed", f"{column.text}, as printed", "  printed"
-            shown += [column, Column(id, name, name, "", figures, text, 3, tuple(misprints))]
-        parts.append(part._replace(columns=tuple(shown)))
-    return report._replace(parts=tuple(parts), notes=tuple(notes))
+            figures = printed[column.id, float(part.name)]
+            misprints = _misprints(column.values, figures)
+            for index in misprints:
+                where = f"L/R = {part.name:g}, φ = {phi.values[index]:g}°"
+                value, figure = column.values[index], figures[index]
+                notes.append(f"{where}: {column.symbol} is {value:.3f}, printed {figure:.3f}")
+            name, text = "  printed", f"{column.text}, as printed"
+            rows.append(column._replace(decimals=3))
+            rows.append(Column(f"{column.id}_printed", name, name, "", figures, text, 3, misprints))
+        parts.append(part._replace(columns=tuple(rows)))
+    whole = report.whole and report.whole._replace(
+        place_tables=tuple(map(_with_three_decimals, report.whole.place_tables))
+    )
+    return report._replace(parts=tuple(parts), whole=whole, notes=tuple(notes))
+
+
+_SIGNS = "±: + on the outstroke, − on the return stroke, as the book prints it."
+_MISPRINTS = "* misprint: off the book's own formula by more than half a unit of the last decimal; blank: illegible."
+
+
+def _misprints(values: Sequence[Value], figures: Sequence[Value]) -> tuple[int, ...]:
+    """Return the indices of the printed figures that are not the values rounded to three decimals."""
+    largest = _HALF_UNIT * (1 + 1e-9)  # a figure may round a tie the other way
+    return tuple(
+        index
+        for index, (value, figure) in enumerate(zip(values, figures))
+        if value is not None and figure is not None and abs(value - figure) > largest
+    )
+
+
+def _with_three_decimals(table: PlaceTable) -> PlaceTable:
+    """Return a table of places whose factors have the decimals of the book; its angles stay as they are."""
+    columns = [column if column.unit else column._replace(decimals=3) for column in table.columns]
+    return table._replace(columns=tuple(columns))

@@ -16,6 +16,7 @@ from kurbel.solver.gas import PistonGas, Pressure
 from kurbel.solver.motion import MotionColumns
 from kurbel.traces.pressure import TracePressure
 
+_BOTH = ("motion", "forces")
 _ENDS = {"head": ("H", "head-end"), "crank": ("C", "crank-end")}
 """End of the cylinder -> index of its symbols, and its name."""
 
@@ -45,6 +46,14 @@ def _own_rise(state: Chambers, end: str) -> Array | None:
     return chamber.rise(state.phi) if isinstance(chamber, TracePressure) else None
 
 
+def _opening(state: Chambers, end: str) -> Number | None:
+    valve, w = state.drive.cylinder.valve, state.valve_displacement
+    if valve is None or w is None:
+        return None
+    head, crank = valve.ends
+    return head.opening_at(w) if end == "head" else crank.opening_at(-w)
+
+
 class Chambers(MotionColumns):
     """Motion and gas forces of a cylinder at crank angles; see `MotionColumns`."""
 
@@ -54,6 +63,24 @@ class Chambers(MotionColumns):
         super().__init__(drive.mechanism, angle, within, drive.omega, drive.cylinder.point)
         self.drive = drive
 
+    valve = value(
+        "w",
+        "length",
+        "Displacement of the valve from the middle of its ports, in the sense that opens the head end to steam",
+        lambda state: state.valve_displacement,
+        commands=_BOTH,
+        on_request=("forces",),
+    )
+    ports = values_for(
+        _ENDS,
+        "port_*",
+        "a_*",
+        "length",
+        "Opening of the * port, to the exhaust negative",
+        of=_opening,
+        commands=_BOTH,
+        on_request=("forces",),
+    )
     own_pressures = values_for(
         _ENDS,
         "p_*",
@@ -108,6 +135,12 @@ class Chambers(MotionColumns):
         lambda state: sum(state.force_on(gas, mean_area=True) for gas in state.drive.gas) if state.drive.gas else None,
         on_request=("forces",),
     )
+
+    @cached_property
+    def valve_displacement(self) -> Number | None:
+        """Displacement w of the valve in m; None without one."""
+        valve = self.drive.cylinder.valve
+        return valve.displacement(self.angle) if valve else None
 
     def pressure(self, end: Pressure) -> Array:
         """Return the gauge pressure in Pa at an end of a piston."""

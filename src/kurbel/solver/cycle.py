@@ -131,7 +131,7 @@ def _state_on(drive: Drive, pieces: Pieces) -> State:
 
     These are computed once.
     """
-    if drive.count is None or varies((drive.mechanism, drive.cylinder.pistons, drive.machine.ambient)):
+    if drive.count is None or varies((drive.mechanism, drive.cylinder.timed_pistons, drive.machine.ambient)):
         return State.on(drive, pieces)
     one = State.on(drive, pieces.taken(pieces.machine == 0))
     return _restored(drive, pieces, [np.tile(values, drive.count) for values in _before_friction(one)])

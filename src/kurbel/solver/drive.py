@@ -168,7 +168,7 @@ class Drive:
     def gas(self) -> tuple[PistonGas, ...]:
         """Pressures on the pistons that have an indicator."""
         found = []
-        for number, piston in enumerate(self.cylinder.pistons):
+        for number, piston in enumerate(self.cylinder.timed_pistons):
             if piston.indicator:
                 turns = CYCLES[self.machine.cycle_of_piston(self.cylinder, number)]
                 repeats, ambient = self.revolutions // turns, self.machine.ambient

@@ -160,7 +160,7 @@ class TurningEffort:
         return any_of(group[0].drive.drives for group in self.groups)
 
     def share(self, drive: Drive | None) -> Number:
-        """Return what the torque of a cylinder, or a given effort, is multiplied by for the losses (R p. 610–613).
+        """Return what the torque of a cylinder, or a given effort, is multiplied by for the losses (R p. 611–613).
 
         η where its pistons drive, 1/η where the machine is driven and no piston drives. In a machine with driving
         pistons the driven ones count in full. On a rod with both the factor is 1, and `lost` subtracts the loss of the

@@ -25,6 +25,7 @@ from kurbel.solver.motion import Motion
 from kurbel.solver.newton import residual
 from kurbel.solver.rod_load import RodLoads
 from kurbel.solver.state import State
+from kurbel.solver.valve import ValveGear
 
 SLIDING = {
     "crosshead": ("K", "at the crosshead"),
@@ -155,6 +156,12 @@ class CylinderForces(SampledCylinder, Results):
     def motion(self) -> Motion:
         """What the mechanism does."""
         return self.twin.motion if self.twin else Motion(self.mechanism, self.drive.machine.speed, self.drive.count)
+
+    @part(ValveGear)
+    def valve_gear(self) -> ValveGear | None:
+        """What the valve does."""
+        cylinder = self.drive.cylinder
+        return ValveGear(cylinder.valve, cylinder, self.motion) if cylinder.valve else None
 
     _pressures = Heading("Pressures and work")
     A_head = value("A_H", "area", "Piston area at the head end")

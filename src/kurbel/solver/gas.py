@@ -146,6 +146,7 @@ def _ideal(card: IdealCard, lift: float, four_stroke: bool) -> list[Line]:
         return next_p
 
     if isinstance(card, Steam):  # admission, expansion, exhaust; exhaust, compression
+        assert card.cut_off is not None
         run(0, 0.0, card.admission, card.cut_off)
         run(0, card.cut_off, card.admission, card.release, card.exponent)
         run(0, card.release, card.exhaust, 1.0)

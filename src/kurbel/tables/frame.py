@@ -1,15 +1,18 @@
 """From results and their declared quantities to the tables of a report, and the crank angles of its rows."""
 
+import math
 import re
 from array import array
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from kurbel.arrays import Array, Number
+from kurbel.declared.forms.figures import MACHINE
 from kurbel.declared.numerals import NUMBER, RATIO, parse_ratio, plain
 from kurbel.declared.reading import LONGEST_VALUE, shown
 from kurbel.declared.unit_systems import convert, show, shown_unit, units_of
@@ -24,6 +27,7 @@ from kurbel.solver.case import Case
 from kurbel.solver.cycle import Where
 from kurbel.solver.figures import AtAngles, Results
 from kurbel.solver.forces import CylinderForces
+from kurbel.tables.named_values import Choice, choices_in
 from kurbel.tables.tables import (
     Column,
     InputFile,
@@ -90,6 +94,15 @@ class Subject(NamedTuple):
         row = self.results.rows.key_values.get(quantity.id) if self.results else None
         return row and row.of(self.results)
 
+    def named(self, choices: Iterable[Choice]) -> Iterator[tuple[Quantity, object]]:
+        """Yield the chosen ones of its key values in SI, in their order, with no heading."""
+        rows = self.results.rows.key_values if self.results else {}
+        for choice in choices:
+            row = rows.get(choice.id)
+            value = row.of(self.results) if row and choice.is_of(self) else None
+            if row and value is not None:
+                yield row.quantity._replace(heading=""), value
+
     def key_values(self, command: str) -> Iterator[tuple[Quantity, object]]:
         """Yield its key values of a command in SI, without those that are printed only on request."""
         for quantity, of, unless in self.results.rows.key_values.values() if self.results else ():
@@ -121,7 +134,8 @@ class Frame(NamedTuple):
     to show in addition to φ, None for the usual ones; system: see `unit_systems`; over: the column in which the rows
     have even steps instead of φ, shown as well; compare: with the approximations of the book next to the exact columns;
     prose: with key values, notes, warnings, and what is left out, none of which a CSV table has; table: with columns
-    over the crank angle, False where other tables are requested instead.
+    over the crank angle, False where other tables are requested instead; names: of key values, separated by commas or
+    blanks, which are requested instead of all else.
     """
 
     command: str
@@ -132,6 +146,7 @@ class Frame(NamedTuple):
     compare: bool = False
     prose: bool = True
     table: bool = True
+    names: str = ""
 
 
 _PARTS = {"bearings": "bearings", "stress": "throws"}
@@ -149,6 +164,8 @@ def report_on(
     """
     if not subjects:
         raise UsageError(f"{machine.name} has no cylinder; kurbel {frame.command} needs one")
+    if frame.names:
+        return _report_on_names(frame, machine, title, subjects)
     having = list[tuple[Subject, tuple[PlaceTable, ...], tuple[Column, ...], str]]()
     for one in subjects:
         tables = tuple(table.shown(frame.system) for table in one.tables)
@@ -190,6 +207,54 @@ def report_on(
         provenance=partial(provenance, machine) if frame.prose else None,
         cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
     )
+
+
+def _report_on_names(frame: Frame, machine: Machine, title: str, subjects: Sequence[Subject]) -> Report:
+    """Return the report on the key values that are named, and nothing else but warnings.
+
+    Raises UsageError for a name that is no key value of the command, and for a key value that the machine does not
+    have.
+    """
+    # pistons of a rod are meant by their names alone
+    owners = [*subjects, *(piston for subject in subjects for piston in subject.pistons)]
+    choices = choices_in(frame.names, frame.command, owners)
+    scopes = {choice.scope for choice in choices}
+    parts, whole, given = list[Part](), None, set[Choice]()
+    for subject in owners:
+        if subject not in subjects and subject.name not in scopes:
+            continue
+        chosen = list(subject.named(choices))
+        if not chosen:
+            continue
+        ids = {quantity.id for quantity, _ in chosen}
+        given |= {choice for choice in choices if choice.id in ids and choice.is_of(subject)}
+        key_values = tuple(shown_key_values(chosen, frame.system))
+        part = Part(subject.name, (), key_values, (), tuple(subject.warnings), of=subject.of)
+        if subject.whole:
+            whole = part
+        else:
+            parts.append(part)
+
+    for choice in choices:
+        if choice not in given:
+            raise UsageError(f"--key-values: {_lacking(choice, frame.command)}")
+    return Report(
+        f"{machine.name}. {title}",
+        frame.command,
+        machine.name,
+        "bearings" if frame.command == "bearings" else "cylinders",
+        tuple(parts),
+        whole,
+        provenance=partial(provenance, machine),
+        cylinders=tuple(cylinder.name for cylinder in machine.cylinders),
+    )
+
+
+def _lacking(choice: Choice, command: str) -> str:
+    """Return the message for a key value that a machine, or a part of it, does not have."""
+    quantity = every_quantity().key_values(command)[choice.id]
+    owner = {"": "this machine", MACHINE: "the whole machine"}.get(choice.scope, choice.scope)
+    return f"{owner} has no {choice.id}: {quantity.text[:1].lower()}{quantity.text[1:]}; kurbel check shows why"
 
 
 class Functions(NamedTuple):
@@ -245,8 +310,7 @@ def _absent(name: str, command: str, subjects: Sequence[Subject]) -> str:
     if name in known:
         return f"'{name}' is left out for this machine" + (f", which has {listed}" if listed else "")
     if found := called(name, key_values.values()):
-        symbol = key_values[found[0]].symbol
-        return f"'{name}' is a key value and no column: a line below the table, --key-values | grep '{symbol} '"
+        return f"'{name}' is a key value and no column; --key-values {found[0]} prints it"
     words = tuple(word for one in (*there, *known.values()) for word in (one.id, one.symbol))
     near = in_sentences(name, there) or did_you_mean(name, words)
     return f"'{shown(name)}' is no column of kurbel {command}{near} (this machine has {listed or 'none'})"
@@ -450,14 +514,17 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         if wrong := ambiguity(name, ids):
             raise UsageError(f"--where: {wrong}")
         column = own.get(ids[0])  # None for one that only other machines have
-        wanted = _value(subject, command, column, factor, of, text) if column else 0.0
-        results = subject.results
+        is_fraction = column is not None and not _has_unit(of, column)
+        searched = _with_any_speed(subject, column) if column and is_fraction else subject
+        wanted = _value(searched, command, column, factor, of, text) if column else 0.0
+        results = searched.results
         assert isinstance(results, Searchable)
         found = column and results.angles_where(column.id, wanted)
         if column is None or found is None:
             why = "; kurbel check shows why"
             if column and column.kind in _OF_SPEED and results.omega is None:
-                why = ": no speed is given; add one by --set speed='60 rpm' (where it is zero, any speed will do)"
+                fraction = "a fraction of a key value, as in 'b = 1/6 b_max', needs none"
+                why = f": no speed is given; add one by --set speed='60 rpm' ({fraction})"
             raise UsageError(f"--where: '{name}' is left out for this machine{why}")
         if not found.angles:
             low, high = (show(one, column.kind) for one in found.span)
@@ -469,6 +536,33 @@ def rows_where(text: str, command: str, end: float) -> Callable[[Subject], Seque
         return turned[np.diff(turned, prepend=-1.0) > _SAME].tolist()
 
     return angles
+
+
+def _has_unit(of: str, column: Quantity) -> bool:
+    """Return whether this is a unit of the column, not a key value."""
+    try:
+        unit_factor(of, column.kind)
+    except UnitError:
+        return False
+    return bool(of)
+
+
+def _with_any_speed(subject: Subject, column: Quantity) -> Subject:
+    """Return a cylinder without a speed as it moves at any speed, if the column needs one; else the subject itself.
+
+    At uniform rotation a velocity is a fraction of its largest at the same angles whatever the speed.
+    """
+    forces = subject.results
+    needs_speed = column.kind in _OF_SPEED and isinstance(forces, CylinderForces) and forces.omega is None
+    if not needs_speed:
+        return subject
+    assert isinstance(forces, CylinderForces)
+    machine = replace(forces.drive.machine, speed=_ANY_SPEED)
+    return subject._replace(results=CylinderForces(machine, forces.drive.cylinder))
+
+
+_ANY_SPEED = 1 / (2 * math.pi)
+"""Revolutions per second: 1 rad/s."""
 
 
 def _value(subject: Subject, command: str, column: Quantity, factor: float | None, of: str, text: str) -> float:
