@@ -154,7 +154,9 @@ class Machine(Record):
         absent="from the cylinders",
     )
     coupling: Coupling | None = field(Coupling, "Elastic coupling to a driven moment of inertia", absent="rigid")
-    crankshaft: Crankshaft | None = field(Crankshaft, "One throw between bearings A and B", absent="no strength check")
+    crankshaft: Crankshaft | None = field(
+        Crankshaft, "The throw between bearings A and B, the same for all cylinders", absent="no strength check"
+    )
     counterweights: SharedCounterweights | tuple[Counterweight, ...] = counterweights()
     balance_shafts: tuple[BalanceShaft, ...] = field(
         [BalanceShaft],
@@ -295,7 +297,9 @@ class Machine(Record):
         for index, name in enumerate(cases):
             yield Rule(("cases", index, "name"), name in cases[:index], f"two cases are called '{name}'")
         pistons = (name for cylinder in self.cylinders for name in self.piston_names(cylinder))
-        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons)))
+        several = self.crankshaft is not None and len(self.cylinders) > 1
+        throws = [f"throw {number}" for number in range(1, len(self.cylinders) + 1)] if several else []
+        scopes = tuple(dict.fromkeys((MACHINE, *names, *pistons, *throws)))
         for key, figures in (("limits", self.limits), ("expect", self.expect)):
             for id, figure in figures:
                 if (scope := scoped(id)[0]) and scope not in scopes:
