@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "benchmarks"))
 
 from model_and_data import data_errors, first_machine, model_errors
 
+from kurbel.cli.comparing import answer_of
 from kurbel.machine_file import loads
 from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.render import Look
@@ -115,7 +116,7 @@ the shaft, `benchmarks/model_and_data.py` the errors of data and model. `python 
 def main() -> None:
     """Write both files."""
     report = accuracy_report(None, False, loads)
-    extremes, _ = extremes_report(loads)
+    extremes, _ = extremes_report(loads, answer_of)
     draw_file([accuracy_picture(report)], Look(), str(FOLDER / PICTURE))
     engine = render(report._replace(parts=report.parts[:1]), Look(format="markdown"))
     text = "\n\n".join(

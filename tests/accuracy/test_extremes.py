@@ -1,13 +1,17 @@
 """Stiff and extreme cases: the whole table passes, and a wrong answer would not."""
 
+from pathlib import Path
+
 import mpmath
 import pytest
+from extreme_formulas import all_formulas
 
 from kurbel.accuracy.extremes import Probe, all_cases, verdicts
+from kurbel.cli.comparing import answer_of
 from kurbel.errors import NoSolutionError, UsageError
 from kurbel.machine import Machine
 from kurbel.machine_file import loads
-from kurbel.report.accuracy import answer
+from kurbel.report import accuracy
 
 mp = mpmath.mp
 CASES = all_cases()
@@ -15,14 +19,19 @@ PLAIN = "{speed: 60 rpm, crank: 400 mm, rod_ratio: 5}"
 
 
 def test_there_are_many_cases() -> None:
-    assert len(CASES) == 154
+    assert len(CASES) == 178
     assert all(case.asked and case.expected for case in CASES)
+
+
+LONG = ("polytropic card", "card of 1e4 points")
 
 
 def quick(case: Probe) -> bool:
     """Whether no reference is computed that takes most of a second: of energy, or of many samples."""
-    dear = ("flywheel dE", "forces T_max", "forces T_min", "forces friction_work")
-    return (case.case, case.asked) in KEPT or not (case.asked.startswith(dear) or case.case == "polytropic card")
+    dear = ("flywheel dE", "forces T_max", "forces T_min", "forces friction_work", "balance")
+    return (case.case, case.asked) in KEPT or not (
+        case.asked.startswith(dear) or case.case in ("polytropic card", "card of 1e4 points")
+    )
 
 
 KEPT = {
@@ -39,12 +48,12 @@ DEAR = {(case.case, case.asked.partition("@")[0]): case for case in CASES if not
 
 def fault(case: Probe) -> str:
     """What is wrong with the answer of a case; '' where nothing is."""
-    (one,) = verdicts([case], answer, loads)
+    (one,) = verdicts([case], answer_of, loads)
     wrong = f"{case.case}, {case.asked}: expected {one.expected}, observed {one.observed} ({one.ulp} ulp)"
     return "" if one.passed else wrong
 
 
-@pytest.mark.parametrize("command", ["motion", "forces", "flywheel"])
+@pytest.mark.parametrize("command", sorted({case.asked.split()[0] for case in CASES} - {"balance"}))
 def test_quick_cases(command: str) -> None:
     cases = [case for case in CASES if quick(case) and case.asked.startswith(command)]
     assert cases
@@ -93,36 +102,43 @@ def test_a_right_refusal_passes() -> None:
     assert verdict.passed
 
 
-def closed_forms() -> dict[tuple[str, str], mpmath.mpf]:
-    """The numbers of the table that are no references, from formulas."""
-    pi, mpf = mp.pi, mpmath.mpf
-    found = {
-        ("infinite rod", "motion x@60"): mpf(0.4) / 2,
-        ("1e3 mm is a number", "motion stroke"): mpf(2),
-        ("effort in a block", "flywheel dE"): 100 * pi,
-        # δ = ΔE/(J ω²), where δ² no longer shows
-        ("J = 1e15 kg m²", "flywheel delta"): 100 * pi / (mpf(1e15) * (2 * pi) ** 2),
-        ("load that falls as 1/ω, ∮ dφ/ω as at the nominal speed", "flywheel omega_mean"): 100 * pi / 60,
-    }
-    crank, lever, sin, cos = mpf(0.1), mpf(0.4), mp.sin(mp.radians(175)), mp.cos(mp.radians(175))
-    for name, frame in (("100.0001", mpf(100.0001 / 1000)), ("300", mpf(0.3)), ("1e12", mpf(1e9))):
-        case = f"slotted lever, frame {name} mm"
-        across, along = crank * sin, frame + crank * cos
-        found |= {
-            (case, "motion x@175"): lever * across / mp.hypot(across, along),  # R_l sin θ
-            (case, "motion c_work_max"): 2 * pi * crank * lever / (frame + crank),  # v R_l/(e ± r), R 304, 305
-            (case, "motion c_return_max"): 2 * pi * crank * lever / (frame - crank),
-        }
-    return found
+MARCHED = {(case.case, case.asked) for case in CASES if "omega@" in case.asked and case.case != "slip 1e-12"}
+"""Their references are those of benchmarks/speed_lines.py."""
 
 
 def test_numbers_of_the_table_are_those_of_their_formulas() -> None:
     with mp.workdps(40):
-        formulas = closed_forms()
+        formulas = all_formulas()
         numbers = {
             (one.case, one.asked): one.expected
             for one in CASES
-            if one.ulp and one.expected != "reference" and "omega@" not in one.asked  # of benchmarks/speed_lines.py
+            if one.ulp and one.expected != "reference" and (one.case, one.asked) not in MARCHED
         }
         assert {at for at, number in numbers.items() if number != "0"} == set(formulas)
         assert all(abs(mpmath.mpf(numbers[at]) / formulas[at] - 1) < 1e-25 for at in formulas)
+
+
+def test_every_command_has_extreme_cases() -> None:
+    commands = "motion forces flywheel torsion balance harmonics bearings stress delivery find sweep"
+    assert {case.asked.split()[0] for case in CASES} == set(commands.split())
+
+
+def test_faults_of_reading_are_refused() -> None:
+    """They are no extremes; the messages are those of `tests/refused.txt`."""
+    lines = (Path(__file__).parent / "reading_faults.tsv").read_text(encoding="utf-8").splitlines()[1:]
+    cases = [Probe(*line.split("\t")) for line in lines]
+    assert [wrong for case in cases if (wrong := fault(case))] == []
+
+
+def test_the_worst_verdict_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    cases = [
+        Probe("refused", "{speed: 60 rpm}", "motion x@30", "status 2: "),
+        Probe("near", PLAIN, "motion x@30", "reference", "8"),
+        Probe("wrong", PLAIN, "motion x@30", "1", "8"),
+    ]
+    monkeypatch.setattr(accuracy, "all_cases", lambda: cases)
+    report, passed = accuracy.extremes_report(loads, answer_of)
+    (judged,) = report.parts[0].place_tables
+    assert not passed
+    assert [names[0] for names in judged.names] == ["wrong", "near", "refused"]
+    assert [column.id for column in judged.columns] == ["ulp", "allowed", "time"]

@@ -1,13 +1,15 @@
 """Stiff and extreme machines, each with what must come out of it: the table `extremes.tsv`, and how answers are judged.
 
 A line of the table is a case: a name, the text of a machine file, command and key value, or command and
-column@degrees, what is expected, and by how many units of the last place a value may miss it. Expected are `reference`,
-the value of the textbook in mpmath's numbers; a number, from a formula in tests/accuracy; `left out`; or an exit status
-and words of the message.
+column@degrees, what is expected, and by how many units of the last place a value may miss it. Of `find` and `sweep` the
+range or the values of a key come before ` | `, behind it what is wanted, or a key value and the number of its row.
+Expected are `reference`, the value of the textbook in mpmath's numbers; a number, from a formula in tests/accuracy;
+`left out`; or an exit status and words of the message. MANY_POINTS in a machine is the line of a card, see `fine_line`.
 """
 
 import csv
 import math
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from textwrap import shorten
@@ -32,7 +34,7 @@ class Probe(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What the program returned; ulp, allowed: None where no value was expected, or none was returned."""
+    """What the program returned, and in how many ms, reading included; ulp, allowed: None where there is no value."""
 
     case: str
     asked: str
@@ -41,6 +43,12 @@ class Verdict(NamedTuple):
     verdict: str
     ulp: float | None
     allowed: float | None
+    time: float
+
+    @property
+    def badness(self) -> tuple[bool, float]:
+        """What is larger for a worse verdict: failed, and the share of what is allowed."""
+        return not self.passed, -1.0 if self.ulp is None or not self.allowed else self.ulp / self.allowed
 
     @property
     def passed(self) -> bool:
@@ -59,6 +67,13 @@ def all_cases() -> list[Probe]:
     return [Probe(*line) for line in table("extremes.tsv")]
 
 
+def fine_line() -> str:
+    """Return a line of a card with 10 001 points: p = 1 + 8 (1 − z)², z from 0 to 1."""
+    count = 10_000
+    points = (f"[{k / count!r}, {1 + 8 * (1 - k / count) ** 2!r}]" for k in range(count + 1))
+    return f"[{', '.join(points)}]"
+
+
 def verdicts(
     cases: list[Probe], compute: Callable[[Machine, str], float | None], loads: Callable[[str], Machine]
 ) -> Iterator[Verdict]:
@@ -67,25 +82,41 @@ def verdicts(
     compute: runs the program: (machine, requested quantity) -> its value, or None if it is left out.
     """
     for case in cases:
-        expected, missed = case.expected, None
+        text = case.machine.replace("\\n", "\n")
+        if "MANY_POINTS" in text:
+            text = text.replace("MANY_POINTS", fine_line())
+        begin = time.perf_counter()
         try:
-            machine = loads(case.machine.replace("\\n", "\n"))
-            answer = compute(machine, case.asked)
+            machine = loads(text)
+            value = compute(machine, case.asked)
         except KurbelError as error:
-            message, status = " ".join(str(error).split()), f"status {error.exit_status}: "
-            passed = expected.startswith(status) and expected.removeprefix(status) in message
-            observed = shorten(status + message, 100, placeholder=" …")
+            observed, passed = _refused(case, error)
+            expected, missed = case.expected, None
+            spent = time.perf_counter() - begin
         except Exception as error:
             observed, passed = f"fault: {type(error).__name__}: {error}", False
+            expected, missed = case.expected, None
+            spent = time.perf_counter() - begin
         else:
-            observed = "left out" if answer is None else repr(answer)
+            spent = time.perf_counter() - begin
+            observed = "left out" if value is None else repr(value)
+            expected, missed = case.expected, None
             passed = observed == expected
             if case.ulp:
-                expected, missed = _missed(case, machine, answer)
+                expected, missed = _missed(case, machine, value)
                 passed = missed is not None and missed <= float(case.ulp)
         allowed = None if missed is None else float(case.ulp)
         verdict = "passed" if passed else "FAILED"
-        yield Verdict(case.case, case.asked, expected, observed, verdict, missed, allowed)
+        yield Verdict(case.case, case.asked, expected, observed, verdict, missed, allowed, 1e3 * spent)
+
+
+def _refused(case: Probe, error: KurbelError) -> tuple[str, bool]:
+    """Return status and message of an error, and whether it was expected."""
+    status = f"status {error.exit_status}: "
+    message = " ".join(str(error).split())
+    expected_words = case.expected.removeprefix(status)
+    passed = case.expected.startswith(status) and expected_words in message
+    return shorten(status + message, 100, placeholder=" …"), passed
 
 
 def _missed(case: Probe, machine: Machine, answer: float | None) -> tuple[str, float | None]:

@@ -1,14 +1,18 @@
 """What `kurbel accuracy` does: methods compared in scenes or on a machine, or extreme machines run."""
 
+import math
+
 import click
 
 from kurbel.cli.group import Progress
 from kurbel.cli.request import case_of
+from kurbel.designs.api import find, sweep
+from kurbel.machine import Machine
 from kurbel.machine_file import loads
 from kurbel.pictures.accuracy import accuracy_picture
 from kurbel.render.drawing import check_file, draw_file
 from kurbel.render.formats import Output
-from kurbel.report.accuracy import accuracy_report, extremes_report
+from kurbel.report.accuracy import accuracy_report, answer, extremes_report
 
 
 def compare(
@@ -26,7 +30,7 @@ def compare(
     if extremes:
         if file is not None or picture is not None:
             raise click.UsageError("--extremes has its own machines and no picture; leave FILE and --plot out.")
-        report, passed = extremes_report(loads)
+        report, passed = extremes_report(loads, answer_of)
         output.write(report)
         return int(not passed)
     if picture is not None:
@@ -38,3 +42,18 @@ def compare(
     if picture is not None:
         draw_file([accuracy_picture(report)], output.look, picture)
     return 0
+
+
+def answer_of(machine: Machine, asked: str) -> float | None:
+    """Return what the program gives for a request of `kurbel.accuracy.extremes`, in SI; None where it is left out."""
+    command, _, rest = asked.partition(" ")
+    if command not in ("find", "sweep"):
+        return answer(machine, asked)
+    given, _, wanted = rest.partition(" | ")
+    key, _, values = given.partition("=")
+    if command == "find":
+        low, high = values.split(":")
+        return float(find(machine, {key: (low, high)}, wanted).found[0].values[0])
+    column, _, row = wanted.rstrip("]").partition("[")
+    value = float(sweep(machine, {key: values.split(",")}, column)[column][int(row)])
+    return None if math.isnan(value) else value

@@ -165,7 +165,7 @@ def _table(id: str, title: str, rows: Sequence[NamedTuple], heads: int) -> Place
         values = [row[place] for row in rows]
         has_values = any(value is not None for value in values)
         if place >= heads and has_values:
-            unit = "ms" if name in ("median", "least") else ""
+            unit = "ms" if name in ("median", "least", "time") else ""
             columns.append(Column(name, _SYMBOLS.get(name, name), name, unit, values, alone=2))
     names = tuple(tuple(map(str, row[:heads])) for row in rows)
     return PlaceTable(id, title, fields[:heads], names, tuple(columns), headed=True)
@@ -196,14 +196,17 @@ def environment() -> str:
 # stiff and extreme cases
 
 
-def extremes_report(loads: Loads) -> tuple[Report, bool]:
-    """Return the verdicts on all cases, and whether every one is passed."""
-    found = list(verdicts(all_cases(), answer, loads))
-    passed = sum(one.passed for one in found)
-    judged = _table("extremes", f"{passed} of {len(found)} cases passed", found, 5)
-    part = Part("stiff and extreme cases", (), place_tables=(judged,))
+def extremes_report(loads: Loads, compute: Callable[[Machine, str], float | None]) -> tuple[Report, bool]:
+    """Return the verdicts on all cases, the worst first, and whether every one is passed.
+
+    compute: see `kurbel.accuracy.extremes.verdicts`.
+    """
+    judged = sorted(verdicts(all_cases(), compute, loads), key=lambda verdict: verdict.badness, reverse=True)
+    passed = sum(verdict.passed for verdict in judged)
+    listed = _table("extremes", f"{passed} of {len(judged)} cases passed", judged, 5)
+    part = Part("stiff and extreme cases", (), place_tables=(listed,))
     report = Report("Stiff and extreme cases", "accuracy", None, "scenes", (part,), head=(environment(),))
-    return report, passed == len(found)
+    return report, passed == len(judged)
 
 
 def answer(machine: Machine, asked: str) -> float | None:
