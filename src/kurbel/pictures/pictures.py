@@ -283,7 +283,7 @@ def pictures(case: Case, names: Sequence[str], options: PictureOptions) -> Itera
     name, cylinders = case.machine.name, [one.drive.name for one in case.cylinders]
     if options.cylinder:
         if tuple(names) == ("throw-stress",):
-            cylinders = [throw.name for throw in case.stress.throws]
+            cylinders += [throw.name for throw in case.stress.throws]
         options = options._replace(cylinder=cylinder_meant(options.cylinder, cylinders))
         if options.cylinder not in cylinders:
             there = f"there is no '{shown(options.cylinder or '')}'; there are {', '.join(cylinders)}"
@@ -343,9 +343,11 @@ def _sources(case: Case, kind: PictureKind, options: PictureOptions) -> Iterator
     elif command == "torsion":
         yield Source(case.torsion, options.angles), ""
     elif command == "stress":
-        throws = {throw.name: throw for throw in case.stress.throws}
-        throw = throws.get(options.cylinder or "", case.stress.worst)
-        yield Source(throw, options.angles), throw.name if len(throws) > 1 else ""
+        throw = case.stress.worst
+        for other in case.stress.throws:
+            if options.cylinder in (other.name, *(forces.drive.name for forces in other.rods)):
+                throw = other
+        yield Source(throw, options.angles), "" if case.stress.only else throw.name
     elif command not in _OF_PARTS:
         having = [one.results for one in subjects_of(case, command) if one.results]
         yield Source(having[-1], options.angles), ""

@@ -37,6 +37,7 @@ from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import Force, SupportedShaft, shaft_obstacle
 from kurbel.solver.state import State, on_crosshead_pin, on_pin
+from kurbel.solver.throw_loads import pin_load, real_parts, resampled, state_at
 
 HALF_CONTACT = 60.0
 """Degrees to either side of a load over which pin and shell are taken to touch."""
@@ -58,19 +59,6 @@ Size = tuple[float | None, float | None]
 """Diameter and length in m; None where they are not given."""
 Frames = dict[str, ComplexArray]
 """A load in N in each of its frames."""
-
-
-def state_at(forces: CylinderForces, degrees: Array, within: Array) -> State:
-    """Return the state of a cylinder at angles (n,) of crank 1, on the sides of jumps that hold `within`."""
-    late = position(forces)
-    return State.at(forces.drive, degrees - late, within - late)
-
-
-def resampled(pieces: Pieces, forces: CylinderForces, *values: Force) -> ComplexArray:
-    """Return quantities of a cylinder, sampled on its own pieces, at the nodes of common pieces, (q, nodes, pieces)."""
-    source = forces.pieces
-    parts = pieces.carried(_parts(values, source.degrees.shape), source, position(forces))
-    return parts[::2] + 1j * parts[1::2]
 
 
 class BearingColumns(AtAngles):
@@ -300,22 +288,12 @@ class MainBearing(Bearing):
         return self._result(pieces.integral(load)) * coefficient * self.size[0] / 2
 
 
-def pin_load(state: State) -> Force:
-    """Return the force of a rod on the crank pin in N, D + iT; 0 where no force acts in the cylinder."""
-    return on_pin(state).complex if state.drive.has_force else 0j
-
-
-def _parts(loads: Sequence[Force], shape: tuple[int, ...]) -> Array:
-    """Return real and imaginary part of every load, (2 q, nodes, pieces)."""
-    return np.stack([np.broadcast_to(part, shape) for one in loads for part in (np.real(one), np.imag(one))])
-
-
 def with_magnitude(pieces: Pieces, loads: Sequence[ComplexArray]) -> tuple[Pieces, Array, ComplexArray]:
     """Return pieces on which the magnitude of a load is a polynomial, with that in N and the loads there.
 
     loads: one load as it is seen in several frames, each (nodes, pieces).
     """
-    parts = _parts(loads, pieces.degrees.shape)
+    parts = real_parts(loads, pieces.degrees.shape)
     largest = pieces.largest(np.abs(loads[0]))
     fine, load, parts = resolved(
         pieces, parts, parts[:2], np.stack((largest, largest)), lambda some, found: np.hypot(*found[:2])[None]

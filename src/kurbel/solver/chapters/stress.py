@@ -45,12 +45,12 @@ from kurbel.numerics.arithmetic import every, magnitude, some, where
 from kurbel.numerics.extreme import Extreme, chosen, largest, smallest
 from kurbel.numerics.pieces import Pieces, common, highest, resolved
 from kurbel.quantity import Answers, Heading, value, values_for
-from kurbel.solver.chapters.bearings import pin_load, resampled, state_at
 from kurbel.solver.effort import position
 from kurbel.solver.figures import AtAngles, Results, result
 from kurbel.solver.forces import CylinderForces
 from kurbel.solver.shaft import Force, FreeBody, SupportedShaft, flywheel_weight, strength_obstacle
 from kurbel.solver.state import State
+from kurbel.solver.throw_loads import pin_load, resampled, state_at
 
 PARTS = {
     "pin": ("pin", "the crank pin"),
